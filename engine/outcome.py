@@ -1,0 +1,69 @@
+"""How a computation ended, what may be said of a motion's stability, and the one error that misuse raises."""
+
+from dataclasses import dataclass
+from enum import Enum, StrEnum
+
+
+class Outcome(Enum):
+    """How one point of an analysis ended; every member carries its sentence."""
+
+    CONVERGED = ("converged", "The equations are met to the tolerance.")
+    NO_CONVERGENCE = ("no_convergence", "Newton's method did not meet the tolerance from any start.")
+    STATICALLY_UNSTABLE = (
+        "statically_unstable",
+        "The static state is unstable without wind: the ice moment exceeds the torsional stiffness.",
+    )
+    OUTSIDE_FIT = ("outside_fit", "The angle of attack leaves the range to which the coefficients were fitted.")
+    LIMIT_REACHED = ("limit_reached", "The computation stopped at a limit that was set for it.")
+
+    sentence: str
+
+    def __new__(cls, value: str, sentence: str) -> "Outcome":
+        """Make a member whose value is the word that results carry."""
+        member = object.__new__(cls)
+        member._value_ = value
+        member.sentence = sentence
+        return member
+
+
+class Stability(StrEnum):
+    """What is known of a motion's stability; what was not decided is unknown, never stable."""
+
+    STABLE = "stable"
+    UNSTABLE = "unstable"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One broken rule: dotted path of the field (`span.length`), the value found there and the rule in words."""
+
+    field: str
+    value: object
+    rule: str
+
+    def __str__(self) -> str:
+        """Say field, rule and value in one sentence."""
+        return f"{self.field} {self.rule}, got {self.value!r}"
+
+
+class InvalidSpec(ValueError):
+    """Raised when a specification breaks one or more rules; `faults` holds all of them."""
+
+    def __init__(self, *faults: Fault) -> None:
+        """Take at least one fault."""
+        self.faults = faults
+        super().__init__("; ".join(str(fault) for fault in faults))
+
+
+def require(*faults: Fault | None) -> None:
+    """Raise `InvalidSpec` with every fault that is not None.
+
+    Raises
+    ------
+    InvalidSpec
+        If there is at least one.
+    """
+    found = [fault for fault in faults if fault is not None]
+    if found:
+        raise InvalidSpec(*found)

@@ -1,0 +1,129 @@
+"""What an analysis returns: flat rows, one fact a row, with the column names of the contract (units in the names)."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from engine.outcome import Outcome, Stability
+from engine.spec import Model
+
+Direction = Literal["vertical", "horizontal", "torsional"]
+
+
+@dataclass(frozen=True, slots=True)
+class StaticState:
+    """Static state of the span, theory section 2; the stiffness is the smaller of both ends, None at dead ends."""
+
+    horizontal_tension_n: float
+    catenary_parameter_m: float
+    sag_m: float
+    longitudinal_stiffness_n_per_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class DenHartog:
+    """The coefficient a_y1 = dC_L/dalpha + C_D of one sub-conductor; negative means unstable."""
+
+    coefficient: float
+    unstable: bool
+
+
+@dataclass(frozen=True, slots=True)
+class FrequencyRow:
+    """Natural frequencies without wind, labelled by dominant direction; numbers are None unless converged."""
+
+    model: Model
+    loops: int
+    vertical_hz: float | None
+    horizontal_hz: float | None
+    torsional_hz: float | None
+    outcome: Outcome = Outcome.CONVERGED
+
+
+@dataclass(frozen=True, slots=True)
+class CriticalWindSpeedRow:
+    """One crossing of the imaginary axis by eigenvalues of the static state, theory section 6."""
+
+    model: Model
+    loops: int
+    wind_speed_m_per_s: float
+    crossing: Literal["onset", "restabilization"]
+    type: Literal["oscillation", "divergence"]
+    direction: Direction
+    frequency_hz: float
+    unstable_pairs_after: int
+
+
+@dataclass(frozen=True, slots=True)
+class LimitCycleRow:
+    """One motion at one wind speed: the equilibrium or a cycle; amplitudes are half of peak-to-peak (section 8)."""
+
+    model: Model
+    loops: int
+    wind_speed_m_per_s: float
+    branch: int | None
+    kind: Literal["equilibrium", "periodic", "quasi_periodic"]
+    stability: Stability
+    frequency_hz: float | None
+    second_frequency_hz: float | None
+    observed_at_m: float
+    vertical_m: float | None
+    horizontal_m: float | None
+    torsional_rad: float | None
+    vertical_min_m: float | None
+    horizontal_min_m: float | None
+    torsional_min_rad: float | None
+    vertical_ratio: float | None
+    horizontal_ratio: float | None
+    reduced_wind_speed: float | None
+    outcome: Outcome
+
+
+@dataclass(frozen=True, slots=True)
+class BifurcationRow:
+    """A point where the kind or the number of motions changes, with how well it is located."""
+
+    model: Model
+    loops: int
+    branch: int
+    type: Literal["hopf", "fold", "torus", "period_doubling", "branch_point"]
+    wind_speed_m_per_s: float
+    frequency_hz: float
+    second_frequency_hz: float | None
+    uncertainty_m_per_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Orbit:
+    """Fourier coefficients of a cycle where it is observed, for pictures.
+
+    cycle is the index into `Result.limit_cycles`. vertical and horizontal [m] and torsional [rad] each hold
+    (mean, cos 1, sin 1, cos 2, sin 2, ...) of the base frequency.
+    """
+
+    cycle: int
+    vertical: tuple[float, ...]
+    horizontal: tuple[float, ...]
+    torsional: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """Everything that was found for one line."""
+
+    static: StaticState
+    den_hartog: DenHartog
+    frequencies: tuple[FrequencyRow, ...]
+    critical_wind_speeds: tuple[CriticalWindSpeedRow, ...]
+    limit_cycles: tuple[LimitCycleRow, ...]
+    bifurcations: tuple[BifurcationRow, ...]
+    orbits: tuple[Orbit, ...]
+    warnings: tuple[str, ...]
+    engine_version: str
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far an analysis is: fraction from 0 to 1 and the step at hand in words."""
+
+    fraction: float
+    step: str

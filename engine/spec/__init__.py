@@ -1,0 +1,39 @@
+"""What is known of one span and what is asked of it: frozen, in SI units and radians, checked on construction.
+
+Axes (docs/conventions.md): X along the span, Y up, Z horizontal and downwind. Positions are horizontal distances from
+the left support. Every property of a sub-conductor is that of one iced sub-conductor.
+"""
+
+from engine.spec.analysis import AerodynamicModel, Analysis, Closure, LongitudinalInertia, Model, check_compatible
+from engine.spec.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
+from engine.spec.environment import Aerodynamics, BlowOut, Coefficients, Damping, DampingModel, Ice, IceSegment, Wind
+from engine.spec.line import Line, ice_properties
+from engine.spec.span import Bundle, Conductor, Span, Support, Supports
+
+__all__ = [
+    "AerodynamicModel",
+    "Aerodynamics",
+    "AirflowSpoiler",
+    "Analysis",
+    "BlowOut",
+    "Bundle",
+    "Closure",
+    "Coefficients",
+    "Conductor",
+    "Damping",
+    "DampingModel",
+    "DetuningPendulum",
+    "Device",
+    "Ice",
+    "IceSegment",
+    "Line",
+    "LongitudinalInertia",
+    "Model",
+    "Spacer",
+    "Span",
+    "Support",
+    "Supports",
+    "Wind",
+    "check_compatible",
+    "ice_properties",
+]

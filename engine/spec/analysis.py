@@ -1,0 +1,103 @@
+"""What is asked of a line, and whether the line can answer it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+from engine.outcome import Fault, require
+from engine.spec.devices import AirflowSpoiler
+from engine.spec.line import Line
+from engine.spec.rules import positive
+
+
+class Model(StrEnum):
+    """The three-degree-of-freedom hybrid model, or the finite element model with several modes a direction."""
+
+    HYBRID = "hybrid"
+    FINITE_ELEMENT = "finite_element"
+
+
+class Closure(StrEnum):
+    """How the angle of attack varies along the span: exactly, or by one scalar as published (A14)-(A17)."""
+
+    EXACT = "exact"
+    PUBLISHED = "published"
+
+
+class AerodynamicModel(StrEnum):
+    """Which velocities turn the wind: the vertical one as published, or all of them. Theory section 5."""
+
+    PUBLISHED = "published"
+    RELATIVE_WIND = "relative_wind"
+
+
+class LongitudinalInertia(StrEnum):
+    """Whether the inertia of f_u is dropped as in the source, or kept in m_11 (Guyan). Theory section 4."""
+
+    NEGLECTED = "neglected"
+    CONDENSED = "condensed"
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model."""
+
+    loops: tuple[int, ...] = (1, 2)
+    models: tuple[Model, ...] = (Model.HYBRID, Model.FINITE_ELEMENT)
+    wind_speeds: tuple[float, ...] = (4.0, 5.0, 6.0)
+    closure: Closure = Closure.EXACT
+    aerodynamic_model: AerodynamicModel = AerodynamicModel.PUBLISHED
+    longitudinal_inertia: LongitudinalInertia = LongitudinalInertia.NEGLECTED
+    critical_wind_limit: float = 30.0
+    harmonics: int = 5
+    finite_element_loops: tuple[int, ...] = (1, 2, 3)
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        relative = self.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
+        require(
+            *_loops_faults("loops", self.loops),
+            *_loops_faults("finite_element_loops", self.finite_element_loops),
+            None if self.models else Fault("models", self.models, "must name a model"),
+            *(positive(f"wind_speeds.{i}", speed) for i, speed in enumerate(self.wind_speeds)),
+            positive("critical_wind_limit", self.critical_wind_limit),
+            None if 1 <= self.harmonics <= 20 else Fault("harmonics", self.harmonics, "must be from 1 to 20"),
+            Fault("closure", self.closure.value, "must be exact with the relative wind")
+            if relative and self.closure is Closure.PUBLISHED
+            else None,
+        )
+
+
+def _loops_faults(name: str, loops: tuple[int, ...]) -> Iterator[Fault]:
+    if not loops or len(set(loops)) != len(loops) or min(loops) < 1:
+        yield Fault(name, loops, "must be one or more distinct whole numbers from 1")
+
+
+def check_compatible(line: Line, analysis: Analysis) -> None:
+    """Check what concerns a line and what is asked of it together.
+
+    Raises
+    ------
+    InvalidSpec
+        If the loops are too many for the elements, the published closure meets a wind profile, or the relative wind
+        lacks the coefficients at rest.
+    """
+    most = max(analysis.loops + analysis.finite_element_loops)
+    published = analysis.closure is Closure.PUBLISHED
+    relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
+    owners = [("ice", line.ice.aerodynamics)]
+    owners += [(f"ice.segments.{i}", s.aerodynamics) for i, s in enumerate(line.ice.segments) if s.aerodynamics]
+    owners += [(f"devices.{i}", d.aerodynamics) for i, d in enumerate(line.devices) if isinstance(d, AirflowSpoiler)]
+    require(
+        Fault("loops", most, f"must not exceed the number of elements ({line.span.elements})")
+        if most > line.span.elements
+        else None,
+        Fault("closure", analysis.closure.value, "must be exact for a wind profile")
+        if published and line.wind.profile
+        else None,
+        *(
+            Fault(f"{path}.aerodynamics_at_rest", None, "must be given for the relative-wind model")
+            for path, owner in owners
+            if relative and owner.at_rest is None
+        ),
+    )

@@ -1,0 +1,137 @@
+"""Ice, wind and damping of a span."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
+
+from engine.outcome import Fault, require
+from engine.spec.rules import finite, not_negative, overlap_faults, positive, stretch_faults
+
+Coefficients = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Aerodynamics:
+    """Cubic coefficients a_i1, a_i2, a_i3 of one sub-conductor over the angle of attack [1/rad^j], eqs. (A11)-(A17).
+
+    at_rest holds a_y0, a_z0, a_theta0, which only the relative-wind model needs; fitted_range is the largest |alpha|
+    [rad] for which the fit holds, None where it is not known.
+    """
+
+    vertical: Coefficients
+    horizontal: Coefficients
+    torsional: Coefficients
+    at_rest: Coefficients | None = None
+    fitted_range: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check that every coefficient is finite."""
+        rows = {"vertical": self.vertical, "horizontal": self.horizontal, "torsional": self.torsional}
+        require(
+            *(finite(f"{name}.{j}", value) for name, row in rows.items() for j, value in enumerate(row)),
+            *(finite(f"at_rest.{j}", value) for j, value in enumerate(self.at_rest or ())),
+            positive("fitted_range", self.fitted_range),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class IceSegment:
+    """A stretch [start, stop] [m] on which the fields that are not None override those of the span."""
+
+    start: float
+    stop: float
+    aerodynamics: Aerodynamics | None = None
+    eccentricity_y: float | None = None
+    eccentricity_z: float | None = None
+    mass: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        require(
+            *stretch_faults(self.start, self.stop),
+            finite("eccentricity_y", self.eccentricity_y),
+            finite("eccentricity_z", self.eccentricity_z),
+            positive("mass", self.mass),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Ice:
+    """Ice of the span: aerodynamics, eccentricity (e_y, e_z) of the iced mass centre [m], and segments of other ice."""
+
+    aerodynamics: Aerodynamics
+    eccentricity_y: float = 0.0
+    eccentricity_z: float = 0.0
+    segments: tuple[IceSegment, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field and that no two segments overlap."""
+        require(
+            finite("ice.eccentricity_y", self.eccentricity_y),
+            finite("ice.eccentricity_z", self.eccentricity_z),
+            *overlap_faults("ice.segments", [(s.start, s.stop) for s in self.segments]),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class BlowOut:
+    """Mean drag that turns the plane of the sag: wind_speed [m/s] and drag_coefficient. Theory section 2."""
+
+    wind_speed: float
+    drag_coefficient: float
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        require(
+            not_negative("wind.blow_out.wind_speed", self.wind_speed),
+            not_negative("wind.blow_out.drag_coefficient", self.drag_coefficient),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Wind:
+    """Air density [kg/m3]; profile of (position [m], factor phi), linear between points and held outside them."""
+
+    air_density: float = 1.2929
+    profile: tuple[tuple[float, float], ...] = ()
+    blow_out: BlowOut | None = None
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field and that the positions of the profile rise."""
+        positions = [position for position, _ in self.profile]
+        rising = all(a < b for a, b in pairwise(positions))
+        require(
+            positive("wind.air_density", self.air_density),
+            *(not_negative(f"wind.profile.{i}.position", x) for i, (x, _) in enumerate(self.profile)),
+            *(positive(f"wind.profile.{i}.factor", phi) for i, (_, phi) in enumerate(self.profile)),
+            None if rising else Fault("wind.profile", positions, "must have positions in rising order"),
+        )
+
+
+class DampingModel(StrEnum):
+    """What stays the same over the loops of a span: the coefficient per length, or the ratio. Theory section 4."""
+
+    CONSTANT_COEFFICIENT = "constant_coefficient"
+    CONSTANT_RATIO = "constant_ratio"
+
+
+@dataclass(frozen=True, slots=True)
+class Damping:
+    """Structural damping ratios zeta_y, zeta_z, zeta_theta of eq. (11)."""
+
+    vertical_ratio: float
+    horizontal_ratio: float
+    torsional_ratio: float
+    model: DampingModel = DampingModel.CONSTANT_COEFFICIENT
+
+    def __post_init__(self) -> None:
+        """Check that every ratio is positive and below critical damping."""
+        names = ("vertical_ratio", "horizontal_ratio", "torsional_ratio")
+        require(
+            *(positive(f"damping.{name}", getattr(self, name)) for name in names),
+            *(
+                Fault(f"damping.{name}", getattr(self, name), "must be below 1")
+                for name in names
+                if getattr(self, name) >= 1.0
+            ),
+        )

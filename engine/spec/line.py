@@ -1,0 +1,62 @@
+"""One iced span as a whole, and the rules that concern several of its parts."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from engine.outcome import Fault, require
+from engine.spec.devices import AirflowSpoiler, Device
+from engine.spec.environment import Damping, Ice, IceSegment, Wind
+from engine.spec.rules import overlap_faults
+from engine.spec.span import Bundle, Conductor, Span, Supports
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One iced span with everything that its motion depends on."""
+
+    conductor: Conductor
+    bundle: Bundle
+    span: Span
+    ice: Ice
+    wind: Wind
+    damping: Damping
+    supports: Supports = Supports()
+    devices: tuple[Device, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check what concerns several parts: positions on the span, and inertia beside eccentricity."""
+        spoilers = [(i, d) for i, d in enumerate(self.devices) if isinstance(d, AirflowSpoiler)]
+        require(
+            *self._position_faults(),
+            *overlap_faults("devices", [(d.start, d.stop) for _, d in spoilers]),
+            *self._inertia_faults(),
+        )
+
+    def _position_faults(self) -> Iterator[Fault]:
+        ends = [(f"ice.segments.{i}.stop", segment.stop) for i, segment in enumerate(self.ice.segments)]
+        ends += [(f"wind.profile.{i}.position", position) for i, (position, _) in enumerate(self.wind.profile)]
+        for i, device in enumerate(self.devices):
+            spoiler = isinstance(device, AirflowSpoiler)
+            name = "stop" if spoiler else "position"
+            ends.append((f"devices.{i}.{name}", getattr(device, name)))
+        for name, value in ends:
+            if value > self.span.length * (1.0 + 1e-9):
+                yield Fault(name, value, f"must lie on the span (its length is {self.span.length})")
+
+    def _inertia_faults(self) -> Iterator[Fault]:
+        pieces: list[tuple[str, Ice | IceSegment]] = [("ice", self.ice)]
+        pieces += [(f"ice.segments.{i}", segment) for i, segment in enumerate(self.ice.segments)]
+        for path, piece in pieces:
+            e_y, e_z, mass = ice_properties(self, piece)
+            if not self.conductor.polar_inertia > mass * (e_y**2 + e_z**2):
+                rule = "must leave the polar inertia about the mass centre positive: I > m (e_y^2 + e_z^2)"
+                yield Fault(f"{path}.eccentricity_y", math.hypot(e_y, e_z), rule)
+
+
+def ice_properties(line: Line, piece: Ice | IceSegment) -> tuple[float, float, float]:
+    """Return e_y [m], e_z [m] and the mass per length m [kg/m] that hold on a piece of ice."""
+    e_y = line.ice.eccentricity_y if piece.eccentricity_y is None else piece.eccentricity_y
+    e_z = line.ice.eccentricity_z if piece.eccentricity_z is None else piece.eccentricity_z
+    own_mass = piece.mass if isinstance(piece, IceSegment) else None
+    return e_y, e_z, line.conductor.mass if own_mass is None else own_mass

@@ -1,0 +1,44 @@
+"""Rules that several parts of a specification share; each returns a fault or None."""
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from engine.outcome import Fault
+
+
+def finite(name: str, value: float | None) -> Fault | None:
+    """Ask for a finite number."""
+    if value is not None and not math.isfinite(value):
+        return Fault(name, value, "must be a finite number")
+    return None
+
+
+def positive(name: str, value: float | None) -> Fault | None:
+    """Ask for a finite number greater than zero."""
+    if value is not None and not (math.isfinite(value) and value > 0.0):
+        return Fault(name, value, "must be a finite number greater than zero")
+    return None
+
+
+def not_negative(name: str, value: float | None) -> Fault | None:
+    """Ask for a finite number of at least zero."""
+    if value is not None and not (math.isfinite(value) and value >= 0.0):
+        return Fault(name, value, "must be a finite number of at least zero")
+    return None
+
+
+def stretch_faults(start: float, stop: float) -> Iterator[Fault | None]:
+    """Ask that a stretch begins on the span and before it ends."""
+    yield not_negative("start", start)
+    yield finite("stop", stop)
+    yield None if start < stop else Fault("stop", stop, f"must be greater than the start ({start})")
+
+
+def overlap_faults(path: str, stretches: Sequence[tuple[float, float]]) -> Iterator[Fault]:
+    """Yield a fault for every stretch (start, stop) [m] that begins before its left neighbour ends."""
+    order = sorted(range(len(stretches)), key=lambda i: stretches[i])
+    for left, right in pairwise(order):
+        if stretches[right][0] < stretches[left][1]:
+            start, stop = stretches[left]
+            yield Fault(f"{path}.{right}", stretches[right], f"must not overlap the stretch from {start} to {stop}")

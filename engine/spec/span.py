@@ -1,0 +1,153 @@
+"""The conductors of a span and what holds them."""
+
+import math
+from dataclasses import dataclass
+
+from engine.outcome import Fault, require
+from engine.spec.rules import finite, not_negative, positive
+
+
+@dataclass(frozen=True, slots=True)
+class Conductor:
+    """One iced sub-conductor.
+
+    diameter [m]; axial_rigidity EA [N]; torsional_rigidity GJ [N m2]; mass m [kg/m]; polar_inertia I about the bare
+    centre [kg m]; axial_torsional_coupling B_T [N m]. Theory section 1.
+    """
+
+    diameter: float
+    axial_rigidity: float
+    torsional_rigidity: float
+    mass: float
+    polar_inertia: float
+    axial_torsional_coupling: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        require(
+            *(
+                positive(f"conductor.{name}", getattr(self, name))
+                for name in ("diameter", "axial_rigidity", "torsional_rigidity", "mass", "polar_inertia")
+            ),
+            finite("conductor.axial_torsional_coupling", self.axial_torsional_coupling),
+            self._coupling_fault(),
+        )
+
+    def _coupling_fault(self) -> Fault | None:
+        if not self.axial_torsional_coupling**2 < self.axial_rigidity * self.torsional_rigidity:
+            rule = "squared must be below axial times torsional rigidity (else the strain energy is not positive)"
+            return Fault("conductor.axial_torsional_coupling", self.axial_torsional_coupling, rule)
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Bundle:
+    """Positions (y, z) [m] of the bare sub-conductor centres about the reference curve."""
+
+    positions: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
+
+    def __post_init__(self) -> None:
+        """Check that there is a sub-conductor and that every position is finite and taken once."""
+        require(
+            None if self.positions else Fault("bundle.positions", self.positions, "must hold a sub-conductor"),
+            *(
+                finite(f"bundle.positions.{i}.{j}", value)
+                for i, position in enumerate(self.positions)
+                for j, value in enumerate(position)
+            ),
+            None
+            if len(set(self.positions)) == len(self.positions)
+            else Fault("bundle.positions", self.positions, "must be distinct"),
+        )
+
+    @classmethod
+    def regular(cls, subconductors: int, radius: float, orientation: float) -> "Bundle":
+        """Place sub-conductors on a circle at equal angles.
+
+        Parameters
+        ----------
+        subconductors : int
+            Their number n, at least 1.
+        radius : float
+            Distance r_i from the reference curve [m]; 0 for one sub-conductor, positive for more.
+        orientation : float
+            Angle theta_10 of the first, clockwise from straight up [rad]: y = r cos(theta), z = r sin(theta), eq. (3).
+
+        Raises
+        ------
+        InvalidSpec
+            If the number is below 1 or the radius does not fit it.
+        """
+        single = subconductors == 1
+        require(
+            None if subconductors >= 1 else Fault("bundle.subconductors", subconductors, "must be at least 1"),
+            finite("bundle.orientation", orientation),
+            not_negative("bundle.radius", radius) if single else positive("bundle.radius", radius),
+            Fault("bundle.radius", radius, "must be 0 for one sub-conductor") if single and radius > 0.0 else None,
+        )
+        if single:
+            return cls()
+        angles = [orientation + 2.0 * math.pi * i / subconductors for i in range(subconductors)]
+        return cls(tuple((radius * math.cos(angle), radius * math.sin(angle)) for angle in angles))
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Level span: horizontal length L_x [m], number of elements, and exactly one measure of its tightness.
+
+    horizontal_tension H per sub-conductor [N], catenary_parameter H/p [m] or mid-span sag s_a [m], each of the iced
+    conductor in still air. Theory section 2.
+    """
+
+    length: float
+    horizontal_tension: float | None = None
+    catenary_parameter: float | None = None
+    sag: float | None = None
+    elements: int = 10
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field and that one measure of tightness is given."""
+        given = [v for v in (self.horizontal_tension, self.catenary_parameter, self.sag) if v is not None]
+        one_measure = "must have exactly one of horizontal_tension, catenary_parameter and sag"
+        require(
+            positive("span.length", self.length),
+            positive("span.horizontal_tension", self.horizontal_tension),
+            positive("span.catenary_parameter", self.catenary_parameter),
+            positive("span.sag", self.sag),
+            None if len(given) == 1 else Fault("span", tuple(given), one_measure),
+            None if self.elements >= 2 else Fault("span.elements", self.elements, "must be at least 2"),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """One end of the span: a dead end fixes U; else the adjacent span and the insulator string hold it, eq. (A10).
+
+    adjacent_span [m], None for one like this; insulator_length L_i [m]; insulator_weight W_i per sub-conductor [N].
+    """
+
+    dead_end: bool = False
+    adjacent_span: float | None = None
+    insulator_length: float | None = None
+    insulator_weight: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        require(
+            positive("adjacent_span", self.adjacent_span),
+            positive("insulator_length", self.insulator_length),
+            not_negative("insulator_weight", self.insulator_weight),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Supports:
+    """Both ends; a given longitudinal_stiffness K_x per sub-conductor [N/m] overrides what the ends would give."""
+
+    longitudinal_stiffness: float | None = None
+    left: Support = Support()
+    right: Support = Support()
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        require(positive("supports.longitudinal_stiffness", self.longitudinal_stiffness))
