@@ -1,0 +1,70 @@
+"""Engines and sessions for SQLite and PostgreSQL, and the clock that both sides of a lease read."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from sqlite3 import Connection as SQLiteConnection
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event, make_url, select
+from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.sql.functions import func
+
+from app.settings import Settings
+from app.tables import UtcDateTime
+
+_BUSY_SECONDS = 30.0
+
+
+def make_engine(settings: Settings) -> Engine:
+    """Make an engine for the database of the settings; the directory of an SQLite file is made if it is missing.
+
+    SQLite: write-ahead log, foreign keys, a busy timeout, and every transaction begins as a writer (`BEGIN IMMEDIATE`)
+    unless its session comes from `session_factory(..., read_only=True)`: a reader that turns into a writer midway
+    would fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use.
+
+    Raises
+    ------
+    OSError
+        If the directory cannot be made.
+    """
+    url = make_url(settings.database_url)
+    if url.get_backend_name() != "sqlite":
+        return create_engine(url, pool_pre_ping=True, connect_args={"connect_timeout": 10})
+    if url.database:
+        Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+    engine = create_engine(url, connect_args={"timeout": _BUSY_SECONDS})
+    event.listen(engine, "connect", _prepare_sqlite)
+    event.listen(engine, "begin", _begin_sqlite)
+    return engine
+
+
+def session_factory(engine: Engine, *, read_only: bool = False) -> sessionmaker[Session]:
+    """Make a factory of sessions whose objects stay readable after the commit.
+
+    A session that only reads should come from a `read_only` factory: on SQLite it then neither waits for a writer nor
+    holds one up, however long it streams; on PostgreSQL the server refuses writes in it.
+    """
+    bind = engine.execution_options(read_only=True, **_read_only_options(engine)) if read_only else engine
+    return sessionmaker(bind, expire_on_commit=False)
+
+
+def database_time(session: Session) -> datetime:
+    """Return the time in UTC by the database's clock, which workers on machines with differing clocks share."""
+    if session.get_bind().dialect.name == "postgresql":
+        return session.execute(select(func.clock_timestamp(type_=UtcDateTime))).scalar_one()
+    return datetime.now(UTC)
+
+
+def _read_only_options(engine: Engine) -> dict[str, Any]:
+    return {"postgresql_readonly": True} if engine.dialect.name == "postgresql" else {}
+
+
+def _prepare_sqlite(connection: SQLiteConnection, _: object) -> None:
+    connection.isolation_level = None  # the driver must not begin transactions by itself: _begin_sqlite does
+    for pragma in ("journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON"):
+        connection.execute(f"PRAGMA {pragma}").close()
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    reads = connection.get_execution_options().get("read_only", False)
+    connection.exec_driver_sql("BEGIN" if reads else "BEGIN IMMEDIATE")

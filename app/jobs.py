@@ -1,0 +1,128 @@
+"""Jobs as their owner sees them: made, looked up, listed, cancelled. The caller opens and commits the transaction."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import ColumnElement, delete, select, tuple_
+from sqlalchemy.orm import Session
+from uuid_utils.compat import uuid7
+
+from app.db import database_time
+from app.tables import Job, JobEvent, JobEventKind, JobStatus, JobTag
+
+
+class CancelOutcome(StrEnum):
+    """What a cancel did: ended a queued job, asked a running one to stop, removed a finished one, or found none."""
+
+    DISMISSED = "dismissed"
+    REQUESTED = "requested"
+    REMOVED = "removed"
+    MISSING = "missing"
+
+
+@dataclass(frozen=True, slots=True)
+class JobFilters:
+    """Which jobs a list holds; None or empty means any, and every tag must match."""
+
+    status: JobStatus | None = None
+    asset_id: str | None = None
+    tags: Mapping[str, str] = field(default_factory=dict)
+    batch_id: UUID | None = None
+    created_after: datetime | None = None
+
+
+def create(
+    session: Session,
+    document: Mapping[str, Any],
+    *,
+    name: str | None = None,
+    asset_id: str | None = None,
+    tags: Mapping[str, str] | None = None,
+) -> Job:
+    """Add an accepted job that is not yet dispatched, with its tags and first event, for one commit by the caller.
+
+    Raises
+    ------
+    ValueError
+        If the document holds NaN or an infinity, which JSON cannot carry.
+    """
+    job = Job(
+        id=uuid7(),
+        created_at=database_time(session),
+        status=JobStatus.ACCEPTED,
+        name=name,
+        asset_id=asset_id,
+        document=dict(document),
+        input_hash=input_hash(document),
+        tags=[JobTag(key=key, value=value) for key, value in (tags or {}).items()],
+    )
+    session.add(job)
+    session.flush()
+    record(session, job.id, JobEventKind.ACCEPTED)
+    return job
+
+
+def input_hash(document: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of a document in its canonical form, whatever the order of its fields.
+
+    Raises
+    ------
+    ValueError
+        If the document holds NaN or an infinity.
+    """
+    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def get(session: Session, job_id: UUID) -> Job | None:
+    """Return a job with its tags, or None if there is none of that id."""
+    return session.get(Job, job_id)
+
+
+def page(session: Session, filters: JobFilters, after: tuple[datetime, UUID] | None, limit: int) -> list[Job]:
+    """Return the newest jobs that pass the filters, or those that follow `after`, the (created_at, id) of the last."""
+    statement = select(Job).where(*_conditions(filters))
+    if after is not None:
+        statement = statement.where(tuple_(Job.created_at, Job.id) < after)
+    return list(session.scalars(statement.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit)))
+
+
+def cancel(session: Session, job_id: UUID) -> CancelOutcome:
+    """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows."""
+    # The row is locked, so that a claim or an end of the job cannot slip in between the look and the change.
+    job = session.get(Job, job_id, with_for_update=True)
+    if job is None:
+        return CancelOutcome.MISSING
+    if job.status is JobStatus.ACCEPTED:
+        job.status, job.finished_at = JobStatus.DISMISSED, database_time(session)
+        record(session, job_id, JobEventKind.DISMISSED, attempt=job.attempt)
+        return CancelOutcome.DISMISSED
+    if job.status is JobStatus.RUNNING:
+        if not job.cancel_requested:
+            job.cancel_requested = True
+            record(session, job_id, JobEventKind.CANCEL_REQUESTED, attempt=job.attempt)
+        return CancelOutcome.REQUESTED
+    session.execute(delete(Job).where(Job.id == job_id))
+    return CancelOutcome.REMOVED
+
+
+def record(session: Session, job_id: UUID, kind: JobEventKind, *, attempt: int = 0, detail: str | None = None) -> None:
+    """Add what happened to a job to its events, in the transaction in which it happens."""
+    session.add(JobEvent(job_id=job_id, at=database_time(session), kind=kind, attempt=attempt, detail=detail))
+
+
+def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
+    equal = {Job.status: filters.status, Job.asset_id: filters.asset_id, Job.batch_id: filters.batch_id}
+    conditions = [column == value for column, value in equal.items() if value is not None]
+    if filters.created_after is not None:
+        conditions.append(Job.created_at > filters.created_after)
+    for key, value in filters.tags.items():
+        tagged = select(JobTag.job_id).where(JobTag.key == key, JobTag.value == value)
+        conditions.append(Job.id.in_(tagged))
+    return conditions

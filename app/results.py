@@ -1,0 +1,116 @@
+"""Result rows in SQL: stored with the end of a job, read as the flat rows of the contract."""
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Literal
+from uuid import UUID
+
+from sqlalchemy import ColumnElement, insert, select
+from sqlalchemy.orm import Session
+
+from app.tables import (
+    BifurcationRow,
+    CriticalWindSpeedRow,
+    FrequencyRow,
+    LimitCycleRow,
+    OrbitRow,
+    PointRow,
+)
+
+if TYPE_CHECKING:
+    from app.convert import PointResult
+
+Table = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations"]
+
+_ROW_TYPES: Mapping[str, type[FrequencyRow | CriticalWindSpeedRow | LimitCycleRow | BifurcationRow | OrbitRow]] = {
+    "frequencies": FrequencyRow,
+    "critical_wind_speeds": CriticalWindSpeedRow,
+    "limit_cycles": LimitCycleRow,
+    "bifurcations": BifurcationRow,
+    "orbits": OrbitRow,
+}
+_PLACE = frozenset({"job_id", "point", "row_number"})
+_STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m")
+_ROWS_A_FETCH = 1000
+
+
+def store(session: Session, job_id: UUID, point: "PointResult") -> None:
+    """Add everything that was found at one point of a job.
+
+    Raises
+    ------
+    KeyError
+        If the point has a table that there is not.
+    sqlalchemy.exc.SQLAlchemyError
+        If a row has a column that there is not, lacks one, or the point is stored already.
+    """
+    session.execute(insert(PointRow).values(job_id=job_id, **_point_columns(point)))
+    for name, rows_of_table in {**point.tables, "orbits": point.orbits}.items():
+        place: dict[str, object] = {"job_id": job_id, "point": point.point}
+        records = [{**place, "row_number": number, **row} for number, row in enumerate(rows_of_table)]
+        if records:
+            session.execute(insert(_ROW_TYPES[name]), records)
+
+
+def columns(table: Table) -> list[str]:
+    """Return the names of a table's columns in the order of the contract, without the study's axes."""
+    return [column.name for column in _ROW_TYPES[table].__table__.columns if column.name not in _PLACE]
+
+
+def axes(session: Session, job_id: UUID) -> list[str]:
+    """Return the parameters that the job's study varies, which are the first columns of every row; none without one."""
+    found = session.execute(select(PointRow.axes).where(PointRow.job_id == job_id).limit(1)).scalar_one_or_none()
+    return list(found or ())
+
+
+def rows(session: Session, job_id: UUID, table: Table) -> Iterator[dict[str, object]]:
+    """Stream the rows of one table in the order of the points; the values of the study's axes come first in each."""
+    row_type = _ROW_TYPES[table]
+    wanted: list[ColumnElement[Any]] = [row_type.__table__.columns[name] for name in columns(table)]
+    statement = (
+        select(PointRow.axes, *wanted)
+        .join(row_type, (row_type.job_id == PointRow.job_id) & (row_type.point == PointRow.point))
+        .where(PointRow.job_id == job_id)
+        .order_by(row_type.point, row_type.row_number)
+        .execution_options(yield_per=_ROWS_A_FETCH)
+    )
+    names = columns(table)
+    for point_axes, *values in session.execute(statement):
+        yield {**point_axes, **dict(zip(names, values, strict=True))}
+
+
+def points(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
+    """Stream the points: number, axes, static state, Den Hartog's coefficient, warnings, engine version, failure."""
+    statement = select(PointRow).where(PointRow.job_id == job_id).order_by(PointRow.point)
+    for row in session.scalars(statement.execution_options(yield_per=_ROWS_A_FETCH)):
+        solved = row.horizontal_tension_n is not None
+        hartog = {"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable}
+        yield {
+            "point": row.point,
+            "axes": row.axes,
+            "static": {name: getattr(row, name) for name in _STATIC} if solved else None,
+            "den_hartog": hartog if row.den_hartog_coefficient is not None else None,
+            "warnings": row.warnings,
+            "engine_version": row.engine_version,
+            "failure": row.failure,
+        }
+
+
+def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
+    """Stream the orbits: point, cycle (number of the row among the point's limit cycles), and Fourier coefficients."""
+    statement = select(OrbitRow).where(OrbitRow.job_id == job_id).order_by(OrbitRow.point, OrbitRow.row_number)
+    for row in session.scalars(statement.execution_options(yield_per=_ROWS_A_FETCH)):
+        shapes = {"vertical": row.vertical, "horizontal": row.horizontal, "torsional": row.torsional}
+        yield {"point": row.point, "cycle": row.cycle, **shapes}
+
+
+def _point_columns(point: "PointResult") -> dict[str, object]:
+    return {
+        "point": point.point,
+        "axes": point.axes,
+        **{name: point.static.get(name) for name in _STATIC},
+        "den_hartog_coefficient": point.den_hartog.get("coefficient"),
+        "den_hartog_unstable": point.den_hartog.get("unstable"),
+        "warnings": point.warnings,
+        "engine_version": point.engine_version,
+        "failure": point.failure,
+    }
