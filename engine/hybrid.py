@@ -1,0 +1,207 @@
+"""Reduced models: the hybrid one with one mode a direction, and the finite element one with several.
+
+Theory sections 4 and 7.4; paper eqs. (10)-(20) and (A1)-(A9).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.aerodynamics import PolynomialLoad, integrated, published_load, span_load
+from engine.fem import FIELDS, THETA, V, W, Matrices, interpolation_at
+from engine.modes import DirectionalShapes, FullModes, at_points
+from engine.profile import FloatArray, StaticProfile
+from engine.sections import Sections
+from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, Line, LongitudinalInertia
+
+TRANSVERSE = (V, W, THETA)
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedModel:
+    """M q'' + C q' + K q = U^2 f(q, q'/U) for a stack of models with m generalized co-ordinates.
+
+    mass, damping, stiffness: (..., m, m); load: f, of the same leading axes; shapes: (..., m, 3, nodes), the fields V,
+    W, Theta of each co-ordinate; direction: (m,), the direction of each co-ordinate (0 vertical, 1 horizontal,
+    2 torsional); statically_unstable: (...), True where the stiffness is not positive: damping there has no meaning.
+    """
+
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+    load: PolynomialLoad
+    shapes: FloatArray
+    direction: NDArray[np.intp]
+    statically_unstable: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Discretization:
+    """Everything of a stack of lines that both reduced models are made from."""
+
+    lines: tuple[Line, ...]
+    profile: StaticProfile
+    sections: Sections
+    matrices: Matrices
+
+
+def hybrid_model(
+    made: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
+) -> ReducedModel:
+    """Reduce to one mode a direction; leading axes (lines, loops).
+
+    Parameters
+    ----------
+    made : Discretization
+    shapes : DirectionalShapes
+        Of at least these loops and of one loop.
+    loops : tuple of int
+    analysis : Analysis
+        Its closure, aerodynamic model and longitudinal inertia.
+
+    Returns
+    -------
+    ReducedModel
+    """
+    mass, stiffness = _condensed(made.matrices, shapes, analysis.longitudinal_inertia)
+    one_loop = np.diagonal(stiffness, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
+    one_loop = one_loop / np.diagonal(mass, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
+    picked = [shapes.loops.index(k) for k in loops]
+    mass, stiffness = mass[:, picked], stiffness[:, picked]
+    own = np.diagonal(stiffness, axis1=-2, axis2=-1) / np.diagonal(mass, axis1=-2, axis2=-1)
+    constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in made.lines])
+    square = np.where(constant[:, None, None], one_loop[:, None], own)
+    rate = 2.0 * _ratios(made.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
+    damping = _diagonal(rate * np.diagonal(mass, axis1=-2, axis2=-1))  # (11)
+    unstable = (square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0)
+    nodal = _diagonal_fields(shapes.nodal[:, picked, 1:])
+    load = _hybrid_load(made, nodal, analysis)
+    return ReducedModel(mass, damping, stiffness, load, nodal, np.arange(3), unstable)
+
+
+def with_published_load(made: Discretization, model: ReducedModel) -> ReducedModel:
+    """Return the hybrid model under the published closure, which the explicit formula of section 7.1 needs."""
+    values = at_points(made.matrices, model.shapes)
+    load = published_load(made.lines, made.sections, made.matrices.weight, values, made.profile.arc_length)
+    return replace(model, load=load)
+
+
+def finite_element_model(
+    made: Discretization, modes: FullModes, shapes: DirectionalShapes, analysis: Analysis
+) -> ReducedModel:
+    """Reduce to the full modes of several loops a direction, with the exact load; leading axis (lines,).
+
+    Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
+    2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi. Theory section 7.4.
+    """
+    vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
+    values = modes.eigenvalues.reshape(vectors.shape[:2])
+    nodes = vectors.shape[-1] // FIELDS
+    nodal = vectors.reshape(*vectors.shape[:2], nodes, FIELDS)[..., list(TRANSVERSE)].swapaxes(-1, -2)
+    at = at_points(made.matrices, nodal)
+    load = span_load(made.lines, made.sections, made.matrices.weight, at[:, None], analysis.aerodynamic_model)
+    unstable = (values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2))
+    return ReducedModel(
+        mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
+        damping=_modal_damping(made, vectors, shapes, modes.loops),
+        stiffness=_diagonal(values),
+        load=take_load(load, (slice(None), 0)),
+        shapes=nodal,
+        direction=np.repeat(np.arange(3), len(modes.loops)),
+        statically_unstable=unstable,
+    )
+
+
+def take(model: ReducedModel, index: Any) -> ReducedModel:
+    """Pick or repeat models along the leading axes; index is any numpy index of those axes."""
+    return ReducedModel(
+        mass=model.mass[index],
+        damping=model.damping[index],
+        stiffness=model.stiffness[index],
+        load=take_load(model.load, index),
+        shapes=model.shapes[index],
+        direction=model.direction,
+        statically_unstable=model.statically_unstable[index],
+    )
+
+
+def take_load(load: PolynomialLoad, index: Any) -> PolynomialLoad:
+    """Pick or repeat loads along the leading axes."""
+    return PolynomialLoad(*(getattr(load, field.name)[index] for field in fields(load)))
+
+
+def observation(made: Discretization, shapes: FloatArray, loops: int) -> FloatArray:
+    """Return V, W, Theta at s = L/(2 loops) of each co-ordinate: (lines, ..., m, 3) from shapes (lines, ..., m, 3, nodes)."""
+    elements = made.lines[0].span.elements
+    scaled = elements / (2.0 * loops)
+    element = min(int(scaled), elements - 1)
+    local = 2.0 * (scaled - element) - 1.0
+    values = np.array([0.5 * local * (local - 1.0), 1.0 - local**2, 0.5 * local * (local + 1.0)])
+    return np.asarray(shapes[..., 2 * element : 2 * element + 3] @ values)
+
+
+def _condensed(
+    system: Matrices, shapes: DirectionalShapes, inertia: LongitudinalInertia
+) -> tuple[FloatArray, FloatArray]:
+    """Project onto f_u, f_v, f_w, f_theta and condense f_u: M and K (lines, loops, 3, 3), eqs. (18)-(20)."""
+    lines, loops, _, nodes = shapes.nodal.shape
+    basis = np.zeros((lines, loops, FIELDS, nodes, FIELDS))
+    for field in range(FIELDS):
+        basis[:, :, field, :, field] = shapes.nodal[:, :, field]
+    basis = basis.reshape(lines, loops, FIELDS, nodes * FIELDS)
+    stiffness = basis @ system.stiffness[:, None] @ basis.swapaxes(-1, -2)
+    mass = basis @ system.mass[:, None] @ basis.swapaxes(-1, -2)
+    follow = -stiffness[..., :1, 1:] / stiffness[..., :1, :1]
+    condensed = stiffness[..., 1:, 1:] + stiffness[..., 1:, :1] * follow
+    reduced = mass[..., 1:, 1:]
+    if inertia is LongitudinalInertia.CONDENSED:
+        reduced = reduced + mass[..., :1, :1] * follow.swapaxes(-1, -2) * follow
+    return reduced, condensed
+
+
+def _hybrid_load(made: Discretization, nodal: FloatArray, analysis: Analysis) -> PolynomialLoad:
+    values = at_points(made.matrices, nodal)
+    if analysis.closure is Closure.PUBLISHED:
+        return published_load(made.lines, made.sections, made.matrices.weight, values, made.profile.arc_length)
+    load = span_load(made.lines, made.sections, made.matrices.weight, values, analysis.aerodynamic_model)
+    published = analysis.aerodynamic_model is AerodynamicModel.PUBLISHED
+    return integrated(load, (2, 5, 3) if published else (2, 5, 3, 4))
+
+
+def _ratios(lines: Sequence[Line]) -> FloatArray:
+    return np.array([(d.vertical_ratio, d.horizontal_ratio, d.torsional_ratio) for d in (x.damping for x in lines)])
+
+
+def _diagonal(values: FloatArray) -> FloatArray:
+    return values[..., None] * np.eye(values.shape[-1])
+
+
+def _diagonal_fields(shapes: FloatArray) -> FloatArray:
+    """Spread f_v, f_w, f_theta (..., 3, nodes) to the fields of three co-ordinates (..., 3, 3, nodes)."""
+    return shapes[..., None, :] * np.eye(3)[..., None]
+
+
+def _modal_damping(
+    made: Discretization, vectors: FloatArray, shapes: DirectionalShapes, loops: tuple[int, ...]
+) -> FloatArray:
+    constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in made.lines])
+    damping = np.zeros((vectors.shape[0], vectors.shape[1], vectors.shape[1]))
+    nodes = vectors.shape[-1] // FIELDS
+    for k in loops:
+        own, first = (shapes.angular_frequency[:, shapes.loops.index(i)] for i in (k, 1))
+        omega = np.nan_to_num(np.where(constant[:, None], first, own))
+        for i, field in enumerate(TRANSVERSE):
+            psi = np.zeros((vectors.shape[0], nodes, FIELDS))
+            psi[..., field] = shapes.nodal[:, shapes.loops.index(k), field]
+            if field == V:
+                psi[..., 0] = shapes.nodal[:, shapes.loops.index(k), 0]
+            flat = psi.reshape(vectors.shape[0], -1, 1)
+            momentum = made.matrices.mass @ flat
+            share = vectors @ momentum
+            own_mass = (flat.swapaxes(-1, -2) @ momentum)[:, 0, 0]
+            rate = 2.0 * _ratios(made.lines)[:, i] * omega[:, i] / own_mass
+            damping += rate[:, None, None] * share * share.swapaxes(-1, -2)
+    return damping

@@ -1,0 +1,119 @@
+"""Cubic polynomials without constant term in a few variables, as tables of coefficients over monomials.
+
+The monomials of n variables stand in the order x_0 ... x_(n-1), then the products of two (i <= j), then of three
+(i <= j <= k). A table is an array whose last axis runs over them, so polynomials stack freely.
+"""
+
+from functools import lru_cache
+from itertools import combinations_with_replacement
+from math import comb
+
+import numpy as np
+
+from engine.profile import FloatArray
+
+DEGREE = 3
+
+
+@lru_cache
+def monomials(variables: int) -> tuple[tuple[int, ...], ...]:
+    """List the monomials of degree 1 to 3 as sorted tuples of the variables that they multiply."""
+    return tuple(m for degree in (1, 2, 3) for m in combinations_with_replacement(range(variables), degree))
+
+
+def count(variables: int, degree: int) -> int:
+    """Return the number of monomials of exactly this degree."""
+    return comb(variables + degree - 1, degree)
+
+
+def powers(x: FloatArray, degree: int = DEGREE) -> FloatArray:
+    """Evaluate all monomials up to a degree at x (..., variables): shape (..., monomials)."""
+    terms = [x]
+    for index, factor in _products(x.shape[-1])[: degree - 1]:
+        terms.append(terms[-1][..., index] * x[..., factor])
+    return np.concatenate(terms, axis=-1)
+
+
+@lru_cache
+def _products(variables: int) -> tuple[tuple[np.ndarray[tuple[int], np.dtype[np.intp]], np.ndarray[tuple[int], np.dtype[np.intp]]], ...]:
+    """Say for degrees 2 and 3 which monomial of one degree less and which variable multiply to each monomial."""
+    pairs = []
+    for degree in (2, 3):
+        below = list(combinations_with_replacement(range(variables), degree - 1))
+        position = {monomial: i for i, monomial in enumerate(below)}
+        here = list(combinations_with_replacement(range(variables), degree))
+        pairs.append((np.array([position[m[:-1]] for m in here]), np.array([m[-1] for m in here])))
+    return tuple(pairs)
+
+
+def slopes(table: FloatArray) -> FloatArray:
+    """Differentiate a table (..., monomials) by each variable: (..., variables, 1 + monomials of degree 1 and 2).
+
+    The first column of the last axis is the constant; the rest stands in the order of `monomials`.
+    """
+    variables = _variables_of(table.shape[-1])
+    derivative = _derivative_map(variables)
+    flat = table @ derivative.reshape(derivative.shape[0], -1)
+    return flat.reshape(*table.shape[:-1], *derivative.shape[1:])
+
+
+def _variables_of(size: int) -> int:
+    return next(n for n in range(1, 64) if len(monomials(n)) == size)
+
+
+@lru_cache
+def _derivative_map(variables: int) -> FloatArray:
+    """Return the linear map (monomials, variables, 1 + monomials of degree 1 and 2) from a table to its slopes."""
+    every = monomials(variables)
+    position = {(): 0} | {m: i + 1 for i, m in enumerate(every) if len(m) < DEGREE}
+    result = np.zeros((len(every), variables, len(position)))
+    for i, monomial in enumerate(every):
+        for variable in set(monomial):
+            rest = list(monomial)
+            rest.remove(variable)
+            result[i, variable, position[tuple(rest)]] = monomial.count(variable)
+    return result
+
+
+def substitute(table: FloatArray, forms: FloatArray) -> FloatArray:
+    """Put linear forms into the variables of polynomials and sum over points.
+
+    Parameters
+    ----------
+    table : (..., points, outputs, monomials of local variables)
+    forms : (..., points, local variables, variables)
+        Local variable l at a point is forms[l] . x.
+
+    Returns
+    -------
+    (..., outputs, monomials of variables)
+    """
+    local, variables = forms.shape[-2:]
+    result, start = [], 0
+    products = forms
+    for degree in (1, 2, 3):
+        if degree > 1:
+            index, factor = _products(local)[degree - 2]
+            products = _multiply(products[..., index, :], forms[..., factor, :], variables, degree)
+        stop = start + count(local, degree)
+        coefficients = np.moveaxis(table[..., start:stop], -2, -3)
+        flat = coefficients.reshape(*coefficients.shape[:-2], -1)
+        result.append(flat @ products.reshape(*products.shape[:-3], -1, products.shape[-1]))
+        start = stop
+    return np.concatenate(result, axis=-1)
+
+
+def _multiply(left: FloatArray, right: FloatArray, variables: int, degree: int) -> FloatArray:
+    """Multiply homogeneous polynomials of degree - 1 (..., monomials) by linear forms (..., variables)."""
+    outer = left[..., :, None] * right[..., None, :]
+    return np.asarray(outer.reshape(*outer.shape[:-2], -1) @ _fold(variables, degree))
+
+
+@lru_cache
+def _fold(variables: int, degree: int) -> FloatArray:
+    below = list(combinations_with_replacement(range(variables), degree - 1))
+    here = {m: i for i, m in enumerate(combinations_with_replacement(range(variables), degree))}
+    result = np.zeros((len(below) * variables, len(here)))
+    for row, (monomial, variable) in enumerate((m, v) for m in below for v in range(variables)):
+        result[row, here[tuple(sorted((*monomial, variable)))]] = 1.0
+    return result
