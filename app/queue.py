@@ -1,0 +1,131 @@
+"""The way to the workers: a message carries the id of a job, nothing else. SQL is the truth; messages may be lost."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from typing import Any
+from uuid import UUID
+
+import kombu
+from amqp.exceptions import AMQPError
+from celery import Celery
+from kombu.exceptions import KombuError
+from redis.exceptions import RedisError
+from sqlalchemy.exc import SQLAlchemyError
+
+from app import leases
+from app.db import make_engine, session_factory
+from app.settings import Settings
+
+TASK_NAME = "galloping.run_job"
+QUEUE_NAME = "galloping"
+
+_logger = logging.getLogger(__name__)
+
+
+class BrokerUnavailable(Exception):
+    """Raised when the broker cannot be reached or does not answer in time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Queue:
+    """An open connection to the broker; every use may raise `BrokerUnavailable` from `open_queue`."""
+
+    application: Celery
+    connection: kombu.Connection
+
+    def send(self, job_id: UUID) -> None:
+        """Hand over a message with the id of a job."""
+        self.application.send_task(TASK_NAME, args=[str(job_id)], connection=self.connection, retry=False)
+
+    def is_empty(self) -> bool:
+        """Tell whether no message waits for a worker."""
+        declared: Any = kombu.Queue(QUEUE_NAME, channel=self.connection.default_channel).queue_declare()
+        return bool(declared.message_count == 0)
+
+
+def celery_application(settings: Settings) -> Celery:
+    """Make the Celery application that senders and workers share; it knows no task and opens no connection yet."""
+    application = Celery("galloping", broker=settings.broker_url, set_as_current=False)
+    application.conf.update(
+        broker_transport_options=_transport_options(settings),
+        broker_connection_timeout=settings.broker_timeout_seconds,
+        task_default_queue=QUEUE_NAME,
+        task_ignore_result=True,
+        task_serializer="json",
+        accept_content=["json"],
+        worker_enable_remote_control=False,
+    )
+    return application
+
+
+@contextmanager
+def open_queue(settings: Settings) -> Iterator[Queue]:
+    """Connect to the broker for a few messages.
+
+    Raises
+    ------
+    BrokerUnavailable
+        If the broker cannot be reached or does not answer in time, now or while the queue is used.
+    """
+    try:
+        with closing(celery_application(settings)) as application, application.connection_for_write() as connection:
+            yield Queue(application, connection)
+    except (OSError, AMQPError, KombuError, RedisError) as error:
+        raise BrokerUnavailable(f"{type(error).__name__}: {error}") from error
+
+
+def dispatch(settings: Settings, job_id: UUID) -> bool:
+    """Send a committed job to the workers and mark it as dispatched; on any fault leave it to the sweeper.
+
+    True means that the message is with the broker. False does not prove the opposite: a second message is harmless.
+    """
+    try:
+        with open_queue(settings) as queue:
+            queue.send(job_id)
+        _mark_dispatched(settings, job_id)
+    except (BrokerUnavailable, SQLAlchemyError) as error:
+        _logger.warning("job %s is left to the sweeper: %s", job_id, error)
+        return False
+    return True
+
+
+def _mark_dispatched(settings: Settings, job_id: UUID) -> None:
+    engine = make_engine(settings)
+    try:
+        with session_factory(engine).begin() as session:
+            leases.mark_dispatched(session, job_id)
+    finally:
+        engine.dispose()
+
+
+def _transport_options(settings: Settings) -> dict[str, object]:
+    if settings.broker_url.startswith("filesystem:"):
+        return _folders(settings)
+    return {
+        "socket_timeout": settings.broker_timeout_seconds,
+        "socket_connect_timeout": settings.broker_timeout_seconds,
+        "socket_keepalive": True,
+        "max_retries": 1,
+        "interval_start": 0.0,
+        "interval_step": 0.1,
+        # A message comes back only after its process must be dead, and then at once (the default looks every 100 s).
+        "visibility_timeout": 2.0 * settings.hard_time_limit_seconds,
+        "unacked_restore_interval": 1,
+        "unacked_restore_throttle": 1,
+    }
+
+
+def _folders(settings: Settings) -> dict[str, object]:
+    """Make the folders of the embedded broker; sender and worker use the same one for both directions."""
+    folders = {name: settings.data_dir / "broker" / name for name in ("messages", "control", "processed")}
+    for folder in folders.values():
+        folder.mkdir(parents=True, exist_ok=True)
+    return {
+        "data_folder_in": str(folders["messages"]),
+        "data_folder_out": str(folders["messages"]),
+        "control_folder": str(folders["control"]),
+        "processed_folder": str(folders["processed"]),
+        "polling_interval": 0.1,
+    }
