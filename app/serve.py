@@ -1,0 +1,87 @@
+"""The commands that run the service: migrate, worker, and serve, which is the whole of it in one command."""
+
+import logging
+import os
+import signal
+import sys
+from typing import NoReturn
+
+import uvicorn
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import Connection, text
+
+from app import processes
+from app.db import make_engine
+from app.settings import Settings
+
+_MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
+_STOP_SECONDS = 10.0
+_LOOK_SECONDS = 0.5
+
+_logger = logging.getLogger(__name__)
+
+
+def migrate(settings: Settings) -> int:
+    """Bring the database to the newest revision; several at once wait for each other. Returns 0.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If the database cannot be reached or refuses.
+    """
+    engine = make_engine(settings)
+    try:
+        with engine.begin() as connection:
+            _take_turns(connection)
+            command.upgrade(alembic_config(connection), "head")
+    finally:
+        engine.dispose()
+    return 0
+
+
+def alembic_config(connection: Connection) -> Config:
+    """Make Alembic's configuration for our migrations on an open connection."""
+    config = Config()
+    config.set_main_option("script_location", "migrations:")
+    config.attributes["connection"] = connection
+    return config
+
+
+def worker(settings: Settings) -> NoReturn:
+    """Become a worker: a new program in this process, since the BLAS library reads its settings as it loads."""
+    os.execve(sys.executable, [sys.executable, "-m", "worker"], processes.environment(settings))
+
+
+def serve(settings: Settings, host: str, port: int) -> int:
+    """Migrate, then run the API and a worker as child processes until SIGTERM or SIGINT; return the exit code.
+
+    A worker that ends by itself is started again; if the API does, the service ends with its code. Both end with this
+    process even if it is killed, and whatever they left undone is taken up by the next start.
+    """
+    migrate(settings)
+    with processes.until_stopped() as wait:
+        api = processes.start(settings, "app.serve", host, str(port))
+        worker_process = processes.start(settings, "worker")
+        while not wait(_LOOK_SECONDS) and api.poll() is None:
+            if worker_process.poll() is not None:
+                _logger.warning("the worker ended with code %s and is started again", worker_process.returncode)
+                worker_process = processes.start(settings, "worker")
+        code = api.poll()
+        processes.stop([api, worker_process], signal.SIGTERM, settings.shutdown_seconds + _STOP_SECONDS)
+    return code or 0
+
+
+def _take_turns(connection: Connection) -> None:
+    # SQLite's transactions begin as writers already, so that only one of them is past this line.
+    if connection.dialect.name == "postgresql":
+        connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _MIGRATION_LOCK})
+
+
+def _run_api(host: str, port: int) -> None:
+    processes.end_with_parent()
+    uvicorn.run("app.main:create_app", factory=True, host=host, port=port)
+
+
+if __name__ == "__main__":
+    _run_api(sys.argv[1], int(sys.argv[2]))
