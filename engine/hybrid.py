@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.aerodynamics import PolynomialLoad, integrated, published_load, span_load
-from engine.fem import FIELDS, THETA, V, W, Matrices, interpolation_at
+from engine.fem import FIELDS, THETA, U, V, W, Matrices, shape_functions
 from engine.modes import DirectionalShapes, FullModes, at_points
 from engine.profile import FloatArray, StaticProfile
 from engine.sections import Sections
@@ -138,8 +138,7 @@ def observation(made: Discretization, shapes: FloatArray, loops: int) -> FloatAr
     elements = made.lines[0].span.elements
     scaled = elements / (2.0 * loops)
     element = min(int(scaled), elements - 1)
-    local = 2.0 * (scaled - element) - 1.0
-    values = np.array([0.5 * local * (local - 1.0), 1.0 - local**2, 0.5 * local * (local + 1.0)])
+    values, _ = shape_functions(np.array(2.0 * (scaled - element) - 1.0))
     return np.asarray(shapes[..., 2 * element : 2 * element + 3] @ values)
 
 
@@ -188,20 +187,17 @@ def _modal_damping(
     made: Discretization, vectors: FloatArray, shapes: DirectionalShapes, loops: tuple[int, ...]
 ) -> FloatArray:
     constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in made.lines])
-    damping = np.zeros((vectors.shape[0], vectors.shape[1], vectors.shape[1]))
-    nodes = vectors.shape[-1] // FIELDS
-    for k in loops:
-        own, first = (shapes.angular_frequency[:, shapes.loops.index(i)] for i in (k, 1))
-        omega = np.nan_to_num(np.where(constant[:, None], first, own))
-        for i, field in enumerate(TRANSVERSE):
-            psi = np.zeros((vectors.shape[0], nodes, FIELDS))
-            psi[..., field] = shapes.nodal[:, shapes.loops.index(k), field]
-            if field == V:
-                psi[..., 0] = shapes.nodal[:, shapes.loops.index(k), 0]
-            flat = psi.reshape(vectors.shape[0], -1, 1)
-            momentum = made.matrices.mass @ flat
-            share = vectors @ momentum
-            own_mass = (flat.swapaxes(-1, -2) @ momentum)[:, 0, 0]
-            rate = 2.0 * _ratios(made.lines)[:, i] * omega[:, i] / own_mass
-            damping += rate[:, None, None] * share * share.swapaxes(-1, -2)
+    picked = [shapes.loops.index(k) for k in loops]
+    own, first = shapes.angular_frequency[:, picked], shapes.angular_frequency[:, [shapes.loops.index(1)]]
+    rate = 2.0 * _ratios(made.lines)[:, None] * np.nan_to_num(np.where(constant[:, None, None], first, own))
+    damping = np.zeros((*vectors.shape[:2], vectors.shape[1]))
+    for i, own_fields in enumerate(((U, V), (W,), (THETA,))):
+        # Only the mass of the direction itself: the momentum that eccentric ice lends to the others is not damped.
+        own_field = np.isin(np.arange(vectors.shape[-1]) % FIELDS, own_fields)
+        mass = made.matrices.mass * (own_field[:, None] & own_field)
+        psi = np.swapaxes(shapes.nodal[:, picked], -1, -2).reshape(vectors.shape[0], len(loops), -1) * own_field
+        momentum = psi @ mass
+        own_mass = np.einsum("lkf,lkf->lk", momentum, psi)
+        share = vectors @ momentum.swapaxes(-1, -2)
+        damping += (share * (rate[..., i] / own_mass)[:, None, :]) @ share.swapaxes(-1, -2)
     return damping

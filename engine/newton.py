@@ -1,0 +1,93 @@
+"""Newton's method on stacks of independent systems. Non-convergence is a value, not an exception."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.outcome import Outcome
+
+FloatArray = NDArray[np.float64]
+System = Callable[[FloatArray, NDArray[np.intp]], tuple[FloatArray, FloatArray]]
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Tolerance of the scaled step, largest scaled step allowed, and largest number of iterations."""
+
+    tolerance: float = 1e-10
+    largest_step: float = 0.5
+    iterations: int = 30
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """What Newton's method found for each member of a stack.
+
+    x: (members, unknowns); outcome: (members,) of Outcome; step: (members,), scaled size of the last step;
+    iterations: (members,).
+    """
+
+    x: FloatArray
+    outcome: NDArray[np.object_]
+    step: FloatArray
+    iterations: NDArray[np.intp]
+
+    @property
+    def converged(self) -> NDArray[np.bool_]:
+        """Members that met the tolerance, (members,)."""
+        return np.asarray(self.outcome == Outcome.CONVERGED, dtype=np.bool_)
+
+
+def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | None = None) -> Solution:
+    """Solve many systems of equations side by side.
+
+    Parameters
+    ----------
+    system : callable
+        Takes x (active, unknowns) and the indices (active,) of the members that they belong to; returns residuals
+        (active, equations) and Jacobians (active, equations, unknowns), equations = unknowns.
+    x : (members, unknowns)
+        Starts.
+    scale : (members, unknowns)
+        Size by which each unknown is measured; a step counts as the root mean square of step / scale. A step above
+        `largest_step` is shortened to it.
+    options : Options, optional
+
+    Returns
+    -------
+    Solution
+    """
+    options = options or Options()
+    x = x.copy()
+    step = np.full(x.shape[0], np.inf)
+    iterations = np.zeros(x.shape[0], dtype=np.intp)
+    active = np.flatnonzero(np.isfinite(x).all(axis=-1))
+    for _ in range(options.iterations):
+        if active.size == 0:
+            break
+        change = _solve(*system(x[active], active))
+        size = np.sqrt(np.mean((change / scale[active]) ** 2, axis=-1))
+        finite = np.isfinite(size)
+        active, change, size = active[finite], change[finite], size[finite]
+        x[active] += change * np.minimum(1.0, options.largest_step / np.maximum(size, 1e-300))[:, None]
+        step[active] = size
+        iterations[active] += 1
+        active = active[size > options.tolerance]
+    outcome = np.where(step <= options.tolerance, Outcome.CONVERGED, Outcome.NO_CONVERGENCE)
+    return Solution(x, outcome, step, iterations)
+
+
+def _solve(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
+    try:
+        return -np.linalg.solve(jacobian, residual[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return np.stack([_solve_one(r, j) for r, j in zip(residual, jacobian, strict=True)])
+
+
+def _solve_one(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
+    try:
+        return -np.linalg.solve(jacobian, residual)
+    except np.linalg.LinAlgError:
+        return np.full_like(residual, np.nan)
