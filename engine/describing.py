@@ -1,0 +1,193 @@
+"""Explicit first-harmonic limit cycles of the published closure. Theory section 7.1.
+
+The load depends on one scalar alpha' = alpha_0 + R cos(w t) and so acts as gains. With them the characteristic
+polynomial is affine in known polynomials, and an imaginary pair asks its even and its odd part to vanish together: the
+odd part is quadratic in w^2, which leaves one scalar equation in R, solved for all members side by side.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.hybrid import ReducedModel, take
+from engine.profile import FloatArray
+
+LARGEST_ANGLE = 3.0  # rad; the cubic load has no meaning beyond
+GRID = 72
+ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
+
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True)
+class FirstHarmonic:
+    """Explicit cycles q = mean + Re(amplitude exp(i w t)) of a stack of models.
+
+    member: (cycles,), index of the model; angular_frequency: (cycles,) [rad/s]; angle: (cycles,), R [rad];
+    mean: (cycles, 3); amplitude: (cycles, 3), complex.
+    """
+
+    member: NDArray[np.intp]
+    angular_frequency: FloatArray
+    angle: FloatArray
+    mean: FloatArray
+    amplitude: ComplexArray
+
+
+@dataclass(frozen=True, slots=True)
+class _Scalar:
+    """The scalar problem of each member: gains act through U^2 B_j, alpha' is read by a form in q and q'.
+
+    polynomials: (members, 4, 7), coefficients in s/scale of det Z and of r adj(Z) U^2 B_j; static: (members, 3),
+    alpha_0 per unit of each mean load; scale: (members,) [rad/s].
+    """
+
+    polynomials: FloatArray
+    static: FloatArray
+    scale: FloatArray
+
+
+def explicit_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
+    """Find every first-harmonic cycle of each model.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Three degrees of freedom under the published closure, leading axis (members,).
+    wind_speed : (members,)
+        [m/s].
+
+    Returns
+    -------
+    FirstHarmonic
+    """
+    scalar = _scalar_problem(model, wind_speed)
+    angle = np.concatenate([[0.0], np.geomspace(1e-4, LARGEST_ANGLE, GRID - 1)])
+    angles = np.broadcast_to(angle, (wind_speed.size, GRID))
+    even, _ = _even_part(scalar, np.arange(wind_speed.size)[:, None], angles)
+    known = np.isfinite(even)
+    member, cell, root = np.nonzero(known[:, 1:] | known[:, :-1])
+    left, right = angle[cell], angle[cell + 1]
+    left, right = _real_part(scalar, member, root, left, right)
+    ends = [np.sign(_branch(scalar, member, root, end)) for end in (left, right)]
+    bracket = ends[0] * ends[1] < 0.0
+    member, root = member[bracket], root[bracket]
+    refined = _bisected(
+        lambda middle: np.sign(_branch(scalar, member, root, middle)) == ends[0][bracket], left[bracket], right[bracket]
+    )
+    return _cycles(model, wind_speed, scalar, member, root, 0.5 * (refined[0] + refined[1]))
+
+
+def _scalar_problem(model: ReducedModel, wind_speed: FloatArray) -> _Scalar:
+    """Interpolate the characteristic polynomials on a circle and solve the statics."""
+    square = wind_speed[:, None] ** 2
+    vectors = square[..., None] * model.load.table[:, 0].swapaxes(-1, -2)
+    frequency = np.sqrt(np.abs(np.diagonal(model.stiffness, axis1=-2, axis2=-1)))
+    frequency /= np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))
+    scale = np.exp(np.log(frequency).mean(axis=-1))
+    points = np.exp(2j * np.pi * np.arange(ORDER + 1) / (ORDER + 1))
+    s = points * scale[:, None]
+    dynamic = _dynamic_stiffness(model, s)
+    reader = _reader(model, wind_speed, s)
+    response = np.linalg.solve(dynamic, np.swapaxes(vectors, -1, -2)[:, None].astype(np.complex128))
+    determinant = np.linalg.det(dynamic)
+    numerators = determinant[..., None] * (reader[..., None, :] @ response)[..., 0, :]
+    values = np.concatenate([determinant[..., None], numerators], axis=-1)
+    coefficients = np.fft.fft(values, axis=1).real / (ORDER + 1)
+    at_rest = np.linalg.solve(model.stiffness, np.swapaxes(vectors, -1, -2))
+    form = model.load.forms[:, 0, 0, : model.mass.shape[-1]]
+    return _Scalar(coefficients.swapaxes(-1, -2), (form[:, None, :] @ at_rest)[:, 0], scale)
+
+
+def _dynamic_stiffness(model: ReducedModel, s: ComplexArray) -> ComplexArray:
+    """Return Z(s) = M s^2 + C s + K: (members, points, 3, 3)."""
+    laplace = s[..., None, None]
+    return np.asarray(model.mass[:, None] * laplace**2 + model.damping[:, None] * laplace + model.stiffness[:, None])
+
+
+def _reader(model: ReducedModel, wind_speed: FloatArray, s: ComplexArray) -> ComplexArray:
+    """Return the row r(s) with alpha' = r(s) q, eq. (A16): (members, points, 3)."""
+    m = model.mass.shape[-1]
+    form = model.load.forms[:, None, 0, 0]
+    return np.asarray(form[..., :m] + form[..., m:] * (s / wind_speed[:, None])[..., None])
+
+
+def _mean_angle(static: FloatArray, angle: FloatArray) -> FloatArray:
+    """Solve the statics of alpha_0 under an oscillation of amplitude R, by Newton's method from zero."""
+    g_1, g_2, g_3 = (static[..., j] for j in range(3))
+    half = 0.5 * angle**2
+    alpha = np.zeros_like(angle)
+    for _ in range(12):
+        value = g_1 * alpha + g_2 * (alpha**2 + half) + g_3 * (alpha**3 + 3.0 * alpha * half) - alpha
+        slope = g_1 + 2.0 * g_2 * alpha + 3.0 * g_3 * (alpha**2 + half) - 1.0
+        alpha = alpha - np.clip(value / np.where(slope == 0.0, np.inf, slope), -0.5, 0.5)
+    return np.asarray(alpha)
+
+
+def _gains(alpha: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return the factors of B_1, B_2, B_3 in the gain N: (..., 3)."""
+    return np.stack([np.ones_like(alpha), 2.0 * alpha, 3.0 * alpha**2 + 0.75 * angle**2], axis=-1)
+
+
+def _even_part(scalar: _Scalar, member: NDArray[np.intp], angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the even part of the polynomial at both roots w^2 of its odd part, and those roots: (..., 2) each."""
+    gains = _gains(_mean_angle(scalar.static[member], angle), angle)
+    factors = np.concatenate([np.ones((*angle.shape, 1)), -gains], axis=-1)
+    p = (factors[..., None, :] @ scalar.polynomials[member])[..., 0, :]
+    discriminant = p[..., 3] ** 2 - 4.0 * p[..., 5] * p[..., 1]
+    root = np.sqrt(np.where(discriminant >= 0.0, discriminant, np.nan))
+    far = p[..., 3] + np.copysign(root, p[..., 3])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        both = np.stack([2.0 * p[..., 1] / far, far / (2.0 * p[..., 5])], axis=-1)
+        square = np.where(both > 0.0, both, np.nan)
+        even = p[..., 0, None] - square * (p[..., 2, None] - square * (p[..., 4, None] - square * p[..., 6, None]))
+    return even, square
+
+
+def _branch(scalar: _Scalar, member: NDArray[np.intp], root: NDArray[np.intp], angle: FloatArray) -> FloatArray:
+    """Return the even part at one of the two roots of the odd part: (brackets,)."""
+    return np.asarray(_even_part(scalar, member, angle)[0][np.arange(member.size), root])
+
+
+def _real_part(
+    scalar: _Scalar, member: NDArray[np.intp], root: NDArray[np.intp], left: FloatArray, right: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Cut each cell to where the root of the odd part is real and positive: pairs of roots may be born inside."""
+    known = [np.isfinite(_branch(scalar, member, root, end)) for end in (left, right)]
+    low, high = _bisected(
+        lambda middle: np.isfinite(_branch(scalar, member, root, middle)) == known[0], left.copy(), right.copy()
+    )
+    return np.where(known[0], left, high), np.where(known[1], right, low)
+
+
+def _bisected(
+    like_left: Callable[[FloatArray], NDArray[np.bool_]], left: FloatArray, right: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Halve brackets until they are as narrow as the numbers allow."""
+    for _ in range(45):
+        middle = 0.5 * (left + right)
+        same = like_left(middle)
+        left, right = np.where(same, middle, left), np.where(same, right, middle)
+    return left, right
+
+
+def _cycles(
+    model: ReducedModel,
+    wind_speed: FloatArray,
+    scalar: _Scalar,
+    member: NDArray[np.intp],
+    root: NDArray[np.intp],
+    angle: FloatArray,
+) -> FirstHarmonic:
+    _, square = _even_part(scalar, member, angle)
+    frequency = np.sqrt(square[np.arange(member.size), root]) * scalar.scale[member]
+    alpha = _mean_angle(scalar.static[member], angle)
+    vectors = wind_speed[member, None, None] ** 2 * model.load.table[member, 0].swapaxes(-1, -2)
+    gain = (_gains(alpha, angle)[:, None] @ vectors)[:, 0]
+    dynamic = _dynamic_stiffness(take(model, member), 1j * frequency[:, None])[:, 0]
+    amplitude = np.linalg.solve(dynamic, (gain * angle[:, None])[..., None].astype(np.complex128))[..., 0]
+    mean_load = np.stack([alpha, alpha**2 + 0.5 * angle**2, alpha**3 + 1.5 * alpha * angle**2], axis=-1)
+    mean = np.linalg.solve(model.stiffness[member], (mean_load[:, None] @ vectors)[:, 0, :, None])[..., 0]
+    return FirstHarmonic(member, frequency, angle, mean, amplitude)

@@ -1,0 +1,116 @@
+"""Floquet stability of periodic motions. Theory section 7.3."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.aerodynamics import force_gradient
+from engine.harmonic import Orbits, states
+from engine.hybrid import ReducedModel
+from engine.outcome import Stability
+from engine.profile import FloatArray
+
+PHASE_PER_STEP = 0.6  # rad of the fastest mode: the exponential series below is then exact to 1e-8
+FEWEST_STEPS = 24
+SERIES = 9
+
+
+@dataclass(frozen=True, slots=True)
+class Floquet:
+    """Multipliers of a stack of orbits.
+
+    multipliers: (cycles, 2 m) complex, the trivial one first; trivial_error: (cycles,), its distance from 1, which
+    bounds what the others may be trusted to; stability: (cycles,) of Stability.
+    """
+
+    multipliers: NDArray[np.complex128]
+    trivial_error: FloatArray
+    stability: NDArray[np.object_]
+
+
+def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
+    """Integrate the linearized equations over one period and judge the multipliers.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (cycles,).
+    orbits : Orbits
+
+    Returns
+    -------
+    Floquet
+    """
+    values = np.linalg.eigvals(monodromy(model, orbits)).astype(np.complex128)
+    trivial = np.abs(values - 1.0).argmin(axis=-1)
+    order = np.argsort(np.arange(values.shape[-1]) != trivial[:, None], axis=-1, kind="stable")
+    values = np.take_along_axis(values, order, axis=-1)
+    error = np.abs(values[:, 0] - 1.0)
+    largest = np.abs(values[:, 1:]).max(axis=-1, initial=0.0)
+    return Floquet(values, error, judged(largest, error))
+
+
+def judged(largest: FloatArray, error: FloatArray) -> NDArray[np.object_]:
+    """Judge by the largest modulus of the other multipliers: what the error does not decide is unknown."""
+    margin = np.maximum(3.0 * error, 1e-7)
+    known = np.where(largest < 1.0, Stability.STABLE, Stability.UNSTABLE)
+    decided = np.isfinite(largest) & (np.abs(largest - 1.0) > margin)
+    return np.asarray(np.where(decided, known, Stability.UNKNOWN), dtype=np.object_)
+
+
+def monodromy(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m).
+
+    Magnus' method of fourth order with two Gauss points a step: the constant part of the equations is exact.
+    """
+    if orbits.wind_speed.size == 0:
+        size = 2 * model.mass.shape[-1]
+        return np.zeros((0, size, size))
+    steps = _steps(model, orbits)
+    width = 2.0 * np.pi / steps
+    offset = np.sqrt(3.0) / 6.0
+    middle = (np.arange(steps) + 0.5) * width
+    first, second = (_generator(model, orbits, middle + sign * offset * width) for sign in (-1.0, 1.0))
+    commutator = second @ first - first @ second
+    exponent = 0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator
+    return _ordered_product(_exponential(exponent))
+
+
+def _steps(model: ReducedModel, orbits: Orbits) -> int:
+    """Return the number of steps, a power of two, that resolves the fastest mode of any member."""
+    rate = np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(model.mass, model.stiffness))).max(axis=-1))
+    needed = 2.0 * np.pi * (rate / orbits.angular_frequency).max() / PHASE_PER_STEP
+    return int(2 ** np.ceil(np.log2(max(needed, FEWEST_STEPS))))
+
+
+def _generator(model: ReducedModel, orbits: Orbits, tau: FloatArray) -> FloatArray:
+    """Return A(tau) of y' = A y for y = (q, dq/dtau): (cycles, steps, 2 m, 2 m)."""
+    m = model.mass.shape[-1]
+    gradient = force_gradient(model.load, states(orbits, tau))
+    omega = orbits.angular_frequency[:, None, None, None]
+    speed = orbits.wind_speed[:, None, None, None]
+    stiffness = (model.stiffness[:, None] - speed**2 * gradient[..., :m]) / omega**2
+    damping = (model.damping[:, None] - speed * gradient[..., m:]) / omega
+    inverse = np.linalg.inv(model.mass)[:, None]
+    result = np.zeros((*gradient.shape[:2], 2 * m, 2 * m))
+    result[..., :m, m:] = np.eye(m)
+    result[..., m:, :m] = -inverse @ stiffness
+    result[..., m:, m:] = -inverse @ damping
+    return result
+
+
+def _exponential(matrix: FloatArray) -> FloatArray:
+    """Sum the series of the exponential by Horner's rule; the steps keep its argument small."""
+    identity = np.eye(matrix.shape[-1])
+    result = identity + matrix / SERIES
+    for order in range(SERIES - 1, 0, -1):
+        result = identity + matrix @ result / order
+    return np.asarray(result)
+
+
+def _ordered_product(factors: FloatArray) -> FloatArray:
+    """Multiply (cycles, steps, n, n) in time order, later factors on the left, pairwise; steps is a power of two."""
+    while factors.shape[1] > 1:
+        factors = factors[:, 1::2] @ factors[:, ::2]
+    return factors[:, 0]

@@ -1,0 +1,214 @@
+"""Harmonic balance of the reduced models: periodic solutions with H harmonics. Theory section 7.2.
+
+Co-efficients of each co-ordinate stand in the order mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The load is a
+cubic polynomial of (q, q'/U), so 4 H + 2 samples in time give its first H harmonics without aliasing.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.aerodynamics import force, force_gradient
+from engine.hybrid import ReducedModel, take
+from engine.newton import Options, Solution, newton
+from engine.profile import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Orbits:
+    """Periodic motions of a stack of models.
+
+    coefficients: (cycles, m, 2 H + 1); angular_frequency: (cycles,) [rad/s]; wind_speed: (cycles,) [m/s].
+    """
+
+    coefficients: FloatArray
+    angular_frequency: FloatArray
+    wind_speed: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Basis:
+    """Fourier basis on 4 H + 2 samples of one period.
+
+    values, slopes: (samples, 2 H + 1), the basis and its derivative by tau; projection: (2 H + 1, samples), least
+    squares from samples to coefficients; derivative: (2 H + 1, 2 H + 1), coefficients of the derivative by tau.
+    """
+
+    values: FloatArray
+    slopes: FloatArray
+    projection: FloatArray
+    derivative: FloatArray
+
+
+@lru_cache
+def basis(harmonics: int) -> Basis:
+    """Make the Fourier basis of H harmonics."""
+    samples = 4 * harmonics + 2
+    tau = 2.0 * np.pi * np.arange(samples) / samples
+    values = fourier(tau, harmonics)
+    derivative = np.zeros((2 * harmonics + 1, 2 * harmonics + 1))
+    order = np.arange(1, harmonics + 1)
+    derivative[2 * order - 1, 2 * order] = order
+    derivative[2 * order, 2 * order - 1] = -order
+    weight = np.full(2 * harmonics + 1, 2.0 / samples)
+    weight[0] = 1.0 / samples
+    return Basis(values, values @ derivative, weight[:, None] * values.T, derivative)
+
+
+def fourier(tau: FloatArray, harmonics: int) -> FloatArray:
+    """Evaluate 1, cos tau, sin tau, ..., cos H tau, sin H tau: tau.shape + (2 H + 1,)."""
+    angle = tau[..., None] * np.arange(1, harmonics + 1)
+    waves = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(*tau.shape, -1)
+    return np.concatenate([np.ones((*tau.shape, 1)), waves], axis=-1)
+
+
+def states(orbits: Orbits, tau: FloatArray) -> FloatArray:
+    """Return (q, q'/U) at phases tau (samples,): (cycles, samples, 2 m)."""
+    harmonics = orbits.coefficients.shape[-1] // 2
+    made = basis(harmonics)
+    values = fourier(tau, harmonics)
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None, None]
+    q = orbits.coefficients @ values.T
+    velocity = rate * (orbits.coefficients @ (values @ made.derivative).T)
+    return np.concatenate([q, velocity], axis=1).swapaxes(-1, -2)
+
+
+def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Return the harmonics of M q'' + C q' + K q - U^2 f: (cycles, m, 2 H + 1), generalized force."""
+    made = basis(orbits.coefficients.shape[-1] // 2)
+    load = force(model.load, _sampled(orbits, made))
+    square = orbits.wind_speed[:, None, None] ** 2
+    return _linear_part(model, orbits, made) - square * (made.projection @ load).swapaxes(-1, -2)
+
+
+def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Differentiate the residual by the coefficients and by w: (cycles, m (2 H + 1), m (2 H + 1) + 1)."""
+    made = basis(orbits.coefficients.shape[-1] // 2)
+    cycles, m, size = orbits.coefficients.shape
+    gradient = force_gradient(model.load, _sampled(orbits, made))
+    omega = orbits.angular_frequency[:, None, None]
+    speed = orbits.wind_speed[:, None, None]
+    flat = np.moveaxis(gradient, 1, -1).reshape(cycles, m, 2, m, -1)
+    by_value, by_slope = _products(orbits.coefficients.shape[-1] // 2)
+    q_part = (speed**2)[..., None, None] * (flat[:, :, 0] @ by_value).reshape(cycles, m, m, size, size)
+    v_part = (speed * omega)[..., None, None] * (flat[:, :, 1] @ by_slope).reshape(cycles, m, m, size, size)
+    second = made.derivative @ made.derivative
+    blocks = _blocks(model.mass * omega**2, second) + _blocks(model.damping * omega, made.derivative)
+    blocks += _blocks(model.stiffness, np.eye(size)) - q_part - v_part
+    by_coefficients = blocks.swapaxes(2, 3).reshape(cycles, m * size, m * size)
+    slope = orbits.coefficients @ made.derivative.T
+    by_omega = 2.0 * omega * model.mass @ (slope @ made.derivative.T) + model.damping @ slope
+    velocity = (orbits.coefficients @ made.slopes.T).swapaxes(-1, -2)[..., None] * speed[..., None]
+    by_omega -= (made.projection @ (gradient[..., m:] @ velocity)[..., 0]).swapaxes(-1, -2)
+    return np.concatenate([by_coefficients, by_omega.reshape(cycles, -1, 1)], axis=-1)
+
+
+def balance(
+    model: ReducedModel, member: NDArray[np.intp], start: Orbits, options: Options | None = None
+) -> tuple[Orbits, Solution]:
+    """Solve the harmonic balance from many starts at once.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    member : (cycles,)
+        The model of each start.
+    start : Orbits
+        The phase of each solution is that of its start: <q - q_start, dq_start/dtau> = 0 in the mass.
+    options : Options, optional
+
+    Returns
+    -------
+    Orbits
+        The solutions, also where Newton's method did not converge.
+    Solution
+        How it went; a start that fell to the equilibrium counts as not converged.
+    """
+    cycles, m, size = start.coefficients.shape
+    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
+    reference = (weight[..., None] ** 2 * (start.coefficients @ basis(size // 2).derivative.T)).reshape(cycles, -1)
+    norm = np.sqrt(np.einsum("cms,cm->c", start.coefficients**2, weight**2))
+    scale = np.repeat(norm[:, None] / weight, size, axis=-1) / np.sqrt(m * size)
+    scale = np.concatenate([scale, start.angular_frequency[:, None] / np.sqrt(m * size)], axis=-1)
+    x = np.concatenate([start.coefficients.reshape(cycles, -1), start.angular_frequency[:, None]], axis=-1)
+
+    def system(x: FloatArray, active: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+        here = take(model, member[active])
+        orbits = _unpacked(x, m, start.wind_speed[active])
+        rows = residual(here, orbits).reshape(active.size, -1)
+        drift = np.einsum("cx,cx->c", reference[active], x[:, :-1] - start.coefficients.reshape(cycles, -1)[active])
+        phase = np.concatenate([reference[active], np.zeros((active.size, 1))], axis=-1)
+        matrix = np.concatenate([jacobian(here, orbits), phase[:, None]], axis=1)
+        return np.concatenate([rows, drift[:, None]], axis=-1), matrix
+
+    solution = newton(system, x, scale, options)
+    return _unpacked(solution.x, m, start.wind_speed), solution
+
+
+def oscillation_size(model: ReducedModel, member: NDArray[np.intp], orbits: Orbits) -> FloatArray:
+    """Return the root of sum M_ii |q_i|^2 over the oscillating harmonics: (cycles,)."""
+    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    return np.asarray(np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight)))
+
+
+def resized(orbits: Orbits, harmonics: int) -> Orbits:
+    """Cut or pad the coefficients to a number of harmonics."""
+    size = 2 * harmonics + 1
+    kept = orbits.coefficients[..., :size]
+    padded = np.zeros((*kept.shape[:-1], size))
+    padded[..., : kept.shape[-1]] = kept
+    return Orbits(padded, orbits.angular_frequency, orbits.wind_speed)
+
+
+def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
+    """Return half of the peak-to-peak of Fourier series (..., 2 H + 1): (...).
+
+    The extremes on a grid of 16 samples a harmonic are refined by the parabola through three samples.
+    """
+    harmonics = coefficients.shape[-1] // 2
+    samples = 16 * harmonics + 16
+    values = coefficients @ fourier(2.0 * np.pi * np.arange(samples) / samples, harmonics).T
+    return np.asarray(0.5 * (_peak(values) + _peak(-values)))
+
+
+def _peak(values: FloatArray) -> FloatArray:
+    top = values.argmax(axis=-1)[..., None]
+    left, middle, right = (
+        np.take_along_axis(values, (top + shift) % values.shape[-1], axis=-1)[..., 0] for shift in (-1, 0, 1)
+    )
+    bend = left - 2.0 * middle + right
+    return np.asarray(middle - np.where(bend < 0.0, (right - left) ** 2 / (8.0 * np.where(bend < 0.0, bend, -1.0)), 0.0))
+
+
+@lru_cache
+def _products(harmonics: int) -> tuple[FloatArray, FloatArray]:
+    """Return the maps from samples of a gradient to its blocks in the Jacobian: (samples, (2 H + 1)^2) each."""
+    made = basis(harmonics)
+    by_value = np.einsum("as,sb->sab", made.projection, made.values)
+    by_slope = np.einsum("as,sb->sab", made.projection, made.slopes)
+    return by_value.reshape(len(made.values), -1), by_slope.reshape(len(made.values), -1)
+
+
+def _sampled(orbits: Orbits, made: Basis) -> FloatArray:
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None, None]
+    q = orbits.coefficients @ made.values.T
+    return np.concatenate([q, rate * (orbits.coefficients @ made.slopes.T)], axis=1).swapaxes(-1, -2)
+
+
+def _linear_part(model: ReducedModel, orbits: Orbits, made: Basis) -> FloatArray:
+    omega = orbits.angular_frequency[:, None, None]
+    slope = orbits.coefficients @ made.derivative.T
+    bend = slope @ made.derivative.T
+    result = omega**2 * model.mass @ bend + omega * model.damping @ slope + model.stiffness @ orbits.coefficients
+    return np.asarray(result)
+
+
+def _blocks(matrix: FloatArray, operator: FloatArray) -> FloatArray:
+    return np.asarray(matrix[..., None, None] * operator)
+
+
+def _unpacked(x: FloatArray, m: int, wind_speed: FloatArray) -> Orbits:
+    return Orbits(x[:, :-1].reshape(x.shape[0], m, -1), x[:, -1], wind_speed)
