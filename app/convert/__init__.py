@@ -1,0 +1,15 @@
+"""The border to the engine: JSON documents in, plain rows out. Units change here and nowhere else."""
+
+from app.convert.check import check, read, request_faults, with_further_faults
+from app.convert.run import TABLES, Advance, PointResult, run
+
+__all__ = [
+    "TABLES",
+    "Advance",
+    "PointResult",
+    "check",
+    "read",
+    "request_faults",
+    "run",
+    "with_further_faults",
+]

@@ -1,0 +1,161 @@
+"""Parts -> line and analysis, with the faults of all parts and of their combination gathered before any is told.
+
+Where a part is not sound, a neutral one stands in for it, so that what concerns several parts is still checked for the
+others; the neutral part itself causes no fault.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypedDict, TypeVar
+
+from app import schemas
+from app.convert import parts
+from engine import spec
+from engine.outcome import Fault, InvalidSpec
+
+Made = TypeVar("Made")
+Source = TypeVar("Source")
+
+_STILL = spec.Aerodynamics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), at_rest=(0.0, 0.0, 0.0))
+_NEUTRAL_CONDUCTOR = spec.Conductor(0.03, 1e7, 100.0, 1e-3, 1e3)
+_NEUTRAL_SPAN = spec.Span(1e9, horizontal_tension=1e4, elements=1000)
+_NEUTRAL_DAMPING = spec.Damping(0.01, 0.01, 0.01)
+_NEUTRAL_ANALYSIS = spec.Analysis(loops=(1,), finite_element_loops=(1,))
+
+
+class _LineParts(TypedDict):
+    conductor: spec.Conductor
+    bundle: spec.Bundle
+    span: spec.Span
+    supports: spec.Supports
+    ice: spec.Ice
+    wind: spec.Wind
+    damping: spec.Damping
+    devices: tuple[spec.Device, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SoundParts:
+    """The parts of a line document that pass their own schema; None where one does not."""
+
+    conductor: schemas.Conductor | None
+    bundle: schemas.Bundle | None
+    span: schemas.Span | None
+    supports: schemas.Supports | None
+    ice: schemas.Ice | None
+    wind: schemas.Wind | None
+    damping: schemas.Damping | None
+    devices: Sequence[schemas.Device | None]
+
+    @classmethod
+    def of(cls, line: schemas.Line) -> "SoundParts":
+        """Take all parts of a line that passes its schema."""
+        return cls(
+            conductor=line.conductor,
+            bundle=line.bundle,
+            span=line.span,
+            supports=line.supports,
+            ice=line.ice,
+            wind=line.wind,
+            damping=line.damping,
+            devices=line.devices,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Gathered:
+    """Faults found so far, with paths from the root of the line or the analysis, and the places of neutral parts."""
+
+    faults: list[Fault] = field(default_factory=list)
+    neutral: list[str] = field(default_factory=list)
+
+    def make(self, path: str, source: Source | None, maker: Callable[[Source], Made], neutral: Made) -> Made:
+        """Return what is made of a source, or the neutral thing if there is none or it is at fault."""
+        return self.settle(path, None if source is None else self.attempt(f"{path}.", lambda: maker(source)), neutral)
+
+    def settle(self, path: str, made: Made | None, neutral: Made) -> Made:
+        """Return what was made, or the neutral thing whose faults are nobody's."""
+        if made is None:
+            self.neutral.append(path)
+            return neutral
+        return made
+
+    def attempt(self, prefix: str, make: Callable[[], Made]) -> Made | None:
+        """Return what is made, or None and keep the faults of it."""
+        try:
+            return make()
+        except InvalidSpec as error:
+            found = [replace(fault, field=_rooted(prefix, fault.field)) for fault in error.faults]
+            self.faults.extend(fault for fault in found if not self._is_neutral(fault.field))
+            return None
+
+    def _is_neutral(self, path: str) -> bool:
+        return any(f"{path}.".startswith(f"{place}.") for place in self.neutral)
+
+
+def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line | None, spec.Analysis, list[Fault]]:
+    """Build a line and an analysis, and say everything that is wrong with them, apart and together.
+
+    Returns
+    -------
+    line : Line or None
+        To be used only if there is no fault.
+    analysis : Analysis
+        Likewise.
+    faults : list of Fault
+        With dotted paths from the root of the line or of the analysis.
+    """
+    gathered = Gathered()
+    values = _values(sound, gathered)
+    line = gathered.attempt("", lambda: spec.Line(**values))
+    analysis = gathered.make("analysis", asked, parts.analysis, _NEUTRAL_ANALYSIS)
+    comparable = line or _apart_from_positions(values)
+    if comparable is not None:
+        gathered.attempt("", lambda: spec.check_compatible(comparable, analysis))
+    return line, analysis, gathered.faults
+
+
+def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
+    return {
+        "conductor": gathered.make("conductor", sound.conductor, parts.conductor, _NEUTRAL_CONDUCTOR),
+        "bundle": gathered.make("bundle", sound.bundle, parts.bundle, spec.Bundle()),
+        "span": gathered.make("span", sound.span, parts.span, _NEUTRAL_SPAN),
+        "supports": gathered.make("supports", sound.supports, parts.supports, spec.Supports()),
+        "ice": gathered.make("ice", sound.ice, lambda ice: _ice(ice, gathered), spec.Ice(_STILL)),
+        "wind": gathered.make("wind", sound.wind, parts.wind, spec.Wind()),
+        "damping": gathered.make("damping", sound.damping, parts.damping, _NEUTRAL_DAMPING),
+        "devices": tuple(_device(i, part, gathered) for i, part in enumerate(sound.devices)),
+    }
+
+
+def _device(index: int, part: schemas.Device | None, gathered: Gathered) -> spec.Device:
+    path, neutral = f"devices.{index}", spec.Spacer(0.0, 0.0, 0.0)
+    if part is None:
+        return gathered.settle(path, None, neutral)
+    return gathered.settle(path, gathered.attempt(f"{path}.", lambda: parts.device(part)), neutral)
+
+
+def _ice(ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
+    # A neutral segment lies beyond every span, each on a stretch of its own.
+    segments = tuple(
+        gathered.make(f"ice.segments.{i}", part, parts.segment, spec.IceSegment(1e8 + i, 1e8 + i + 0.5))
+        for i, part in enumerate(ice.segments)
+    )
+    coefficients = parts.aerodynamics(ice.aerodynamics, ice.at_rest)
+    return spec.Ice(coefficients, ice.eccentricity_y, ice.eccentricity_z, segments)
+
+
+def _apart_from_positions(values: _LineParts) -> spec.Line | None:
+    """Return a line that differs where a fault of position or inertia was found, to ask the other questions of."""
+    other: _LineParts = {
+        **values,
+        "span": replace(_NEUTRAL_SPAN, elements=values["span"].elements),
+        "conductor": _NEUTRAL_CONDUCTOR,
+    }
+    return Gathered().attempt("", lambda: spec.Line(**other))
+
+
+def _rooted(prefix: str, path: str) -> str:
+    """Put a prefix before a path unless the engine has begun at the root already."""
+    root = prefix.split(".", maxsplit=1)[0]
+    return path if not prefix or path.split(".", maxsplit=1)[0] == root else prefix + path

@@ -1,0 +1,107 @@
+"""JSON models -> engine dataclasses, one part at a time: the only place where degrees become radians.
+
+Every function raises `InvalidSpec` for what the engine refuses, with paths that begin at the line's root where the
+engine knows it, else at the part itself.
+"""
+
+import math
+
+from app import schemas
+from engine import spec
+
+
+def conductor(part: schemas.Conductor) -> spec.Conductor:
+    """Build a sub-conductor; its axial rigidity may come from area and modulus."""
+    rigidity = part.axial_rigidity
+    if rigidity is None:
+        rigidity = (part.area or 0.0) * (part.youngs_modulus or 0.0)
+    return spec.Conductor(
+        diameter=part.diameter,
+        axial_rigidity=rigidity,
+        torsional_rigidity=part.torsional_rigidity,
+        mass=part.mass,
+        polar_inertia=part.polar_inertia,
+        axial_torsional_coupling=part.axial_torsional_coupling,
+    )
+
+
+def bundle(part: schemas.Bundle) -> spec.Bundle:
+    """Build the arrangement from positions, or from a circle."""
+    if part.positions is not None:
+        return spec.Bundle(tuple((y, z) for y, z in part.positions))
+    return spec.Bundle.regular(part.subconductors or 1, part.radius or 0.0, math.radians(part.orientation or 0.0))
+
+
+def span(part: schemas.Span) -> spec.Span:
+    """Build the span."""
+    return spec.Span(part.length, part.horizontal_tension, part.catenary_parameter, part.sag, part.elements)
+
+
+def support(part: schemas.Support) -> spec.Support:
+    """Build one end."""
+    return spec.Support(part.dead_end, part.adjacent_span, part.insulator_length, part.insulator_weight)
+
+
+def supports(part: schemas.Supports) -> spec.Supports:
+    """Build both ends."""
+    return spec.Supports(part.longitudinal_stiffness, support(part.left), support(part.right))
+
+
+def aerodynamics(part: schemas.Aerodynamics, at_rest: schemas.AerodynamicsAtRest | None) -> spec.Aerodynamics:
+    """Build the coefficients from what the contract keeps in two places."""
+    return spec.Aerodynamics(
+        vertical=_three(part.vertical),
+        horizontal=_three(part.horizontal),
+        torsional=_three(part.torsional),
+        at_rest=(at_rest.vertical, at_rest.horizontal, at_rest.torsional) if at_rest else None,
+    )
+
+
+def segment(part: schemas.IceSegment) -> spec.IceSegment:
+    """Build a stretch of other ice."""
+    own = aerodynamics(part.aerodynamics, part.at_rest) if part.aerodynamics else None
+    return spec.IceSegment(part.start, part.stop, own, part.eccentricity_y, part.eccentricity_z, part.mass)
+
+
+def wind(part: schemas.Wind) -> spec.Wind:
+    """Build the wind apart from its speed."""
+    mean = part.blow_out
+    blow_out = spec.BlowOut(mean.wind_speed, mean.drag_coefficient) if mean else None
+    return spec.Wind(part.air_density, tuple((point.position, point.factor) for point in part.profile), blow_out)
+
+
+def damping(part: schemas.Damping) -> spec.Damping:
+    """Build the damping."""
+    model = spec.DampingModel(part.model)
+    return spec.Damping(part.vertical_ratio, part.horizontal_ratio, part.torsional_ratio, model)
+
+
+def device(part: schemas.Device) -> spec.Device:
+    """Build a device of any kind."""
+    match part:
+        case schemas.Spacer():
+            return spec.Spacer(part.position, part.mass, part.polar_inertia)
+        case schemas.DetuningPendulum():
+            return spec.DetuningPendulum(part.position, part.mass, part.arm, math.radians(part.angle))
+        case schemas.AirflowSpoiler():
+            return spec.AirflowSpoiler(part.start, part.stop, aerodynamics(part.aerodynamics, part.at_rest), part.mass)
+
+
+def analysis(part: schemas.Analysis) -> spec.Analysis:
+    """Build what is asked."""
+    return spec.Analysis(
+        loops=tuple(part.loops),
+        models=tuple(spec.Model(model) for model in part.models),
+        wind_speeds=part.speeds(),
+        closure=spec.Closure(part.closure),
+        aerodynamic_model=spec.AerodynamicModel(part.aerodynamic_model),
+        longitudinal_inertia=spec.LongitudinalInertia(part.longitudinal_inertia),
+        critical_wind_limit=part.critical_wind_limit,
+        harmonics=part.harmonics,
+        finite_element_loops=tuple(part.finite_element_loops),
+    )
+
+
+def _three(values: list[float]) -> spec.Coefficients:
+    first, second, third = values
+    return float(first), float(second), float(third)

@@ -1,0 +1,79 @@
+"""Faults of a request: where in the document, a code and a sentence. All of them are gathered before any is told."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic_core import from_json
+
+MOST_FAULTS = 1000
+_MOST_CHARACTERS = 200
+
+# A tagged union puts the name of its branch into a location; no field has one of these names.
+_UNION_BRANCHES = frozenset({"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range"})
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One fault: JSON pointer (RFC 6901) of the field, a code for programs and a sentence for people."""
+
+    pointer: str
+    code: str
+    detail: str
+
+    def __str__(self) -> str:
+        """Say where and what."""
+        return f"{self.pointer or '/'}: {self.detail}"
+
+
+class BadInput(ValueError):
+    """Raised when a document cannot be taken; `faults` holds everything that is wrong with it."""
+
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        """Take at least one fault."""
+        self.faults = tuple(faults)
+        super().__init__("; ".join(str(fault) for fault in self.faults))
+
+
+def parse_json(raw: bytes) -> Any:
+    """Return the value that a JSON text stands for; NaN and infinities pass, since the schema names their fields.
+
+    Raises
+    ------
+    BadInput
+        If it is no JSON, is not UTF-8, or is nested too deeply.
+    """
+    try:
+        return from_json(raw)
+    except ValueError as error:
+        raise BadInput([Fault("", "json_invalid", f"not valid JSON: {error}")]) from error
+
+
+def json_pointer(tokens: Iterable[object]) -> str:
+    """Join tokens into a JSON pointer; what a stranger wrote too long is cut."""
+    texts = (str(token)[:_MOST_CHARACTERS] for token in tokens)
+    return "".join("/" + text.replace("~", "~0").replace("/", "~1") for text in texts)
+
+
+def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0) -> list[Fault]:
+    """Turn pydantic's errors into faults; `skip` leaves out that many tokens at the beginning of each location."""
+    return [_fault(error, error["loc"][skip:]) for error in errors]
+
+
+def _fault(error: Mapping[str, Any], location: Sequence[int | str]) -> Fault:
+    tokens = [token for token in location if token not in _UNION_BRANCHES]
+    if error["type"] == "union_tag_not_found":
+        tokens.append("type")
+    code, detail = _wording(error)
+    return Fault(json_pointer(tokens), code, detail[: 2 * _MOST_CHARACTERS])
+
+
+def _wording(error: Mapping[str, Any]) -> tuple[str, str]:
+    code, detail = str(error["type"]), str(error["msg"])
+    if code == "extra_forbidden":
+        return "unknown_field", "unknown field"
+    if code in {"union_tag_not_found", "union_tag_invalid"}:
+        return "unknown_type", "type must be spacer, detuning_pendulum or airflow_spoiler"
+    if code in {"model_type", "model_attributes_type", "dict_type"}:
+        return "not_an_object", "must be an object"
+    return code, detail[:1].lower() + detail[1:]

@@ -1,0 +1,177 @@
+"""What is asked of a line: the analysis, a study over fields of the line, and the request that holds all three."""
+
+import math
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
+from pydantic.functional_validators import PlainValidator
+from pydantic_core import PydanticCustomError
+
+from app.schemas.fields import Document, quantity
+from app.schemas.line import Line
+
+STUDY_POINTS_LIMIT = 10_000
+_FASTEST_WIND = 100.0
+_LARGEST = 1e12
+
+WindSpeed = Annotated[float, Field(ge=0.01, le=_FASTEST_WIND)]
+Loops = Annotated[int, Field(ge=1, le=10)]
+
+
+class WindSpeedRange(Document):
+    """Evenly spaced wind speeds."""
+
+    start: float = quantity("start", "First wind speed", "m/s", (0.01, _FASTEST_WIND), 4.0)
+    stop: float = quantity("stop", "Last wind speed", "m/s", (0.01, _FASTEST_WIND), 6.0)
+    count: int = Field(
+        ge=2, le=1000, description="Number of wind speeds [1]", examples=[21], json_schema_extra={"unit": "1"}
+    )
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        if not self.start < self.stop:
+            raise PydanticCustomError("rising", "start must be below stop")
+        return self
+
+
+def _speeds_form(value: object) -> str:
+    return "range" if isinstance(value, dict | WindSpeedRange) else "list"
+
+
+WindSpeeds = Annotated[
+    Annotated[list[WindSpeed], Field(max_length=1000), Tag("list")] | Annotated[WindSpeedRange, Tag("range")],
+    Discriminator(_speeds_form),
+]
+
+
+class Analysis(Document):
+    """What is computed, and with which choices of the model."""
+
+    loops: list[Loops] = Field(
+        default=[1, 2],
+        min_length=1,
+        max_length=10,
+        description="Numbers of loops per span [1]",
+        examples=[[1, 2]],
+        json_schema_extra={"unit": "1"},
+    )
+    models: list[Literal["hybrid", "finite_element"]] = Field(
+        default=["hybrid", "finite_element"],
+        min_length=1,
+        max_length=2,
+        description="Three degrees of freedom per number of loops, or several modes a direction",
+        examples=[["hybrid", "finite_element"]],
+    )
+    wind_speeds: WindSpeeds = Field(
+        default=[4.0, 5.0, 6.0],
+        alias="wind_speeds_m_per_s",
+        description="Wind speeds for limit cycles: a list, or start, stop and count [m/s]",
+        examples=[[4.0, 5.0, 6.0], {"start": 4.0, "stop": 6.0, "count": 21}],
+        json_schema_extra={"unit": "m/s"},
+    )
+    closure: Literal["exact", "published"] = Field(
+        default="exact", description="How the angle of attack varies along the span", examples=["exact"]
+    )
+    aerodynamic_model: Literal["published", "relative_wind"] = Field(
+        default="published",
+        description="Which velocities turn the wind; relative_wind needs aerodynamics_at_rest",
+        examples=["published"],
+    )
+    longitudinal_inertia: Literal["neglected", "condensed"] = Field(
+        default="neglected", description="Longitudinal inertia in the hybrid model", examples=["neglected"]
+    )
+    critical_wind_limit: float = quantity(
+        "critical_wind_limit_m_per_s", "Critical wind speeds are sought up to here", "m/s", (0.1, 100.0), 30.0, 30.0
+    )
+    harmonics: int = Field(
+        default=5, ge=1, le=20, description="Harmonics of a cycle [1]", examples=[5], json_schema_extra={"unit": "1"}
+    )
+    finite_element_loops: list[Loops] = Field(
+        default=[1, 2, 3],
+        min_length=1,
+        max_length=10,
+        description="Loops of the modes in the finite element model [1]",
+        examples=[[1, 2, 3]],
+        json_schema_extra={"unit": "1"},
+    )
+
+    @model_validator(mode="after")
+    def _distinct(self) -> Self:
+        for name in ("loops", "models", "finite_element_loops"):
+            values = getattr(self, name)
+            if len(set(values)) != len(values):
+                raise PydanticCustomError("distinct", "{name} must be distinct", {"name": name})
+        return self
+
+    def speeds(self) -> tuple[float, ...]:
+        """Return the wind speeds one by one [m/s]."""
+        if isinstance(self.wind_speeds, WindSpeedRange):
+            span = self.wind_speeds
+            step = (span.stop - span.start) / (span.count - 1)
+            return (*(span.start + step * i for i in range(span.count - 1)), span.stop)
+        return tuple(self.wind_speeds)
+
+
+def _number_or_word(value: object) -> float | str:
+    """Take a finite number or a short word as it is.
+
+    Raises
+    ------
+    PydanticCustomError
+        If it is anything else.
+    """
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if number and -_LARGEST <= value <= _LARGEST:  # type: ignore[operator]  # false for NaN too
+        return value  # type: ignore[return-value]
+    if isinstance(value, str) and len(value) <= 40:
+        return value
+    raise PydanticCustomError("number_or_word", "must be a finite number, or a word that the field allows")
+
+
+AxisValue = Annotated[
+    Any,
+    PlainValidator(_number_or_word),
+    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "maxLength": 40}]}),
+]
+
+
+class Axis(Document):
+    """One field of the line and the values that it takes in turn."""
+
+    parameter: str = Field(
+        min_length=1,
+        max_length=120,
+        pattern=r"^[a-z][a-z0-9_]*(\.[a-z0-9_]+)+$",
+        description="Dotted path of a number or word of the line; list items by number: devices.0.position_m",
+        examples=["span.horizontal_tension_n"],
+    )
+    values: list[AxisValue] = Field(
+        min_length=1,
+        max_length=STUDY_POINTS_LIMIT,
+        description="Values in the field's own unit",
+        examples=[[24000, 30000, 36000]],
+    )
+
+
+class Study(Document):
+    """One or two fields of the line varied; every combination is a point."""
+
+    axes: list[Axis] = Field(min_length=1, max_length=2, description="The fields that vary; the last one fastest")
+
+    @model_validator(mode="after")
+    def _feasible(self) -> Self:
+        if len({axis.parameter for axis in self.axes}) != len(self.axes):
+            raise PydanticCustomError("distinct", "the axes must vary different fields")
+        points = math.prod(len(axis.values) for axis in self.axes)
+        if points > STUDY_POINTS_LIMIT:
+            context = {"points": points, "limit": STUDY_POINTS_LIMIT}
+            raise PydanticCustomError("too_many_points", "{points} points are more than {limit}", context)
+        return self
+
+
+class JobRequest(Document):
+    """A line, what is asked of it, and a study over some of its fields."""
+
+    line: Line = Field(description="The span")
+    analysis: Analysis = Field(default=Analysis(), description="What is asked")
+    study: Study | None = Field(default=None, description="Fields of the line to vary; none if absent")

@@ -1,0 +1,313 @@
+"""The line document: what a utility knows of one span. Attributes carry the engine's names, aliases the contract's."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from app.schemas.fields import LENGTH_LIMIT_M, Document, Label, TagKey, quantity
+
+Cubic = Annotated[list[Annotated[float, Field(ge=-1e4, le=1e4)]], Field(min_length=3, max_length=3)]
+Position = Annotated[list[Annotated[float, Field(ge=-5.0, le=5.0)]], Field(min_length=2, max_length=2)]
+
+_ON_SPAN = (0.0, LENGTH_LIMIT_M)
+_ECCENTRICITY = (-0.2, 0.2)
+_MASS = (0.01, 100.0)
+_RATIO = (1e-7, 0.99)
+
+
+def _one_way(given: list[bool], ways: str) -> None:
+    """Ask that exactly one of several ways to say the same is used.
+
+    Raises
+    ------
+    PydanticCustomError
+        If none or more than one is.
+    """
+    if sum(given) != 1:
+        raise PydanticCustomError("exactly_one", "give exactly one of {ways}", {"ways": ways})
+
+
+class Conductor(Document):
+    """One iced sub-conductor; mass and inertia include the ice."""
+
+    diameter: float = quantity("diameter_m", "Diameter of the bare sub-conductor", "m", (1e-3, 0.2), 0.0286)
+    axial_rigidity: float | None = quantity(
+        "axial_rigidity_n", "Axial rigidity EA; or give area and Young's modulus", "N", (1e4, 1e10), 28418105.8, None
+    )
+    area: float | None = quantity("area_m2", "Metallic area, with youngs_modulus_pa", "m2", (1e-6, 0.01), None, None)
+    youngs_modulus: float | None = quantity(
+        "youngs_modulus_pa", "Young's modulus, with area_m2", "Pa", (1e8, 1e12), None, None
+    )
+    torsional_rigidity: float = quantity("torsional_rigidity_n_m2", "Torsional rigidity GJ", "N m2", (1e-3, 1e5), 101.0)
+    axial_torsional_coupling: float = quantity(
+        "axial_torsional_coupling_n_m", "Axial-torsional coupling B_T", "N m", (-1e6, 1e6), 0.0, 0.0
+    )
+    mass: float = quantity("mass_kg_per_m", "Mass per length, iced", "kg/m", _MASS, 2.379)
+    polar_inertia: float = quantity(
+        "polar_inertia_kg_m", "Polar inertia per length about the bare centre, iced", "kg m", (1e-7, 10.0), 3.334e-4
+    )
+
+    @model_validator(mode="after")
+    def _one_rigidity(self) -> Self:
+        pair = [self.area is not None, self.youngs_modulus is not None]
+        ways = "axial_rigidity_n, and area_m2 with youngs_modulus_pa"
+        _one_way([self.axial_rigidity is not None, any(pair)], ways)
+        _one_way([self.axial_rigidity is not None, all(pair)], ways)
+        return self
+
+
+class Bundle(Document):
+    """Arrangement of the sub-conductors: regular on a circle, or any positions."""
+
+    subconductors: int | None = Field(
+        default=None, ge=1, le=12, description="Number on the circle [1]", examples=[2], json_schema_extra={"unit": "1"}
+    )
+    radius: float | None = quantity(
+        "radius_m", "Radius of the circle; 0 or absent for one sub-conductor", "m", (0.0, 5.0), 0.2355, None
+    )
+    orientation: float | None = quantity(
+        "orientation_deg", "First sub-conductor, clockwise from straight up", "deg", (-360.0, 360.0), 90.0, None
+    )
+    positions: list[Position] | None = Field(
+        default=None,
+        alias="positions_m",
+        min_length=1,
+        max_length=32,
+        description="Or positions (y up, z downwind) of the centres about the reference curve [m]",
+        examples=[None],
+        json_schema_extra={"unit": "m"},
+    )
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        circle = any(value is not None for value in (self.subconductors, self.radius, self.orientation))
+        _one_way(
+            [circle, self.positions is not None], "subconductors (with radius_m, orientation_deg), and positions_m"
+        )
+        if self.positions is None and self.subconductors is None:
+            raise PydanticCustomError("missing", "subconductors is needed for a regular bundle")
+        return self
+
+
+class Span(Document):
+    """A level span, and exactly one measure of how tight it is."""
+
+    length: float = quantity("length_m", "Horizontal length", "m", (1.0, LENGTH_LIMIT_M), 125.88)
+    horizontal_tension: float | None = quantity(
+        "horizontal_tension_n", "Horizontal tension of one iced sub-conductor", "N", (10.0, 1e6), 30000.0, None
+    )
+    catenary_parameter: float | None = quantity(
+        "catenary_parameter_m",
+        "Or catenary parameter: tension over weight per length, iced",
+        "m",
+        (1.0, 1e5),
+        None,
+        None,
+    )
+    sag: float | None = quantity("sag_m", "Or sag at mid-span, iced", "m", (1e-3, 1000.0), None, None)
+    elements: int = Field(
+        default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"unit": "1"}
+    )
+
+    @model_validator(mode="after")
+    def _one_measure(self) -> Self:
+        measures = (self.horizontal_tension, self.catenary_parameter, self.sag)
+        ways = "horizontal_tension_n, catenary_parameter_m and sag_m"
+        _one_way([value is not None for value in measures], ways)
+        return self
+
+
+class Support(Document):
+    """One end of the span."""
+
+    dead_end: bool = Field(default=False, description="Whether the end holds the conductor fast", examples=[False])
+    adjacent_span: float | None = quantity(
+        "adjacent_span_m",
+        "Length of the span beyond; this one's length if null",
+        "m",
+        (1.0, LENGTH_LIMIT_M),
+        150.0,
+        None,
+    )
+    insulator_length: float | None = quantity(
+        "insulator_length_m", "Length of the suspension insulator string", "m", (0.01, 30.0), 2.0, None
+    )
+    insulator_weight: float = quantity(
+        "insulator_weight_n", "Weight of the string per sub-conductor", "N", (0.0, 1e5), 0.0, 0.0
+    )
+
+
+class Supports(Document):
+    """Both ends; a given longitudinal stiffness overrides what they would give."""
+
+    longitudinal_stiffness: float | None = quantity(
+        "longitudinal_stiffness_n_per_m",
+        "Stiffness at both ends, per sub-conductor",
+        "N/m",
+        (1e-3, 1e12),
+        1.285e5,
+        None,
+    )
+    left: Support = Field(default=Support(), description="Left end")
+    right: Support = Field(default=Support(), description="Right end")
+
+
+class Aerodynamics(Document):
+    """Cubic coefficients a_i1, a_i2, a_i3 of one sub-conductor over the angle of attack in radians."""
+
+    vertical: Cubic = Field(
+        description="a_y1, a_y2, a_y3 [1/rad, 1/rad2, 1/rad3]",
+        examples=[[-0.1667, -4.0547, 8.3581]],
+        json_schema_extra={"unit": "1/rad^j"},
+    )
+    horizontal: Cubic = Field(
+        description="a_z1, a_z2, a_z3 [1/rad, 1/rad2, 1/rad3]",
+        examples=[[0.8605, 0.8325, 1.7815]],
+        json_schema_extra={"unit": "1/rad^j"},
+    )
+    torsional: Cubic = Field(
+        description="a_theta1, a_theta2, a_theta3 [1/rad, 1/rad2, 1/rad3]",
+        examples=[[-0.7272, 0.2935, 5.9704]],
+        json_schema_extra={"unit": "1/rad^j"},
+    )
+
+
+class AerodynamicsAtRest(Document):
+    """Coefficients at the static angle, which the relative-wind model needs."""
+
+    vertical: float = quantity("vertical", "a_y0", "1", (-1e3, 1e3), 0.0)
+    horizontal: float = quantity("horizontal", "a_z0", "1", (-1e3, 1e3), 1.0)
+    torsional: float = quantity("torsional", "a_theta0", "1", (-1e3, 1e3), 0.0)
+
+
+class IceSegment(Document):
+    """A stretch of other ice; what it names overrides what holds on the span."""
+
+    start: float = quantity("from_m", "Where the stretch begins", "m", _ON_SPAN, 0.0)
+    stop: float = quantity("to_m", "Where the stretch ends", "m", _ON_SPAN, 62.94)
+    aerodynamics: Aerodynamics | None = Field(default=None, description="Coefficients on the stretch")
+    at_rest: AerodynamicsAtRest | None = Field(
+        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest on the stretch"
+    )
+    eccentricity_y: float | None = quantity(
+        "eccentricity_y_m", "Eccentricity upward on the stretch", "m", _ECCENTRICITY, 1e-3, None
+    )
+    eccentricity_z: float | None = quantity(
+        "eccentricity_z_m", "Eccentricity downwind on the stretch", "m", _ECCENTRICITY, 0.0, None
+    )
+    mass: float | None = quantity("mass_kg_per_m", "Mass per length, iced, on the stretch", "kg/m", _MASS, 2.3, None)
+
+    @model_validator(mode="after")
+    def _rest_of_something(self) -> Self:
+        if self.at_rest is not None and self.aerodynamics is None:
+            raise PydanticCustomError("missing", "aerodynamics_at_rest needs aerodynamics beside it")
+        return self
+
+
+class Ice(Document):
+    """Ice of the span: where its mass lies and how the wind acts on it."""
+
+    eccentricity_y: float = quantity(
+        "eccentricity_y_m", "Mass centre of the iced section, upward", "m", _ECCENTRICITY, 2.05e-3, 0.0
+    )
+    eccentricity_z: float = quantity(
+        "eccentricity_z_m", "Mass centre of the iced section, downwind", "m", _ECCENTRICITY, -0.63e-3, 0.0
+    )
+    aerodynamics: Aerodynamics = Field(description="Coefficients of one iced sub-conductor")
+    at_rest: AerodynamicsAtRest | None = Field(
+        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest, for the relative-wind model"
+    )
+    segments: list[IceSegment] = Field(default=[], max_length=200, description="Stretches of other ice; none overlap")
+
+
+class ProfilePoint(Document):
+    """The wind at one position, as a multiple of the wind speed of the analysis."""
+
+    position: float = quantity("position_m", "Distance from the left support", "m", _ON_SPAN, 0.0)
+    factor: float = quantity("factor", "Wind speed there over the wind speed", "1", (0.01, 10.0), 0.7)
+
+
+class BlowOut(Document):
+    """Mean drag that turns the plane of the sag."""
+
+    wind_speed: float = quantity("wind_speed_m_per_s", "Reference wind speed", "m/s", (0.0, 100.0), 10.0)
+    drag_coefficient: float = quantity("drag_coefficient", "Mean drag coefficient", "1", (0.0, 10.0), 1.0)
+
+
+class Wind(Document):
+    """The wind apart from its speed."""
+
+    air_density: float = quantity("air_density_kg_per_m3", "Density of the air", "kg/m3", (0.3, 2.0), 1.2929, 1.2929)
+    blow_out: BlowOut | None = Field(default=None, description="Blow-out by the mean drag; none if null")
+    profile: list[ProfilePoint] = Field(
+        default=[], max_length=200, description="Wind along the span, linear between the points; uniform if empty"
+    )
+
+
+class Damping(Document):
+    """Structural damping as ratios of critical damping."""
+
+    vertical_ratio: float = quantity("vertical_ratio", "Vertical damping ratio", "1", _RATIO, 0.000515)
+    horizontal_ratio: float = quantity("horizontal_ratio", "Horizontal damping ratio", "1", _RATIO, 0.000515)
+    torsional_ratio: float = quantity("torsional_ratio", "Torsional damping ratio", "1", _RATIO, 0.308)
+    model: Literal["constant_coefficient", "constant_ratio"] = Field(
+        default="constant_coefficient",
+        description="What is the same for every number of loops",
+        examples=["constant_coefficient"],
+    )
+
+
+class Spacer(Document):
+    """A rigid spacer."""
+
+    type: Literal["spacer"] = Field(description="Kind of device", examples=["spacer"])
+    position: float = quantity("position_m", "Distance from the left support", "m", _ON_SPAN, 25.0)
+    mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 6.5)
+    polar_inertia: float = quantity(
+        "polar_inertia_kg_m2", "Polar inertia about the reference curve", "kg m2", (0.0, 1e4), 0.4
+    )
+
+
+class DetuningPendulum(Document):
+    """A mass on a rigid arm below the reference curve."""
+
+    type: Literal["detuning_pendulum"] = Field(description="Kind of device", examples=["detuning_pendulum"])
+    position: float = quantity("position_m", "Distance from the left support", "m", _ON_SPAN, 62.94)
+    mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 12.0)
+    arm: float = quantity("arm_m", "Length of the arm from the reference curve", "m", (1e-3, 10.0), 0.35)
+    angle: float = quantity("angle_deg", "From straight down, positive downwind", "deg", (-360.0, 360.0), 0.0, 0.0)
+
+
+class AirflowSpoiler(Document):
+    """A stretch on which the wind acts otherwise."""
+
+    type: Literal["airflow_spoiler"] = Field(description="Kind of device", examples=["airflow_spoiler"])
+    start: float = quantity("from_m", "Where the stretch begins", "m", _ON_SPAN, 30.0)
+    stop: float = quantity("to_m", "Where the stretch ends", "m", _ON_SPAN, 60.0)
+    aerodynamics: Aerodynamics = Field(description="Coefficients of one sub-conductor on the stretch")
+    at_rest: AerodynamicsAtRest | None = Field(
+        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest on the stretch"
+    )
+    mass: float = quantity("mass_kg_per_m", "Added mass per length of a sub-conductor", "kg/m", (0.0, 100.0), 0.3, 0.0)
+
+
+Device = Annotated[Spacer | DetuningPendulum | AirflowSpoiler, Field(discriminator="type")]
+
+
+class Line(Document):
+    """One iced span with everything that its motion depends on."""
+
+    name: Label | None = Field(default=None, description="Name for people", examples=["C11 twin, 126 m"])
+    asset_id: Label | None = Field(default=None, description="Identity in the owner's records", examples=["L204-S017"])
+    tags: Annotated[dict[TagKey, Label], Field(max_length=50)] = Field(
+        default={}, description="Labels to find jobs by; a key has no colon", examples=[{"region": "north"}]
+    )
+    conductor: Conductor = Field(description="One iced sub-conductor")
+    bundle: Bundle = Field(default=Bundle(subconductors=1), description="Arrangement; one sub-conductor if absent")
+    span: Span = Field(description="Length and tightness")
+    supports: Supports = Field(default=Supports(), description="What holds the ends")
+    ice: Ice = Field(description="Ice")
+    wind: Wind = Field(default=Wind(), description="Wind apart from its speed")
+    damping: Damping = Field(description="Structural damping")
+    devices: list[Device] = Field(default=[], max_length=200, description="Spacers, pendulums and spoilers")
