@@ -20,6 +20,7 @@ _STILL = spec.Aerodynamics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), at
 _NEUTRAL_CONDUCTOR = spec.Conductor(0.03, 1e7, 100.0, 1e-3, 1e3)
 _NEUTRAL_SPAN = spec.Span(1e9, horizontal_tension=1e4, elements=1000)
 _NEUTRAL_DAMPING = spec.Damping(0.01, 0.01, 0.01)
+_NEUTRAL_DEVICE: spec.Device = spec.Spacer(0.0, 0.0, 0.0)
 _NEUTRAL_ANALYSIS = spec.Analysis(loops=(1,), finite_element_loops=(1,))
 
 
@@ -129,10 +130,10 @@ def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
 
 
 def _device(index: int, part: schemas.Device | None, gathered: Gathered) -> spec.Device:
-    path, neutral = f"devices.{index}", spec.Spacer(0.0, 0.0, 0.0)
+    path = f"devices.{index}"
     if part is None:
-        return gathered.settle(path, None, neutral)
-    return gathered.settle(path, gathered.attempt(f"{path}.", lambda: parts.device(part)), neutral)
+        return gathered.settle(path, None, _NEUTRAL_DEVICE)
+    return gathered.settle(path, gathered.attempt(f"{path}.", lambda: parts.device(part)), _NEUTRAL_DEVICE)
 
 
 def _ice(ice: schemas.Ice, gathered: Gathered) -> spec.Ice:

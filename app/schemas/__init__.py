@@ -1,26 +1,18 @@
 """The JSON that goes in and comes out, as pydantic models: names, units, bounds and examples of the contract."""
 
 from app.schemas.analysis import Analysis, Axis, JobRequest, Study, WindSpeedRange
-from app.schemas.line import (
+from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
+from app.schemas.environment import (
     Aerodynamics,
     AerodynamicsAtRest,
-    AirflowSpoiler,
     BlowOut,
-    Bundle,
-    Conductor,
     Damping,
-    DetuningPendulum,
-    Device,
     Ice,
     IceSegment,
-    Line,
     ProfilePoint,
-    Spacer,
-    Span,
-    Support,
-    Supports,
     Wind,
 )
+from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
 
 __all__ = [
     "Aerodynamics",

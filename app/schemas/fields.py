@@ -7,6 +7,9 @@ from pydantic import BaseModel, ConfigDict, Field
 LENGTH_LIMIT_M = 5000.0
 """Longest span and farthest position that is taken for plausible [m]."""
 
+ON_SPAN = (0.0, LENGTH_LIMIT_M)
+ICED_MASS = (0.01, 100.0)
+
 # Control characters have no place in a name, and PostgreSQL stores no NUL.
 _PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 

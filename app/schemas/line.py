@@ -1,19 +1,15 @@
 """The line document: what a utility knows of one span. Attributes carry the engine's names, aliases the contract's."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from app.schemas.fields import LENGTH_LIMIT_M, Document, Label, TagKey, quantity
+from app.schemas.devices import Device
+from app.schemas.environment import Damping, Ice, Wind
+from app.schemas.fields import ICED_MASS, LENGTH_LIMIT_M, Document, Label, TagKey, quantity
 
-Cubic = Annotated[list[Annotated[float, Field(ge=-1e4, le=1e4)]], Field(min_length=3, max_length=3)]
 Position = Annotated[list[Annotated[float, Field(ge=-5.0, le=5.0)]], Field(min_length=2, max_length=2)]
-
-_ON_SPAN = (0.0, LENGTH_LIMIT_M)
-_ECCENTRICITY = (-0.2, 0.2)
-_MASS = (0.01, 100.0)
-_RATIO = (1e-7, 0.99)
 
 
 def _one_way(given: list[bool], ways: str) -> None:
@@ -43,7 +39,7 @@ class Conductor(Document):
     axial_torsional_coupling: float = quantity(
         "axial_torsional_coupling_n_m", "Axial-torsional coupling B_T", "N m", (-1e6, 1e6), 0.0, 0.0
     )
-    mass: float = quantity("mass_kg_per_m", "Mass per length, iced", "kg/m", _MASS, 2.379)
+    mass: float = quantity("mass_kg_per_m", "Mass per length, iced", "kg/m", ICED_MASS, 2.379)
     polar_inertia: float = quantity(
         "polar_inertia_kg_m", "Polar inertia per length about the bare centre, iced", "kg m", (1e-7, 10.0), 3.334e-4
     )
@@ -151,148 +147,6 @@ class Supports(Document):
     )
     left: Support = Field(default=Support(), description="Left end")
     right: Support = Field(default=Support(), description="Right end")
-
-
-class Aerodynamics(Document):
-    """Cubic coefficients a_i1, a_i2, a_i3 of one sub-conductor over the angle of attack in radians."""
-
-    vertical: Cubic = Field(
-        description="a_y1, a_y2, a_y3 [1/rad, 1/rad2, 1/rad3]",
-        examples=[[-0.1667, -4.0547, 8.3581]],
-        json_schema_extra={"unit": "1/rad^j"},
-    )
-    horizontal: Cubic = Field(
-        description="a_z1, a_z2, a_z3 [1/rad, 1/rad2, 1/rad3]",
-        examples=[[0.8605, 0.8325, 1.7815]],
-        json_schema_extra={"unit": "1/rad^j"},
-    )
-    torsional: Cubic = Field(
-        description="a_theta1, a_theta2, a_theta3 [1/rad, 1/rad2, 1/rad3]",
-        examples=[[-0.7272, 0.2935, 5.9704]],
-        json_schema_extra={"unit": "1/rad^j"},
-    )
-
-
-class AerodynamicsAtRest(Document):
-    """Coefficients at the static angle, which the relative-wind model needs."""
-
-    vertical: float = quantity("vertical", "a_y0", "1", (-1e3, 1e3), 0.0)
-    horizontal: float = quantity("horizontal", "a_z0", "1", (-1e3, 1e3), 1.0)
-    torsional: float = quantity("torsional", "a_theta0", "1", (-1e3, 1e3), 0.0)
-
-
-class IceSegment(Document):
-    """A stretch of other ice; what it names overrides what holds on the span."""
-
-    start: float = quantity("from_m", "Where the stretch begins", "m", _ON_SPAN, 0.0)
-    stop: float = quantity("to_m", "Where the stretch ends", "m", _ON_SPAN, 62.94)
-    aerodynamics: Aerodynamics | None = Field(default=None, description="Coefficients on the stretch")
-    at_rest: AerodynamicsAtRest | None = Field(
-        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest on the stretch"
-    )
-    eccentricity_y: float | None = quantity(
-        "eccentricity_y_m", "Eccentricity upward on the stretch", "m", _ECCENTRICITY, 1e-3, None
-    )
-    eccentricity_z: float | None = quantity(
-        "eccentricity_z_m", "Eccentricity downwind on the stretch", "m", _ECCENTRICITY, 0.0, None
-    )
-    mass: float | None = quantity("mass_kg_per_m", "Mass per length, iced, on the stretch", "kg/m", _MASS, 2.3, None)
-
-    @model_validator(mode="after")
-    def _rest_of_something(self) -> Self:
-        if self.at_rest is not None and self.aerodynamics is None:
-            raise PydanticCustomError("missing", "aerodynamics_at_rest needs aerodynamics beside it")
-        return self
-
-
-class Ice(Document):
-    """Ice of the span: where its mass lies and how the wind acts on it."""
-
-    eccentricity_y: float = quantity(
-        "eccentricity_y_m", "Mass centre of the iced section, upward", "m", _ECCENTRICITY, 2.05e-3, 0.0
-    )
-    eccentricity_z: float = quantity(
-        "eccentricity_z_m", "Mass centre of the iced section, downwind", "m", _ECCENTRICITY, -0.63e-3, 0.0
-    )
-    aerodynamics: Aerodynamics = Field(description="Coefficients of one iced sub-conductor")
-    at_rest: AerodynamicsAtRest | None = Field(
-        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest, for the relative-wind model"
-    )
-    segments: list[IceSegment] = Field(default=[], max_length=200, description="Stretches of other ice; none overlap")
-
-
-class ProfilePoint(Document):
-    """The wind at one position, as a multiple of the wind speed of the analysis."""
-
-    position: float = quantity("position_m", "Distance from the left support", "m", _ON_SPAN, 0.0)
-    factor: float = quantity("factor", "Wind speed there over the wind speed", "1", (0.01, 10.0), 0.7)
-
-
-class BlowOut(Document):
-    """Mean drag that turns the plane of the sag."""
-
-    wind_speed: float = quantity("wind_speed_m_per_s", "Reference wind speed", "m/s", (0.0, 100.0), 10.0)
-    drag_coefficient: float = quantity("drag_coefficient", "Mean drag coefficient", "1", (0.0, 10.0), 1.0)
-
-
-class Wind(Document):
-    """The wind apart from its speed."""
-
-    air_density: float = quantity("air_density_kg_per_m3", "Density of the air", "kg/m3", (0.3, 2.0), 1.2929, 1.2929)
-    blow_out: BlowOut | None = Field(default=None, description="Blow-out by the mean drag; none if null")
-    profile: list[ProfilePoint] = Field(
-        default=[], max_length=200, description="Wind along the span, linear between the points; uniform if empty"
-    )
-
-
-class Damping(Document):
-    """Structural damping as ratios of critical damping."""
-
-    vertical_ratio: float = quantity("vertical_ratio", "Vertical damping ratio", "1", _RATIO, 0.000515)
-    horizontal_ratio: float = quantity("horizontal_ratio", "Horizontal damping ratio", "1", _RATIO, 0.000515)
-    torsional_ratio: float = quantity("torsional_ratio", "Torsional damping ratio", "1", _RATIO, 0.308)
-    model: Literal["constant_coefficient", "constant_ratio"] = Field(
-        default="constant_coefficient",
-        description="What is the same for every number of loops",
-        examples=["constant_coefficient"],
-    )
-
-
-class Spacer(Document):
-    """A rigid spacer."""
-
-    type: Literal["spacer"] = Field(description="Kind of device", examples=["spacer"])
-    position: float = quantity("position_m", "Distance from the left support", "m", _ON_SPAN, 25.0)
-    mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 6.5)
-    polar_inertia: float = quantity(
-        "polar_inertia_kg_m2", "Polar inertia about the reference curve", "kg m2", (0.0, 1e4), 0.4
-    )
-
-
-class DetuningPendulum(Document):
-    """A mass on a rigid arm below the reference curve."""
-
-    type: Literal["detuning_pendulum"] = Field(description="Kind of device", examples=["detuning_pendulum"])
-    position: float = quantity("position_m", "Distance from the left support", "m", _ON_SPAN, 62.94)
-    mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 12.0)
-    arm: float = quantity("arm_m", "Length of the arm from the reference curve", "m", (1e-3, 10.0), 0.35)
-    angle: float = quantity("angle_deg", "From straight down, positive downwind", "deg", (-360.0, 360.0), 0.0, 0.0)
-
-
-class AirflowSpoiler(Document):
-    """A stretch on which the wind acts otherwise."""
-
-    type: Literal["airflow_spoiler"] = Field(description="Kind of device", examples=["airflow_spoiler"])
-    start: float = quantity("from_m", "Where the stretch begins", "m", _ON_SPAN, 30.0)
-    stop: float = quantity("to_m", "Where the stretch ends", "m", _ON_SPAN, 60.0)
-    aerodynamics: Aerodynamics = Field(description="Coefficients of one sub-conductor on the stretch")
-    at_rest: AerodynamicsAtRest | None = Field(
-        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest on the stretch"
-    )
-    mass: float = quantity("mass_kg_per_m", "Added mass per length of a sub-conductor", "kg/m", (0.0, 100.0), 0.3, 0.0)
-
-
-Device = Annotated[Spacer | DetuningPendulum | AirflowSpoiler, Field(discriminator="type")]
 
 
 class Line(Document):

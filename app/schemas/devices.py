@@ -1,0 +1,45 @@
+"""Devices that are mounted on a span."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from app.schemas.environment import Aerodynamics, AerodynamicsAtRest
+from app.schemas.fields import ON_SPAN, Document, quantity
+
+
+class Spacer(Document):
+    """A rigid spacer."""
+
+    type: Literal["spacer"] = Field(description="Kind of device", examples=["spacer"])
+    position: float = quantity("position_m", "Distance from the left support", "m", ON_SPAN, 25.0)
+    mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 6.5)
+    polar_inertia: float = quantity(
+        "polar_inertia_kg_m2", "Polar inertia about the reference curve", "kg m2", (0.0, 1e4), 0.4
+    )
+
+
+class DetuningPendulum(Document):
+    """A mass on a rigid arm below the reference curve."""
+
+    type: Literal["detuning_pendulum"] = Field(description="Kind of device", examples=["detuning_pendulum"])
+    position: float = quantity("position_m", "Distance from the left support", "m", ON_SPAN, 62.94)
+    mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 12.0)
+    arm: float = quantity("arm_m", "Length of the arm from the reference curve", "m", (1e-3, 10.0), 0.35)
+    angle: float = quantity("angle_deg", "From straight down, positive downwind", "deg", (-360.0, 360.0), 0.0, 0.0)
+
+
+class AirflowSpoiler(Document):
+    """A stretch on which the wind acts otherwise."""
+
+    type: Literal["airflow_spoiler"] = Field(description="Kind of device", examples=["airflow_spoiler"])
+    start: float = quantity("from_m", "Where the stretch begins", "m", ON_SPAN, 30.0)
+    stop: float = quantity("to_m", "Where the stretch ends", "m", ON_SPAN, 60.0)
+    aerodynamics: Aerodynamics = Field(description="Coefficients of one sub-conductor on the stretch")
+    at_rest: AerodynamicsAtRest | None = Field(
+        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest on the stretch"
+    )
+    mass: float = quantity("mass_kg_per_m", "Added mass per length of a sub-conductor", "kg/m", (0.0, 100.0), 0.3, 0.0)
+
+
+Device = Annotated[Spacer | DetuningPendulum | AirflowSpoiler, Field(discriminator="type")]
