@@ -1,0 +1,66 @@
+"""A worker: `python -m worker` keeps a pool of processes running, and sweeps."""
+
+import logging
+import os
+import signal
+import socket
+import sys
+from uuid import uuid4
+
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import processes
+from app.db import make_engine, session_factory
+from app.settings import Settings, get_settings
+from worker.sweep import release, sweep
+from worker.tasks import OWNER
+
+_MARGIN_SECONDS = 5.0
+
+_logger = logging.getLogger(__name__)
+
+
+def main() -> int:
+    """Run until SIGTERM or SIGINT; a pool that dies is replaced, and its jobs go back to the queue at once."""
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    processes.end_with_parent()
+    settings = get_settings()
+    engine = make_engine(settings)
+    try:
+        _supervise(session_factory(engine), settings, f"{socket.gethostname()}:{os.getpid()}:{uuid4().hex[:8]}")
+    finally:
+        engine.dispose()
+    return 0
+
+
+def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) -> None:
+    with processes.until_stopped() as wait:
+        pool = _start_pool(settings, owner)
+        while not wait(settings.sweep_seconds):
+            if pool.poll() is not None:
+                _logger.warning("the pool ended with code %s and is started again", pool.returncode)
+                _repair(sessions, settings, owner)
+                pool = _start_pool(settings, owner)
+            _repair(sessions, settings)
+        # SIGQUIT gives running jobs the shutdown time and then ends them, where SIGTERM would wait for ever.
+        processes.stop([pool], signal.SIGQUIT, settings.shutdown_seconds + _MARGIN_SECONDS)
+        _repair(sessions, settings, owner)
+
+
+def _start_pool(settings: Settings, owner: str) -> processes.Child:
+    return processes.start(settings, "worker.tasks", extra={OWNER: owner})
+
+
+def _repair(sessions: sessionmaker[Session], settings: Settings, owner: str | None = None) -> None:
+    try:
+        if owner is None:
+            sweep(sessions, settings)
+        else:
+            release(sessions, settings, owner)
+    except SQLAlchemyError as error:
+        _logger.warning("the database failed, to be tried again: %s", error)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

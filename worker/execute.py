@@ -1,0 +1,139 @@
+"""One job from claim to end: runs the engine under a lease, and stores what came of it in one transaction."""
+
+import logging
+import threading
+import time
+from types import TracebackType
+from typing import Self
+from uuid import UUID
+
+from celery.exceptions import SoftTimeLimitExceeded
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import convert, leases
+from app.convert import Advance, PointResult
+from app.db import make_engine, session_factory
+from app.leases import Beat, Claim, Failure
+from app.settings import Settings
+from app.tables import FailureKind
+from engine.outcome import InvalidSpec
+
+_logger = logging.getLogger(__name__)
+
+
+def run_job(settings: Settings, job_id: UUID, owner: str) -> None:
+    """Run a job with database connections of its own, since a forked process must not share its parent's."""
+    engine = make_engine(settings)
+    try:
+        execute(session_factory(engine), settings, job_id, owner)
+    finally:
+        engine.dispose()
+
+
+def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, owner: str) -> None:
+    """Claim a job, compute it, and end it; do nothing if it is not to be had, as after a second delivery.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If the database fails at the claim or at the end; the lease then runs out and the job is run again.
+    """
+    with sessions.begin() as session:
+        held = leases.claim(session, job_id, owner, settings.lease_seconds)
+    if held is None:
+        _logger.info("job %s is not waiting for a worker", job_id)
+        return
+    points: list[PointResult] = []
+    with Pulse(sessions, held, settings) as pulse:
+        failure = _compute(held, settings, pulse, points)
+    with sessions.begin() as session:
+        ended = _conclude(session, held, pulse.verdict, failure, points)
+    if not ended:
+        _logger.warning("job %s was taken from attempt %d, whose results are dropped", job_id, held.attempt)
+
+
+class Pulse:
+    """A thread that renews the lease and writes the progress, however long a step of the engine takes.
+
+    `verdict` tells what the last heartbeat learned.
+    """
+
+    def __init__(self, sessions: sessionmaker[Session], held: Claim, settings: Settings) -> None:
+        """Take what the heartbeats need; they begin with the `with` statement."""
+        self.verdict = Beat.GO_ON
+        self._sessions, self._held, self._settings = sessions, held, settings
+        self._latest = Advance(0.0, "")
+        self._stopped = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="heartbeat", daemon=True)
+
+    def report(self, advance: Advance) -> None:
+        """Note how far the job is, for the next heartbeat."""
+        self._latest = advance
+
+    def __enter__(self) -> Self:
+        """Start beating."""
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop beating, before the end of the job is written."""
+        self._stopped.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while self.verdict is Beat.GO_ON and not self._stopped.wait(self._settings.heartbeat_seconds):
+            try:
+                self._beat()
+            except SQLAlchemyError as error:
+                _logger.warning("job %s misses a heartbeat: %s", self._held.job_id, error)
+
+    def _beat(self) -> None:
+        latest = self._latest
+        with self._sessions.begin() as session:
+            lease = self._settings.lease_seconds
+            self.verdict = leases.heartbeat(session, self._held, lease, latest.fraction, latest.step)
+
+
+def _compute(held: Claim, settings: Settings, pulse: Pulse, points: list[PointResult]) -> Failure | None:
+    """Run the engine and collect the points, until it ends, fails, runs too long, or a heartbeat says stop."""
+    try:
+        _collect(held, settings, pulse, points)
+    except InvalidSpec as error:
+        return Failure(FailureKind.INPUT, str(error))
+    except SoftTimeLimitExceeded:
+        return Failure(FailureKind.TIME_LIMIT, leases.time_limit_sentence(settings))
+    except Exception as error:
+        _logger.exception("job %s failed in attempt %d", held.job_id, held.attempt)
+        sentence = f"The computation stopped on an internal error ({type(error).__name__}); the log has the details."
+        return Failure(FailureKind.INTERNAL, sentence)
+    failures = [point.failure for point in points if point.failure is not None]
+    if failures and len(failures) == len(points):
+        return Failure(FailureKind.NO_CONVERGENCE, failures[0])
+    return None
+
+
+def _collect(held: Claim, settings: Settings, pulse: Pulse, points: list[PointResult]) -> None:
+    deadline = time.monotonic() + settings.soft_time_limit_seconds
+    for item in convert.run(held.document):
+        if isinstance(item, PointResult):
+            points.append(item)
+        else:
+            pulse.report(item)
+        if pulse.verdict is not Beat.GO_ON:
+            return
+        if time.monotonic() > deadline:
+            raise SoftTimeLimitExceeded
+
+
+def _conclude(session: Session, held: Claim, verdict: Beat, failure: Failure | None, points: list[PointResult]) -> bool:
+    """Write the end of the job; False if it belongs to a later attempt."""
+    if verdict is Beat.LOST:
+        return False
+    if verdict is Beat.CANCEL:
+        return leases.dismiss(session, held)
+    if failure is not None:
+        return leases.fail(session, held, failure, points)
+    return leases.finish(session, held, points)

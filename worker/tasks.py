@@ -1,0 +1,60 @@
+"""The Celery side of a worker: one thin task, and the process that runs the pool (`python -m worker.tasks`)."""
+
+import os
+from uuid import UUID
+
+from celery import Celery
+
+from app.processes import end_with_parent
+from app.queue import TASK_NAME, celery_application
+from app.settings import Settings, get_settings
+from worker.execute import run_job
+
+OWNER = "GALLOPING_WORKER_OWNER"
+
+
+def worker_application(settings: Settings, owner: str) -> Celery:
+    """Make the Celery application of a worker, whose leases carry the owner's name."""
+    application = celery_application(settings)
+    application.conf.update(_worker_options(settings))
+
+    @application.task(name=TASK_NAME)
+    def run(job_id: str) -> None:
+        run_job(settings, UUID(job_id), owner)
+
+    return application
+
+
+def _worker_options(settings: Settings) -> dict[str, object]:
+    transport_options = dict(celery_application(settings).conf.broker_transport_options)
+    if "socket_timeout" in transport_options:
+        # Unlike a sender, a worker waits in blocking reads of a second, and nobody waits for the worker.
+        transport_options |= {"socket_timeout": 10.0, "health_check_interval": 10, "max_retries": None}
+    return {
+        "broker_transport_options": transport_options,
+        "broker_connection_retry_on_startup": True,
+        "broker_connection_max_retries": None,
+        "task_acks_late": True,
+        "task_reject_on_worker_lost": True,
+        "task_soft_time_limit": settings.soft_time_limit_seconds,
+        "task_time_limit": settings.hard_time_limit_seconds,
+        "worker_cancel_long_running_tasks_on_connection_loss": False,
+        "worker_concurrency": settings.worker_processes,
+        "worker_hijack_root_logger": False,
+        "worker_max_tasks_per_child": settings.max_jobs_per_process,
+        "worker_pool": "prefork",
+        "worker_prefetch_multiplier": 1,
+        "worker_send_task_events": False,
+        "worker_soft_shutdown_timeout": settings.shutdown_seconds,
+    }
+
+
+def _run_pool() -> None:
+    end_with_parent()
+    application = worker_application(get_settings(), os.environ[OWNER])
+    quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat"]
+    application.worker_main(["--quiet", "worker", "--loglevel=WARNING", *quiet])
+
+
+if __name__ == "__main__":
+    _run_pool()
