@@ -55,9 +55,7 @@ def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     """
     terms = polynomial.powers(_local(load, state))
     table = load.table.swapaxes(-1, -2)
-    return np.asarray(
-        terms.reshape(*terms.shape[:-2], -1) @ table.reshape(*table.shape[:-3], -1, table.shape[-1])
-    )
+    return np.asarray(terms.reshape(*terms.shape[:-2], -1) @ table.reshape(*table.shape[:-3], -1, table.shape[-1]))
 
 
 def force_gradient(load: PolynomialLoad, state: FloatArray) -> FloatArray:
@@ -111,7 +109,9 @@ def span_load(
     else:
         forms, local = _wind_forms(points, diameter, factor), relative_wind_table(coefficients)
     strength = 0.5 * diameter * factor**2 * weight.reshape(len(lines), 1, -1)
-    strength = strength * np.array([line.wind.air_density * len(line.bundle.positions) for line in lines])[:, None, None]
+    strength = (
+        strength * np.array([line.wind.air_density * len(line.bundle.positions) for line in lines])[:, None, None]
+    )
     arm = np.concatenate([np.ones((len(lines), 1, 1, 2)), diameter[..., None]], axis=-1)
     outputs = np.moveaxis(points, -1, 2) * (strength[..., None] * arm)[..., None, :]
     return polynomial_load(forms, outputs @ local, angle)

@@ -11,11 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.aerodynamics import force
 from engine.hybrid import ReducedModel, take
 from engine.profile import FloatArray
+from engine.stability import at_wind, state_matrices
 
 LARGEST_ANGLE = 3.0  # rad; the cubic load has no meaning beyond
 GRID = 72
+NEIGHBOURS = np.array([1.0, 0.6, 1.6])  # of the size that the energy balance gives
 ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
 
 ComplexArray = NDArray[np.complex128]
@@ -191,3 +194,56 @@ def _cycles(
     mean_load = np.stack([alpha, alpha**2 + 0.5 * angle**2, alpha**3 + 1.5 * alpha * angle**2], axis=-1)
     mean = np.linalg.solve(model.stiffness[member], (mean_load[:, None] @ vectors)[:, 0, :, None])[..., 0]
     return FirstHarmonic(member, frequency, angle, mean, amplitude)
+
+
+def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
+    """Guess a cycle along every unstable mode of any model from the energy of one period.
+
+    Along q = R Re(v exp(i w t)) the wind's work less the damping's is p_1 R^2 + p_3 R^4 for a cubic load; the even
+    powers do no work. The guess is the R where it vanishes, and two neighbours of it, since the shape changes with R.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,), any number of degrees of freedom.
+    wind_speed : (members,)
+        [m/s].
+
+    Returns
+    -------
+    FirstHarmonic
+        With mean zero; angle is NaN.
+    """
+    matrices = state_matrices(model)
+    values, vectors = np.linalg.eig(at_wind(matrices, wind_speed))
+    member, mode = np.nonzero(
+        (values.real > 0.0) & (values.imag > 1e-9 * np.abs(values).max(axis=-1, initial=0.0)[:, None])
+    )
+    m = model.mass.shape[-1]
+    weight = 1.0 / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
+    frequency = values.imag[member, mode]
+    shape = vectors[member, :m, mode] * weight
+    linear, cubic = _work(take(model, member), wind_speed[member], frequency, shape)
+    grows = (linear > 0.0) & (cubic < 0.0)
+    size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
+    chosen = np.tile(np.flatnonzero(grows), len(NEIGHBOURS))
+    factor = np.repeat(NEIGHBOURS, grows.sum())
+    amplitude = (factor * size[chosen])[:, None] * shape[chosen]
+    none = np.full(chosen.size, np.nan)
+    return FirstHarmonic(member[chosen], frequency[chosen], none, np.zeros((chosen.size, m)), amplitude)
+
+
+def _work(
+    model: ReducedModel, wind_speed: FloatArray, frequency: FloatArray, shape: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return p_1 and p_3, from the work at two amplitudes on samples that resolve the fourth harmonic."""
+    phase = np.exp(2j * np.pi * np.arange(10) / 10.0)[:, None]
+    q = (shape[:, None] * phase).real
+    velocity = (1j * frequency[:, None, None] * shape[:, None] * phase).real
+    drag = (velocity @ model.damping * velocity).sum(axis=-1).mean(axis=-1)
+    state = np.concatenate([q, velocity / wind_speed[:, None, None]], axis=-1)
+    work = [
+        wind_speed**2 * (force(model.load, r * state) * r * velocity).sum(axis=-1).mean(axis=-1) for r in (1.0, 2.0)
+    ]
+    cubic = (work[1] - 4.0 * work[0]) / 12.0
+    return work[0] - cubic - drag, cubic

@@ -54,9 +54,10 @@ def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
 def judged(largest: FloatArray, error: FloatArray) -> NDArray[np.object_]:
     """Judge by the largest modulus of the other multipliers: what the error does not decide is unknown."""
     margin = np.maximum(3.0 * error, 1e-7)
-    known = np.where(largest < 1.0, Stability.STABLE, Stability.UNSTABLE)
-    decided = np.isfinite(largest) & (np.abs(largest - 1.0) > margin)
-    return np.asarray(np.where(decided, known, Stability.UNKNOWN), dtype=np.object_)
+    result = np.full(largest.shape, Stability.UNKNOWN, dtype=np.object_)
+    result[largest < 1.0 - margin] = Stability.STABLE
+    result[largest > 1.0 + margin] = Stability.UNSTABLE
+    return result
 
 
 def monodromy(model: ReducedModel, orbits: Orbits) -> FloatArray:

@@ -180,7 +180,9 @@ def _peak(values: FloatArray) -> FloatArray:
         np.take_along_axis(values, (top + shift) % values.shape[-1], axis=-1)[..., 0] for shift in (-1, 0, 1)
     )
     bend = left - 2.0 * middle + right
-    return np.asarray(middle - np.where(bend < 0.0, (right - left) ** 2 / (8.0 * np.where(bend < 0.0, bend, -1.0)), 0.0))
+    return np.asarray(
+        middle - np.where(bend < 0.0, (right - left) ** 2 / (8.0 * np.where(bend < 0.0, bend, -1.0)), 0.0)
+    )
 
 
 @lru_cache

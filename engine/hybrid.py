@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.aerodynamics import PolynomialLoad, integrated, published_load, span_load
-from engine.fem import FIELDS, THETA, U, V, W, Matrices, shape_functions
+from engine.fem import FIELDS, THETA, Matrices, U, V, W, shape_functions
 from engine.modes import DirectionalShapes, FullModes, at_points
 from engine.profile import FloatArray, StaticProfile
 from engine.sections import Sections

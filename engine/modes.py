@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.fem import FIELDS, THETA, U, V, W, Matrices
+from engine.fem import FIELDS, THETA, Matrices, U, V, W
 from engine.profile import FloatArray
 
 DIRECTIONS = (V, W, THETA)
@@ -134,7 +134,7 @@ def _labelled(
     reach = targets @ mass
     norm = np.sqrt(np.einsum("lij,ij->li", reach, targets))
     overlap = (reach / norm[..., None]) @ vectors
-    chosen = _assign(overlap**2)
+    chosen = assign(overlap**2)
     sign = np.sign(np.take_along_axis(overlap, chosen[..., None], axis=-1))
     picked = np.take_along_axis(vectors.swapaxes(-1, -2), chosen[..., None], axis=1)
     return picked * sign, np.take_along_axis(values, chosen, axis=-1)
@@ -150,16 +150,14 @@ def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: NDArray[np.bool_])
         matrix[lines, held, held] = diagonal
 
 
-def _sines(
-    freedoms: NDArray[np.intp], nodes: int, directions: tuple[int, ...], loops: tuple[int, ...]
-) -> FloatArray:
+def _sines(freedoms: NDArray[np.intp], nodes: int, directions: tuple[int, ...], loops: tuple[int, ...]) -> FloatArray:
     """Return sin(k pi s/L) in each direction on the freedoms: (labels, freedoms)."""
     node, field = np.divmod(freedoms, FIELDS)
     wave = np.sin(np.pi * np.outer(loops, node) / (nodes - 1))
     return np.concatenate([wave * (field == direction) for direction in directions])
 
 
-def _assign(score: FloatArray) -> NDArray[np.intp]:
+def assign(score: FloatArray) -> NDArray[np.intp]:
     """Give each label the mode of largest score, the surest label first, one mode a label.
 
     score: (lines, labels, modes), not negative; returns (lines, labels).

@@ -35,7 +35,9 @@ def powers(x: FloatArray, degree: int = DEGREE) -> FloatArray:
 
 
 @lru_cache
-def _products(variables: int) -> tuple[tuple[np.ndarray[tuple[int], np.dtype[np.intp]], np.ndarray[tuple[int], np.dtype[np.intp]]], ...]:
+def _products(
+    variables: int,
+) -> tuple[tuple[np.ndarray[tuple[int], np.dtype[np.intp]], np.ndarray[tuple[int], np.dtype[np.intp]]], ...]:
     """Say for degrees 2 and 3 which monomial of one degree less and which variable multiply to each monomial."""
     pairs = []
     for degree in (2, 3):

@@ -89,7 +89,9 @@ def _piece_edges(lines: Sequence[Line], profile: StaticProfile, elements: int) -
     """Return the local co-ordinates of the piece boundaries, (lines, elements, pieces + 1), padded by empty pieces."""
     marks = [np.array(boundaries(line)) for line in lines]
     most = max(m.size for m in marks)
-    padded = np.stack([np.pad(m, (0, most - m.size), constant_values=line.span.length) for m, line in _paired(marks, lines)])
+    padded = np.stack(
+        [np.pad(m, (0, most - m.size), constant_values=line.span.length) for m, line in _paired(marks, lines)]
+    )
     scaled = arc_position(profile, padded) * (elements / profile.arc_length[:, None])
     local = np.clip(2.0 * (scaled[:, None, :] - np.arange(elements)[:, None]) - 1.0, -1.0, 1.0)
     inside = (np.abs(local) < 1.0).sum(axis=-1).max(initial=0)

@@ -1,0 +1,167 @@
+"""The order of the steps, and nothing else: lines and an analysis in, progress and results out."""
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.cycles import Cycles, Starts, energy_starts, explicit_starts, find_cycles, joined
+from engine.fem import FIELDS, matrices
+from engine.harmonic import Orbits, resized
+from engine.hybrid import (
+    Discretization,
+    ReducedModel,
+    finite_element_model,
+    hybrid_model,
+    take,
+    with_published_load,
+)
+from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
+from engine.outcome import Fault, InvalidSpec
+from engine.profile import FloatArray, static_profile
+from engine.report import assembled
+from engine.result import Progress, Result
+from engine.rows import Found
+from engine.sections import sections
+from engine.spec import Analysis, Line, Model, check_compatible
+from engine.stability import critical_wind_speeds
+
+
+@dataclass(frozen=True, slots=True)
+class _Prepared:
+    """What every later step reads: the discretization, its shapes and, where asked for, its full modes."""
+
+    made: Discretization
+    shapes: DirectionalShapes
+    modes: FullModes | None
+
+
+def analyse(line: Line, analysis: Analysis) -> Generator[Progress, None, Result]:
+    """Analyse one line.
+
+    Parameters
+    ----------
+    line : Line
+    analysis : Analysis
+
+    Yields
+    ------
+    Progress
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    InvalidSpec
+        If the analysis cannot be asked of this line.
+    """
+    results = yield from analyse_stack((line,), analysis)
+    return results[0]
+
+
+def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
+    """Analyse lines with equal numbers of elements side by side; as `analyse`, with one result a line.
+
+    Raises
+    ------
+    InvalidSpec
+        If the analysis cannot be asked of a line, or the lines differ in their number of elements.
+    """
+    for line in lines:
+        check_compatible(line, analysis)
+    if len({line.span.elements for line in lines}) != 1:
+        raise InvalidSpec(Fault("span.elements", None, "must be equal within a stack of lines"))
+    yield Progress(0.0, "static state and modes")
+    prepared = _prepare(lines, analysis)
+    yield Progress(0.1, "critical wind speeds and limit cycles of the hybrid model")
+    hybrid = _hybrid(prepared, analysis)
+    found = [hybrid] if Model.HYBRID in analysis.models else []
+    if prepared.modes is not None:
+        yield Progress(0.4, "critical wind speeds and limit cycles of the finite element model")
+        found.append(_finite_element(prepared, prepared.modes, hybrid, analysis))
+    yield Progress(0.95, "result rows")
+    results = assembled(prepared.made, prepared.shapes, tuple(found), analysis)
+    yield Progress(1.0, "done")
+    return results
+
+
+def _prepare(lines: Sequence[Line], analysis: Analysis) -> _Prepared:
+    profile = static_profile(lines)
+    made_of = sections(lines, profile)
+    system = matrices(lines, profile, made_of)
+    made = Discretization(tuple(lines), profile, made_of, system)
+    finite_element = Model.FINITE_ELEMENT in analysis.models
+    loops = set(analysis.loops) | {1, 2}
+    extra = set(analysis.finite_element_loops) if finite_element else set()
+    shapes = directional_shapes(system, profile.arc_length, tuple(sorted(loops | extra)))
+    modes = full_modes(system, tuple(sorted(set(analysis.loops) | extra))) if finite_element else None
+    return _Prepared(made, shapes, modes)
+
+
+def _winds(analysis: Analysis) -> FloatArray:
+    return np.array(sorted(set(analysis.wind_speeds)), dtype=np.float64)
+
+
+def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
+    """Analyse the hybrid model of every line and number of loops as one stack, line-major."""
+    loops = analysis.loops
+    grid = hybrid_model(prepared.made, prepared.shapes, loops, analysis)
+    line = np.repeat(np.arange(len(prepared.made.lines)), len(loops))
+    column = np.tile(np.arange(len(loops)), len(prepared.made.lines))
+    model = take(grid, (line, column))
+    published = take(with_published_load(prepared.made, grid), (line, column))
+    winds = _winds(analysis)
+    starts = joined(
+        explicit_starts(published, winds, analysis.harmonics), energy_starts(model, winds, analysis.harmonics)
+    )
+    return Found(
+        name=Model.HYBRID,
+        model=model,
+        line=line,
+        loops=np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp),
+        crossings=critical_wind_speeds(model, analysis.critical_wind_limit),
+        cycles=find_cycles(model, winds, starts),
+        winds=winds,
+    )
+
+
+def _finite_element(prepared: _Prepared, modes: FullModes, hybrid: Found, analysis: Analysis) -> Found:
+    """Analyse the finite element model of every line, started from the cycles of the hybrid one as well."""
+    model = finite_element_model(prepared.made, modes, prepared.shapes, analysis)
+    winds = hybrid.winds
+    starts = joined(
+        _lifted(prepared.made, modes, hybrid, model, analysis.harmonics),
+        energy_starts(model, winds, analysis.harmonics),
+    )
+    return Found(
+        name=Model.FINITE_ELEMENT,
+        model=model,
+        line=np.arange(len(prepared.made.lines)),
+        loops=np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
+        crossings=critical_wind_speeds(model, analysis.critical_wind_limit),
+        cycles=find_cycles(model, winds, starts),
+        winds=winds,
+    )
+
+
+def _lifted(made: Discretization, modes: FullModes, hybrid: Found, model: ReducedModel, harmonics: int) -> Starts:
+    """Express the hybrid cycles in the modes of the finite element model, by projection in the mass."""
+    cycles: Cycles = hybrid.cycles
+    usable = ~model.statically_unstable[hybrid.line[cycles.member]]
+    member = cycles.member[usable]
+    line = hybrid.line[member]
+    vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
+    momentum = (vectors @ made.matrices.mass)[line]
+    shapes = hybrid.model.shapes[member]
+    whole: NDArray[np.float64] = np.zeros((*shapes.shape[:2], shapes.shape[-1], FIELDS))
+    whole[..., 1:] = shapes.swapaxes(-1, -2)
+    lift = momentum @ whole.reshape(*shapes.shape[:2], -1).swapaxes(-1, -2)
+    orbits = Orbits(
+        lift @ cycles.orbits.coefficients[usable],
+        cycles.orbits.angular_frequency[usable],
+        cycles.orbits.wind_speed[usable],
+    )
+    return Starts(line, cycles.wind[usable], resized(orbits, harmonics))

@@ -1,0 +1,276 @@
+"""All limit cycles that can be reached at the requested wind speeds. Theory sections 7.1 to 7.3.
+
+Every start is balanced; every cycle found is carried to the neighbouring wind speeds until nothing new appears. Cycles
+that lead to one another form a branch.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.describing import energy_balance_cycles, explicit_cycles
+from engine.floquet import Floquet, floquet
+from engine.harmonic import Orbits, balance, oscillation_size, resized
+from engine.hybrid import ReducedModel, take
+from engine.profile import FloatArray
+
+SAME = 1e-3  # relative distance below which two solutions are one
+UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
+SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
+MOST_HARMONICS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Starts:
+    """First guesses: member and wind index of each, and the orbit guessed."""
+
+    member: NDArray[np.intp]
+    wind: NDArray[np.intp]
+    orbits: Orbits
+
+
+@dataclass(frozen=True, slots=True)
+class Cycles:
+    """Limit cycles of a stack of models.
+
+    member, wind: (cycles,), indices of model and wind speed; branch: (cycles,), number of the connected family within
+    its member, in the order of discovery from low wind speeds up; dropped: (members,), solutions left out because
+    even 20 harmonics do not resolve them.
+    """
+
+    member: NDArray[np.intp]
+    wind: NDArray[np.intp]
+    branch: NDArray[np.intp]
+    orbits: Orbits
+    floquet: Floquet
+    dropped: NDArray[np.intp]
+
+
+def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
+    """Guess cycles of every unstable mode at every wind speed by the balance of energy, at three sizes each."""
+    member, wind = _grid(model, wind_speeds)
+    guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
+    return _starts(
+        guess.member, member, wind, wind_speeds, guess.mean, guess.amplitude, guess.angular_frequency, harmonics
+    )
+
+
+def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
+    """Take the explicit cycles of the published closure as guesses, for members that are statically stable."""
+    member, wind = _grid(published, wind_speeds)
+    guess = explicit_cycles(take(published, member), wind_speeds[wind])
+    return _starts(
+        guess.member, member, wind, wind_speeds, guess.mean, guess.amplitude, guess.angular_frequency, harmonics
+    )
+
+
+def joined(*starts: Starts) -> Starts:
+    """Put several sets of starts together."""
+    return Starts(
+        np.concatenate([s.member for s in starts]),
+        np.concatenate([s.wind for s in starts]),
+        joined_orbits(*(s.orbits for s in starts)),
+    )
+
+
+def joined_orbits(*orbits: Orbits) -> Orbits:
+    """Put several stacks of orbits with equal harmonics together."""
+    return Orbits(
+        np.concatenate([o.coefficients for o in orbits]),
+        np.concatenate([o.angular_frequency for o in orbits]),
+        np.concatenate([o.wind_speed for o in orbits]),
+    )
+
+
+def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts) -> Cycles:
+    """Find every cycle that the starts and continuation over the wind speeds reach.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    wind_speeds : (winds,)
+        In rising order [m/s].
+    starts : Starts
+
+    Returns
+    -------
+    Cycles
+        Sorted by member, wind speed and branch.
+    """
+    family = _Family(model)
+    frontier = [item for item, _ in family.add(_solved(model, starts), np.full(starts.member.size, -1))]
+    while frontier:
+        ids = np.array(frontier)
+        moves = [(ids, wind) for wind in (family.wind[ids] - 1, family.wind[ids] + 1)]
+        origin = np.concatenate([i for i, _ in moves])
+        wind = np.concatenate([w for _, w in moves])
+        inside = (wind >= 0) & (wind < wind_speeds.size)
+        origin, wind = origin[inside], wind[inside]
+        here = family.orbits_of(origin)
+        moved = Starts(
+            family.member[origin], wind, Orbits(here.coefficients, here.angular_frequency, wind_speeds[wind])
+        )
+        frontier = [item for item, new in family.add(_solved(model, moved), origin) if new]
+    return _judged(model, family)
+
+
+class _Family:
+    """Distinct cycles as they are found, with the links between neighbours; only `find_cycles` uses it."""
+
+    def __init__(self, model: ReducedModel) -> None:
+        self.model = model
+        self.member: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
+        self.wind: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
+        self.orbits: list[tuple[FloatArray, float, float]] = []
+        self.links: list[tuple[int, int]] = []
+        self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
+
+    def orbits_of(self, ids: NDArray[np.intp]) -> Orbits:
+        """Stack the orbits with these numbers."""
+        coefficients, frequency, speed = zip(*(self.orbits[i] for i in ids), strict=True)
+        return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
+
+    def add(self, solved: tuple[Starts, NDArray[np.bool_]], origin: NDArray[np.intp]) -> Iterator[tuple[int, bool]]:
+        """Record solutions; yield the number of each and whether it is new."""
+        starts, good = solved
+        signatures = _signature(self.model, starts)
+        for i in np.flatnonzero(good):
+            key = (int(starts.member[i]), int(starts.wind[i]))
+            number, new = self._number(key, signatures[i])
+            if new:
+                self.member, self.wind = np.append(self.member, key[0]), np.append(self.wind, key[1])
+                orbits = starts.orbits
+                self.orbits.append((orbits.coefficients[i], orbits.angular_frequency[i], orbits.wind_speed[i]))
+            if origin[i] >= 0:
+                self.links.append((int(origin[i]), number))
+            yield number, new
+
+    def _number(self, key: tuple[int, int], signature: FloatArray) -> tuple[int, bool]:
+        known = self._known.setdefault(key, [])
+        for number, other in known:
+            if np.linalg.norm(signature - other) <= SAME * np.linalg.norm(other):
+                return number, False
+        known.append((len(self.orbits), signature))
+        return len(self.orbits), True
+
+    def branches(self) -> NDArray[np.intp]:
+        """Return the smallest number in the connected family of each cycle."""
+        label = np.arange(len(self.orbits))
+        changed = True
+        while changed:
+            changed = False
+            for a, b in self.links:
+                low = min(label[a], label[b])
+                if label[a] != low or label[b] != low:
+                    label[a] = label[b] = low
+                    changed = True
+        return label
+
+
+def _grid(model: ReducedModel, wind_speeds: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    usable = np.flatnonzero(~model.statically_unstable)
+    return np.repeat(usable, wind_speeds.size), np.tile(np.arange(wind_speeds.size), usable.size)
+
+
+def _starts(
+    row: NDArray[np.intp],
+    member: NDArray[np.intp],
+    wind: NDArray[np.intp],
+    wind_speeds: FloatArray,
+    mean: FloatArray,
+    amplitude: NDArray[np.complex128],
+    angular_frequency: FloatArray,
+    harmonics: int,
+) -> Starts:
+    first = np.stack([mean, amplitude.real, -amplitude.imag], axis=-1)
+    orbits = Orbits(first, angular_frequency, wind_speeds[wind[row]])
+    return Starts(member[row], wind[row], resized(orbits, harmonics))
+
+
+def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, NDArray[np.bool_]]:
+    """Balance all starts and tell which ended on a cycle."""
+    orbits, solution = balance(model, starts.member, starts.orbits)
+    before = oscillation_size(model, starts.member, starts.orbits)
+    size = oscillation_size(model, starts.member, orbits)
+    good = solution.converged & (size > SMALLEST * before) & (orbits.angular_frequency > 0.0)
+    return Starts(starts.member, starts.wind, orbits), good
+
+
+def _signature(model: ReducedModel, starts: Starts) -> FloatArray:
+    """Return what does not depend on the phase: weighted means and sizes of every harmonic, (cycles, ...)."""
+    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[starts.member]
+    coefficients = starts.orbits.coefficients * weight[..., None]
+    size = np.hypot(coefficients[..., 1::2], coefficients[..., 2::2])
+    return np.concatenate([coefficients[..., 0], size.reshape(size.shape[0], -1)], axis=-1)
+
+
+def _judged(model: ReducedModel, family: _Family) -> Cycles:
+    """Judge the stability of all cycles, with more harmonics where they were too few."""
+    members = model.mass.shape[0]
+    if not family.orbits:
+        return _nothing(model)
+    orbits = family.orbits_of(np.arange(len(family.orbits)))
+    judged = floquet(take(model, family.member), orbits)
+    coarse = np.flatnonzero(~(judged.trivial_error <= UNRESOLVED))
+    branch = family.branches()
+    if coarse.size:
+        orbits, judged = _refined(model, family.member, orbits, judged, coarse)
+    keep = judged.trivial_error <= UNRESOLVED
+    dropped = np.bincount(family.member[~keep], minlength=members)
+    order = np.flatnonzero(keep)
+    order = order[np.lexsort((branch[order], family.wind[order], family.member[order]))]
+    return Cycles(
+        family.member[order],
+        family.wind[order],
+        _renumbered(family.member[order], family.wind[order], branch[order]),
+        _pick(orbits, order),
+        Floquet(judged.multipliers[order], judged.trivial_error[order], judged.stability[order]),
+        dropped,
+    )
+
+
+def _refined(
+    model: ReducedModel, member: NDArray[np.intp], orbits: Orbits, judged: Floquet, coarse: NDArray[np.intp]
+) -> tuple[Orbits, Floquet]:
+    """Balance some cycles again with the most harmonics and judge them anew."""
+    finer, solution = balance(model, member[coarse], resized(_pick(orbits, coarse), MOST_HARMONICS))
+    again = floquet(take(model, member[coarse]), finer)
+    orbits = resized(orbits, MOST_HARMONICS)
+    orbits.coefficients[coarse] = finer.coefficients
+    frequency, multipliers = orbits.angular_frequency.copy(), judged.multipliers.copy()
+    error, stability = judged.trivial_error.copy(), judged.stability.copy()
+    frequency[coarse], multipliers[coarse], stability[coarse] = (
+        finer.angular_frequency,
+        again.multipliers,
+        again.stability,
+    )
+    error[coarse] = np.where(solution.converged, again.trivial_error, np.inf)
+    return Orbits(orbits.coefficients, frequency, orbits.wind_speed), Floquet(multipliers, error, stability)
+
+
+def _renumbered(member: NDArray[np.intp], wind: NDArray[np.intp], branch: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Count the branches of each member from 0 in the order of their lowest wind speed."""
+    numbers: dict[tuple[int, int], int] = {}
+    count: dict[int, int] = {}
+    for i in np.lexsort((branch, wind, member)):
+        key = (int(member[i]), int(branch[i]))
+        if key not in numbers:
+            numbers[key] = count.get(key[0], 0)
+            count[key[0]] = numbers[key] + 1
+    return np.array([numbers[(int(m), int(b))] for m, b in zip(member, branch, strict=True)], dtype=np.intp)
+
+
+def _pick(orbits: Orbits, index: NDArray[np.intp]) -> Orbits:
+    return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
+
+
+def _nothing(model: ReducedModel) -> Cycles:
+    m = model.mass.shape[-1]
+    none = np.zeros(0, dtype=np.intp)
+    empty = np.zeros(0)
+    judged = Floquet(np.zeros((0, 2 * m), dtype=np.complex128), empty, np.zeros(0, dtype=np.object_))
+    orbits = Orbits(np.zeros((0, m, 3)), empty, empty)
+    return Cycles(none, none, none, orbits, judged, np.zeros(model.mass.shape[0], dtype=np.intp))

@@ -1,0 +1,101 @@
+"""From arrays of a stack of models to the result of each line."""
+
+import numpy as np
+
+from engine import ENGINE_VERSION
+from engine.hybrid import Discretization
+from engine.modes import DirectionalShapes
+from engine.profile import mean_mass
+from engine.result import DenHartog, LimitCycleRow, Orbit, Result, StaticState
+from engine.rows import Found, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
+from engine.spec import AirflowSpoiler, Analysis, Line
+
+HEAVY_DEVICES = 0.1  # of the span's weight
+
+
+def assembled(
+    made: Discretization, shapes: DirectionalShapes, found: tuple[Found, ...], analysis: Analysis
+) -> list[Result]:
+    """Write the result of each line.
+
+    Parameters
+    ----------
+    made : Discretization
+    shapes : DirectionalShapes
+    found : tuple of Found
+        One for each model asked for.
+    analysis : Analysis
+
+    Returns
+    -------
+    list of Result
+        In the order of the lines.
+    """
+    lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
+    frequencies = [frequency_rows(one, analysis.loops) for one in found]
+    critical = [critical_rows(one) for one in found]
+    motions = [motion_rows(made, one, analysis.loops, lowest) for one in found]
+    dropped = [dropped_warnings(one, len(made.lines)) for one in found]
+    results = []
+    for i, line in enumerate(made.lines):
+        cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
+        outside = sum(cycle.outcome.value == "outside_fit" for cycle in cycles)
+        fit = [f"{outside} cycles leave the range of angles to which the coefficients were fitted."] if outside else []
+        results.append(
+            Result(
+                static=_static_state(made, i),
+                den_hartog=_den_hartog(line),
+                frequencies=tuple(row for table in frequencies for row in table[i]),
+                critical_wind_speeds=tuple(row for table in critical for row in table[i]),
+                limit_cycles=cycles,
+                bifurcations=(),
+                orbits=orbits,
+                warnings=(*line_warnings(line), *fit, *(text for table in dropped for text in table[i])),
+                engine_version=ENGINE_VERSION,
+            )
+        )
+    return results
+
+
+def line_warnings(line: Line) -> list[str]:
+    """Say what of a line lies outside the assumptions of the static profile."""
+    result = []
+    weight = mean_mass(line) * line.span.length * len(line.bundle.positions)
+    spoilers = [d for d in line.devices if isinstance(d, AirflowSpoiler)]
+    point_mass = sum(d.mass for d in line.devices if not isinstance(d, AirflowSpoiler))
+    spread_mass = sum(d.mass * (d.stop - d.start) for d in spoilers) * len(line.bundle.positions)
+    share = (point_mass + spread_mass) / weight
+    if share > HEAVY_DEVICES:
+        result.append(
+            f"The devices weigh {share:.0%} of the span; the static profile leaves their weight out, which holds "
+            f"below {HEAVY_DEVICES:.0%}."
+        )
+    masses = [line.conductor.mass, *(s.mass for s in line.ice.segments if s.mass is not None)]
+    if max(masses) > (1.0 + HEAVY_DEVICES) * min(masses):
+        result.append("The ice mass varies along the span; the static profile takes its mean.")
+    return result
+
+
+def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...], tuple[Orbit, ...]]:
+    orbits = []
+    for i, motion in enumerate(motions):
+        if motion.series is not None:
+            vertical, horizontal, torsional = (tuple(row) for row in motion.series.tolist())
+            orbits.append(Orbit(i, vertical, horizontal, torsional))
+    return tuple(motion.row for motion in motions), tuple(orbits)
+
+
+def _den_hartog(line: Line) -> DenHartog:
+    coefficient = line.ice.aerodynamics.vertical[0]
+    return DenHartog(coefficient, coefficient < 0.0)
+
+
+def _static_state(made: Discretization, line: int) -> StaticState:
+    profile = made.profile
+    stiffness = float(profile.end_stiffness[line].min())
+    return StaticState(
+        horizontal_tension_n=float(profile.horizontal_tension[line]),
+        catenary_parameter_m=float(profile.catenary_parameter[line]),
+        sag_m=float(profile.sag[line]),
+        longitudinal_stiffness_n_per_m=stiffness if np.isfinite(stiffness) else None,
+    )

@@ -1,0 +1,272 @@
+"""Flat rows from what was found with one kind of model. Theory section 8."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.cycles import Cycles
+from engine.harmonic import half_peak_to_peak, states
+from engine.hybrid import Discretization, ReducedModel, observation, take
+from engine.modes import assign, solve_symmetric
+from engine.outcome import Outcome, Stability
+from engine.profile import FloatArray, horizontal_position
+from engine.result import CriticalWindSpeedRow, Direction, FrequencyRow, LimitCycleRow
+from engine.spec import Model
+from engine.stability import Crossings, at_wind, state_matrices, unstable_pairs
+
+DIRECTION_NAMES: tuple[Direction, ...] = ("vertical", "horizontal", "torsional")
+ANGLE_SAMPLES = 48
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Everything found with one kind of model.
+
+    model: leading axis (members,); line: (members,), index of the line; loops: (members, m), loops of each
+    co-ordinate; winds: (winds,) in rising order [m/s].
+    """
+
+    name: Model
+    model: ReducedModel
+    line: NDArray[np.intp]
+    loops: NDArray[np.intp]
+    crossings: Crossings
+    cycles: Cycles
+    winds: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """A row and, for a cycle, its Fourier series where it is observed: (3, 2 H + 1) of V, W [m] and Theta [rad]."""
+
+    row: LimitCycleRow
+    series: FloatArray | None = None
+
+
+def frequency_rows(found: Found, loops: tuple[int, ...]) -> list[list[FrequencyRow]]:
+    """Label the coupled frequencies by the co-ordinate of largest M_ii |x_i|^2, one a co-ordinate; a list a line."""
+    values, vectors = solve_symmetric(found.model.stiffness, found.model.mass)
+    share = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[..., None] * vectors**2
+    own = np.take_along_axis(values, assign(share), axis=-1)
+    frequency = np.sqrt(np.where(own > 0.0, own, np.nan)) / (2.0 * np.pi)
+    table: list[list[FrequencyRow]] = _by_line(found)
+    for member, line in enumerate(found.line):
+        for k in loops:
+            picked = [_number(f) for f in frequency[member, found.loops[member] == k]]
+            if picked:
+                outcome = Outcome.STATICALLY_UNSTABLE if None in picked else Outcome.CONVERGED
+                table[line].append(FrequencyRow(found.name, k, picked[0], picked[1], picked[2], outcome))
+    return table
+
+
+def critical_rows(found: Found) -> list[list[CriticalWindSpeedRow]]:
+    """Write every crossing of the static state; a list a line."""
+    table: list[list[CriticalWindSpeedRow]] = _by_line(found)
+    c = found.crossings
+    for i, member in enumerate(c.member):
+        row = CriticalWindSpeedRow(
+            model=found.name,
+            loops=int(found.loops[member, c.co_ordinate[i]]),
+            wind_speed_m_per_s=float(c.wind_speed[i]),
+            crossing="onset" if c.onset[i] else "restabilization",
+            type="oscillation" if c.oscillation[i] else "divergence",
+            direction=DIRECTION_NAMES[found.model.direction[c.co_ordinate[i]]],
+            frequency_hz=float(c.angular_frequency[i] / (2.0 * np.pi)),
+            unstable_pairs_after=int(c.unstable_after[i]),
+        )
+        table[found.line[member]].append(row)
+    return table
+
+
+def dropped_warnings(found: Found, lines: int) -> list[list[str]]:
+    """Say how many solutions were left out; a list a line."""
+    count = np.bincount(found.line, weights=found.cycles.dropped, minlength=lines).astype(int)
+    text = "{} solutions of the {} model with large angles of attack are left out: 20 harmonics do not resolve them."
+    return [[text.format(n, found.name.value.replace("_", " "))] if n else [] for n in count]
+
+
+def motion_rows(made: Discretization, found: Found, loops: tuple[int, ...], lowest: FloatArray) -> list[list[Motion]]:
+    """Write the equilibrium and every cycle at each wind speed; a list a line.
+
+    Parameters
+    ----------
+    made : Discretization
+    found : Found
+    loops : tuple of int
+        Numbers of loops for which the equilibrium has a row.
+    lowest : (lines,)
+        Lowest vertical frequency of each line [Hz].
+    """
+    table: list[list[Motion]] = _by_line(found)
+    scales = _Scales(
+        sag=made.profile.sag,
+        speed=lowest * made.profile.span_length,
+        observed={k: _observed_at(made, k) for k in {*loops, *np.unique(found.loops).tolist()}},
+    )
+    for line, motion in _equilibria(found, loops, scales):
+        table[line].append(motion)
+    for line, motion in _cycles(made, found, scales):
+        table[line].append(motion)
+    for motions in table:
+        motions.sort(key=lambda m: (m.row.loops, m.row.wind_speed_m_per_s, m.row.kind != "equilibrium"))
+    return table
+
+
+@dataclass(frozen=True, slots=True)
+class _Scales:
+    """Static sag [m] and f L_x [m/s] of each line, and the observed positions [m] by number of loops."""
+
+    sag: FloatArray
+    speed: FloatArray
+    observed: dict[int, FloatArray]
+
+
+def _equilibria(found: Found, loops: tuple[int, ...], scales: _Scales) -> Iterator[tuple[int, Motion]]:
+    """Yield the rows of the static state, and of wind speeds where it oscillates away but no cycle was found."""
+    members = found.line.size
+    speeds = np.broadcast_to(found.winds, (members, found.winds.size))
+    values = np.linalg.eigvals(at_wind(state_matrices(found.model), speeds)).astype(np.complex128)
+    pairs = unstable_pairs(values)
+    size = np.abs(values).max(axis=-1, initial=0.0)
+    undecided = np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size
+    oscillating = ((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1)
+    reached = set(zip(found.cycles.member.tolist(), found.cycles.wind.tolist(), strict=True))
+    for member, line in enumerate(found.line):
+        static = bool(found.model.statically_unstable[member])
+        for wind, k in ((w, k) for k in loops if k in found.loops[member] for w in range(found.winds.size)):
+            stability = Stability.UNSTABLE if pairs[member, wind] else Stability.STABLE
+            stability = Stability.UNKNOWN if undecided[member, wind] else stability
+            base = _Blank(found.name, k, float(found.winds[wind]), int(line))
+            if static:
+                yield (
+                    int(line),
+                    Motion(_row(base, scales, "equilibrium", Stability.UNSTABLE, Outcome.STATICALLY_UNSTABLE)),
+                )
+                continue
+            yield (
+                int(line),
+                Motion(_row(base, scales, "equilibrium", stability, Outcome.CONVERGED, amplitude=(0.0, 0.0, 0.0))),
+            )
+            if oscillating[member, wind] and (member, wind) not in reached and k == found.loops[member, 0]:
+                yield int(line), Motion(_row(base, scales, "periodic", Stability.UNKNOWN, Outcome.NO_CONVERGENCE))
+
+
+def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
+    """Yield the rows of all cycles with their series where they are observed."""
+    cycles = found.cycles
+    if cycles.member.size == 0:
+        return
+    line, loops = found.line[cycles.member], _own_loops(found)
+    shapes = found.model.shapes[cycles.member]
+    series = np.empty((cycles.member.size, 3, cycles.orbits.coefficients.shape[-1]))
+    for k in np.unique(loops):
+        here = loops == k
+        seen = observation(made, shapes[here], int(k))
+        series[here] = seen.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
+    amplitude = half_peak_to_peak(series)
+    outside = _largest_angle(found) > made.sections.fitted_range[line]
+    branch = _branch_numbers(found)
+    for i in range(cycles.member.size):
+        base = _Blank(found.name, int(loops[i]), float(cycles.orbits.wind_speed[i]), int(line[i]))
+        row = _row(
+            base,
+            scales,
+            "periodic",
+            cycles.floquet.stability[i],
+            Outcome.OUTSIDE_FIT if outside[i] else Outcome.CONVERGED,
+            amplitude=tuple(amplitude[i].tolist()),
+            frequency=float(cycles.orbits.angular_frequency[i] / (2.0 * np.pi)),
+            branch=int(branch[i]),
+        )
+        yield int(line[i]), Motion(row, series[i])
+
+
+@dataclass(frozen=True, slots=True)
+class _Blank:
+    """What identifies a row: model, loops, wind speed [m/s] and the index of the line."""
+
+    model: Model
+    loops: int
+    wind_speed: float
+    line: int
+
+
+def _row(
+    base: _Blank,
+    scales: _Scales,
+    kind: str,
+    stability: Stability,
+    outcome: Outcome,
+    *,
+    amplitude: tuple[float | None, ...] = (None, None, None),
+    frequency: float | None = None,
+    branch: int | None = None,
+) -> LimitCycleRow:
+    vertical, horizontal, torsional = amplitude
+    sag, speed = float(scales.sag[base.line]), float(scales.speed[base.line])
+    return LimitCycleRow(
+        model=base.model,
+        loops=base.loops,
+        wind_speed_m_per_s=base.wind_speed,
+        branch=branch,
+        kind="periodic" if kind == "periodic" else "equilibrium",
+        stability=stability,
+        frequency_hz=frequency,
+        second_frequency_hz=None,
+        observed_at_m=float(scales.observed[base.loops][base.line]),
+        vertical_m=vertical,
+        horizontal_m=horizontal,
+        torsional_rad=torsional,
+        vertical_min_m=None,
+        horizontal_min_m=None,
+        torsional_min_rad=None,
+        vertical_ratio=None if vertical is None else vertical / sag,
+        horizontal_ratio=None if horizontal is None else horizontal / sag,
+        reduced_wind_speed=base.wind_speed / speed if np.isfinite(speed) else None,
+        outcome=outcome,
+    )
+
+
+def _by_line(found: Found) -> list[list[Any]]:
+    return [[] for _ in range(int(found.line.max(initial=-1)) + 1)]
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _observed_at(made: Discretization, loops: int) -> FloatArray:
+    """Return the horizontal position of s = L/(2 loops) on each line [m]."""
+    return horizontal_position(made.profile, made.profile.arc_length / (2.0 * loops))
+
+
+def _own_loops(found: Found) -> NDArray[np.intp]:
+    """Return the number of loops of the co-ordinate of largest M_ii |q_i|^2 in each cycle."""
+    mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[found.cycles.member]
+    energy = mass * (found.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
+    return np.asarray(found.loops[found.cycles.member, energy.argmax(axis=-1)])
+
+
+def _largest_angle(found: Found) -> FloatArray:
+    """Return the largest |alpha| along the span and over the period of each cycle [rad]."""
+    cycles = found.cycles
+    state = states(cycles.orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
+    angle = take(found.model, cycles.member).load.angle
+    return np.asarray(np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2)))
+
+
+def _branch_numbers(found: Found) -> NDArray[np.intp]:
+    """Number the branches of each member by the onset they are born from: the one of nearest frequency."""
+    cycles, crossings = found.cycles, found.crossings
+    order: dict[int, list[tuple[float, float, int]]] = {}
+    for member, branch in dict.fromkeys(zip(cycles.member.tolist(), cycles.branch.tolist(), strict=True)):
+        first = np.flatnonzero((cycles.member == member) & (cycles.branch == branch))[0]
+        onsets = (crossings.member == member) & crossings.onset & crossings.oscillation
+        distance = np.abs(crossings.angular_frequency[onsets] - cycles.orbits.angular_frequency[first])
+        born = crossings.wind_speed[onsets][distance.argmin()] if distance.size else np.inf
+        order.setdefault(member, []).append((float(born), float(cycles.orbits.wind_speed[first]), branch))
+    number = {(member, branch): i for member, keys in order.items() for i, (_, _, branch) in enumerate(sorted(keys))}
+    return np.array([number[key] for key in zip(cycles.member.tolist(), cycles.branch.tolist(), strict=True)])
