@@ -8,6 +8,7 @@ from typing import Self
 from uuid import UUID
 
 from celery.exceptions import SoftTimeLimitExceeded
+from pydantic import ValidationError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
@@ -101,7 +102,7 @@ def _compute(held: Claim, settings: Settings, pulse: Pulse, points: list[PointRe
     """Run the engine and collect the points, until it ends, fails, runs too long, or a heartbeat says stop."""
     try:
         _collect(held, settings, pulse, points)
-    except InvalidSpec as error:
+    except (InvalidSpec, ValidationError) as error:
         return Failure(FailureKind.INPUT, str(error))
     except SoftTimeLimitExceeded:
         return Failure(FailureKind.TIME_LIMIT, leases.time_limit_sentence(settings))

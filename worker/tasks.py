@@ -27,7 +27,8 @@ def worker_application(settings: Settings, owner: str) -> Celery:
 
 def _worker_options(settings: Settings) -> dict[str, object]:
     transport_options = dict(celery_application(settings).conf.broker_transport_options)
-    if "socket_timeout" in transport_options:
+    embedded = settings.broker_url.startswith("filesystem:")
+    if not embedded:
         # Unlike a sender, a worker waits in blocking reads of a second, and nobody waits for the worker.
         transport_options |= {"socket_timeout": 10.0, "health_check_interval": 10, "max_retries": None}
     return {
@@ -42,7 +43,7 @@ def _worker_options(settings: Settings) -> dict[str, object]:
         "worker_concurrency": settings.worker_processes,
         "worker_hijack_root_logger": False,
         "worker_max_tasks_per_child": settings.max_jobs_per_process,
-        "worker_pool": "prefork",
+        "worker_pool": "worker.pool:EmbeddedPool" if embedded else "prefork",
         "worker_prefetch_multiplier": 1,
         "worker_send_task_events": False,
         "worker_soft_shutdown_timeout": settings.shutdown_seconds,
@@ -52,7 +53,7 @@ def _worker_options(settings: Settings) -> dict[str, object]:
 def _run_pool() -> None:
     end_with_parent()
     application = worker_application(get_settings(), os.environ[OWNER])
-    quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat"]
+    quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat", "--hostname=galloping@%h"]
     application.worker_main(["--quiet", "worker", "--loglevel=WARNING", *quiet])
 
 
