@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import processes
 from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
+from worker.health import show_life
 from worker.sweep import release, sweep
 from worker.tasks import OWNER
 
@@ -56,6 +57,7 @@ def _repair(sessions: sessionmaker[Session], settings: Settings, owner: str | No
     try:
         if owner is None:
             sweep(sessions, settings)
+            show_life(settings)
         else:
             release(sessions, settings, owner)
     except SQLAlchemyError as error:

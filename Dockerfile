@@ -1,0 +1,26 @@
+# One image for the API, the workers and the migrations; docker-compose.yml names their commands.
+FROM python:3.11-slim-bookworm
+
+# One BLAS thread: threads and forked workers freeze each other, and one process a core is faster here.
+ENV OPENBLAS_NUM_THREADS=1 \
+    OMP_NUM_THREADS=1 \
+    MKL_NUM_THREADS=1 \
+    PYTHONUNBUFFERED=1 \
+    PYTHONDONTWRITEBYTECODE=1 \
+    GALLOPING_DATA_DIR=/data
+
+RUN useradd --system --uid 10001 --home-dir /data --create-home galloping
+
+WORKDIR /opt/galloping
+COPY pyproject.toml constraints.txt README.md ./
+COPY engine engine
+COPY app app
+COPY worker worker
+COPY migrations migrations
+RUN pip install --no-cache-dir --constraint constraints.txt .
+
+USER galloping
+WORKDIR /data
+VOLUME /data
+EXPOSE 8000
+CMD ["galloping", "serve", "--host", "0.0.0.0", "--port", "8000"]
