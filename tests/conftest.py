@@ -1,0 +1,51 @@
+"""Fixtures for tests that need a database, a broker, or the whole service."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from sqlalchemy.orm import Session, sessionmaker
+
+from app.db import make_engine, session_factory
+from app.serve import migrate
+from app.settings import Settings
+from tests import servers
+
+
+@pytest.fixture(scope="session")
+def postgres_address() -> Iterator[str]:
+    """Give a PostgreSQL of this test process's own."""
+    with servers.postgres_server() as address:
+        yield address
+
+
+@pytest.fixture
+def redis_address() -> Iterator[str]:
+    """Give an empty Redis of this test's own."""
+    with servers.redis_server() as address:
+        yield address
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    """Give an empty database of either kind."""
+    if request.param == "sqlite":
+        yield f"sqlite:///{tmp_path}/test.sqlite3"
+        return
+    with servers.postgres_database(request.getfixturevalue("postgres_address")) as address:
+        yield address
+
+
+@pytest.fixture
+def settings(database_url: str, tmp_path: Path) -> Settings:
+    """Give settings with short times, an empty database and the embedded broker."""
+    return Settings(data_dir=tmp_path, database_url=database_url, lease_seconds=3.0, heartbeat_seconds=0.1)
+
+
+@pytest.fixture
+def sessions(settings: Settings) -> Iterator[sessionmaker[Session]]:
+    """Give sessions on a database with all tables."""
+    migrate(settings)
+    engine = make_engine(settings)
+    yield session_factory(engine)
+    engine.dispose()

@@ -1,0 +1,68 @@
+"""Requests and results for tests of jobs."""
+
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import jobs
+from app.convert import PointResult
+from app.examples import example
+from app.tables import Job, JobEvent, PointRow
+
+
+def short_request() -> dict[str, Any]:
+    """Return a request that takes about half a second."""
+    analysis = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 5.0, 6.0]}
+    return {"line": example("c11-twin"), "analysis": analysis}
+
+
+def long_request(points: int) -> dict[str, Any]:
+    """Return a study whose every point takes about half a second."""
+    tensions = [25000.0 + 1000.0 * number for number in range(points)]
+    return {**short_request(), "study": {"axes": [{"parameter": "span.horizontal_tension_n", "values": tensions}]}}
+
+
+def point_result(number: int = 0, *, tension: float = 30000.0, failure: str | None = None) -> PointResult:
+    """Return a point with one frequency row, which carries the tension, or a failed one without rows."""
+    row = {"model": "hybrid", "loops": 1, "vertical_hz": 0.48, "horizontal_hz": 0.45, "torsional_hz": None}
+    return PointResult(
+        point=number,
+        axes={"span.horizontal_tension_n": tension},
+        static={} if failure else {"horizontal_tension_n": tension, "catenary_parameter_m": 1285.5, "sag_m": 1.54},
+        den_hartog={} if failure else {"coefficient": -3.2, "unstable": True},
+        tables={"frequencies": [] if failure else [{**row, "outcome": "converged"}]},
+        orbits=[],
+        warnings=[],
+        engine_version="9.9.9",
+        failure=failure,
+    )
+
+
+def add_job(sessions: sessionmaker[Session], document: dict[str, Any] | None = None) -> UUID:
+    """Make a committed job and return its id."""
+    with sessions.begin() as session:
+        return jobs.create(session, document or {"line": {}}).id
+
+
+def look(sessions: sessionmaker[Session], job_id: UUID) -> Job:
+    """Return the job as the database has it now."""
+    with sessions() as session:
+        job = jobs.get(session, job_id)
+    assert job is not None
+    return job
+
+
+def history(sessions: sessionmaker[Session], job_id: UUID) -> list[tuple[str, int]]:
+    """Return the kinds of the job's events with their attempts, in order."""
+    statement = select(JobEvent.kind, JobEvent.attempt).where(JobEvent.job_id == job_id).order_by(JobEvent.id)
+    with sessions() as session:
+        return [(kind.value, attempt) for kind, attempt in session.execute(statement)]
+
+
+def count_points(sessions: sessionmaker[Session], job_id: UUID) -> int:
+    """Return how many points of the job have results."""
+    with sessions() as session:
+        found = session.scalar(select(func.count()).select_from(PointRow).where(PointRow.job_id == job_id))
+    return found or 0
