@@ -2,8 +2,10 @@
 
 from app.convert.check import check, read, request_faults, with_further_faults
 from app.convert.run import TABLES, Advance, PointResult, run
+from engine import ENGINE_VERSION
 
 __all__ = [
+    "ENGINE_VERSION",
     "TABLES",
     "Advance",
     "PointResult",

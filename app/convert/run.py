@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import ValidationError
 
@@ -16,7 +16,8 @@ from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
 from engine.result import Result
 
-TABLES = ("frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations")
+Table = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations"]
+TABLES: tuple[Table, ...] = ("frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations")
 
 
 @dataclass(frozen=True)

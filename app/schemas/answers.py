@@ -187,3 +187,12 @@ class Problem(Answer):
     instance: str
     errors: list[FaultItem] = Field(default=[], description="Every fault of the request")
     links: list[Link] = Field(default=[], description="Where to go on")
+
+
+class ProblemPage(Answer):
+    """What a type of problem means."""
+
+    slug: str
+    status: int
+    title: str
+    description: str

@@ -1,0 +1,214 @@
+"""Every fault as problem details (RFC 9457), whoever finds it: routes, FastAPI, Starlette, the body limit, a defect."""
+
+import logging
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from enum import Enum
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from fastapi.routing import APIRoute
+from sqlalchemy.exc import OperationalError
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app import convert
+from app.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer, parse_json
+
+MEDIA_TYPE = "application/problem+json"
+
+_logger = logging.getLogger(__name__)
+
+
+class ProblemKind(Enum):
+    """What can be wrong: slug of its page, status, title and a sentence for the page."""
+
+    INVALID_PARAMETER = ("invalid-parameter", 400, "Invalid parameter", "A query parameter cannot be taken.")
+    NOT_FOUND = ("not-found", 404, "Not found", "There is nothing at this address, or no longer.")
+    METHOD_NOT_ALLOWED = ("method-not-allowed", 405, "Method not allowed", "The address does not take this method.")
+    NOT_ACCEPTABLE = ("not-acceptable", 406, "Not acceptable", "None of the media types asked for can be made.")
+    NOT_READY = ("not-ready", 409, "Not ready", "The job has not ended; its status document tells how far it is.")
+    DISMISSED = ("dismissed", 410, "Dismissed", "The job was cancelled and has no results.")
+    TOO_LARGE = ("too-large", 413, "Body too large", "The request body is larger than the operator allows.")
+    UNSUPPORTED_MEDIA_TYPE = ("unsupported-media-type", 415, "Unsupported media type", "Bodies are application/json.")
+    INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is no JSON, or fields of it are wrong.")
+    INTERNAL = ("internal", 500, "Internal error", "A defect of the service; the operator's log has the details.")
+    UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it depends on; try again later.")
+
+    def __init__(self, slug: str, status: int, title: str, description: str) -> None:
+        """Keep the parts under their names."""
+        self.slug = slug
+        self.status = status
+        self.title = title
+        self.description = description
+
+
+_BY_STATUS = {kind.status: kind for kind in ProblemKind}
+
+
+class ProblemError(HTTPException):
+    """Raised by a route to answer with a problem; FastAPI lets it pass wherever it arises."""
+
+    def __init__(
+        self,
+        kind: ProblemKind,
+        detail: str,
+        *,
+        faults: Sequence[Fault] = (),
+        links: Sequence[Mapping[str, str]] = (),
+        headers: Mapping[str, str] | None = None,
+    ) -> None:
+        """Take the kind, a sentence for this occurrence, and what else the document shall hold."""
+        self.kind = kind
+        self.faults = faults
+        self.links = links
+        super().__init__(kind.status, detail, dict(headers) if headers else None)
+
+
+def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequence[Fault] = ()) -> dict[str, Any]:
+    """Return the problem document of one occurrence, with at most `MOST_FAULTS` faults."""
+    listed = [{"pointer": f.pointer, "code": f.code, "detail": f.detail} for f in faults[:MOST_FAULTS]]
+    more = f" Only the first {MOST_FAULTS} of {len(faults)} faults are listed." if len(faults) > MOST_FAULTS else ""
+    return {
+        "type": f"/problems/{kind.slug}",
+        "title": kind.title,
+        "status": kind.status,
+        "detail": detail + more,
+        "instance": instance,
+        "errors": listed,
+    }
+
+
+def install(app: FastAPI, max_body_bytes: int) -> None:
+    """Let an application answer every fault with a problem, and limit its bodies."""
+    app.add_exception_handler(ProblemError, _on_problem)
+    app.add_exception_handler(HTTPException, _on_http)
+    app.add_exception_handler(RequestValidationError, _on_validation)
+    app.add_exception_handler(OperationalError, _on_database)
+    app.add_exception_handler(Exception, _on_defect)
+    app.add_middleware(BodyLimit, max_body_bytes=max_body_bytes)
+
+
+class StrictJsonRoute(APIRoute):
+    """A route whose body is strict JSON: another media type is 415, and every fault of the text is 422."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Put the strict request in the place of the usual one."""
+        handler = super().get_route_handler()
+        takes_body = self.body_field is not None
+
+        async def strict(request: Request) -> Response:
+            if takes_body:
+                _require_json(request)
+            return await handler(_StrictRequest(request.scope, request.receive))
+
+        return strict
+
+
+class BodyLimit:
+    """ASGI middleware that stops reading a body at a limit; one announced as larger is not read at all."""
+
+    def __init__(self, app: ASGIApp, max_body_bytes: int) -> None:
+        """Wrap an application."""
+        self.app = app
+        self.max_body_bytes = max_body_bytes
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on with a counting receive."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        announced = dict(scope["headers"]).get(b"content-length", b"0")
+        if announced.isdigit() and int(announced[:20]) > self.max_body_bytes:
+            await _respond(Request(scope), self._too_large())(scope, receive, send)
+            return
+        await self.app(scope, self._counting(receive), send)
+
+    def _counting(self, receive: Receive) -> Receive:
+        taken = 0
+
+        async def counted() -> Message:
+            nonlocal taken
+            message = await receive()
+            taken += len(message.get("body", b""))
+            if taken > self.max_body_bytes:
+                raise self._too_large()
+            return message
+
+        return counted
+
+    def _too_large(self) -> ProblemError:
+        detail = f"The body is larger than {self.max_body_bytes} bytes."
+        return ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
+
+
+class _StrictRequest(Request):
+    async def json(self) -> Any:
+        try:
+            return parse_json(await self.body())
+        except BadInput as error:
+            raise ProblemError(ProblemKind.INVALID_DOCUMENT, _count(error.faults), faults=error.faults) from error
+
+
+def _require_json(request: Request) -> None:
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type != "application/json":
+        said = f"The body is {media_type[:100]!r}, not application/json."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Post": "application/json"})
+
+
+def invalid_document(faults: Sequence[Fault]) -> ProblemError:
+    """Return the problem of a body with these faults."""
+    return ProblemError(ProblemKind.INVALID_DOCUMENT, _count(faults), faults=faults)
+
+
+def _count(faults: Sequence[Fault]) -> str:
+    return f"The document has {len(faults)} fault{'s' if len(faults) != 1 else ''}."
+
+
+def _respond(request: Request, problem: ProblemError) -> JSONResponse:
+    document = problem_document(problem.kind, problem.detail, request.url.path[:500], problem.faults)
+    if problem.links:
+        document["links"] = list(problem.links)
+    return JSONResponse(document, problem.status_code, headers=problem.headers, media_type=MEDIA_TYPE)
+
+
+async def _on_problem(request: Request, error: Exception) -> Response:
+    assert isinstance(error, ProblemError)
+    return _respond(request, error)
+
+
+async def _on_http(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    kind = _BY_STATUS.get(error.status_code, ProblemKind.INVALID_PARAMETER)
+    return _respond(request, ProblemError(kind, kind.description, headers=error.headers))
+
+
+async def _on_validation(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    errors = error.errors()
+    places = {wrong["loc"][0] for wrong in errors}
+    if "path" in places:
+        return _respond(request, ProblemError(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description))
+    if "body" not in places:
+        return _respond(request, ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=faults_of(errors)))
+    faults = faults_of([wrong for wrong in errors if wrong["loc"][0] == "body"], skip=1)
+    return _respond(request, invalid_document(convert.with_further_faults(error.body, faults)))
+
+
+async def _on_database(request: Request, error: Exception) -> Response:
+    _logger.error("the database does not answer: %s", error)
+    problem = ProblemError(ProblemKind.UNAVAILABLE, "The database does not answer.", headers={"Retry-After": "5"})
+    return _respond(request, problem)
+
+
+async def _on_defect(request: Request, error: Exception) -> Response:
+    # Starlette raises the error again after this answer, so that the server logs it with its traceback.
+    return _respond(request, ProblemError(ProblemKind.INTERNAL, ProblemKind.INTERNAL.description))
+
+
+def query_fault(name: str, detail: str) -> ProblemError:
+    """Return the problem of one query parameter."""
+    fault = Fault(json_pointer(["query", name]), "invalid", detail)
+    return ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=[fault])

@@ -1,0 +1,50 @@
+"""The web application: routes, problems, and what they share."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI
+
+from app import errors
+from app.convert import ENGINE_VERSION
+from app.db import make_engine, session_factory
+from app.routes import documentation, health, jobs, results
+from app.settings import Settings, get_settings
+
+_DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
+
+Post a line to `/v1/jobs`, follow `Location` until the status is `successful`, then read `/results`.
+Units stand in the names of the fields. Faults are `application/problem+json` and name every field at once."""
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """Make the application; without settings it takes those of the process' environment.
+
+    Raises
+    ------
+    OSError
+        If the directory of an SQLite database cannot be made.
+    """
+    settings = settings or get_settings()
+    database = make_engine(settings)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        database.dispose()
+
+    app = FastAPI(
+        title="Galloping of iced conductors",
+        version=ENGINE_VERSION,
+        description=_DESCRIPTION,
+        lifespan=lifespan,
+        redoc_url=None,
+        responses={"default": documentation.ANY_PROBLEM},
+    )
+    app.state.settings = settings
+    app.state.readers = session_factory(database, read_only=True)
+    app.state.writers = session_factory(database)
+    errors.install(app, settings.max_body_bytes)
+    for module in (jobs, results, health):
+        app.include_router(module.router)
+    return app

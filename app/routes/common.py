@@ -1,0 +1,94 @@
+"""What several routes share: the state of the application, finding a job, and its status document."""
+
+from typing import Annotated, Any
+from uuid import UUID
+
+from fastapi import Depends, Request
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import jobs
+from app.errors import ProblemError, ProblemKind
+from app.settings import Settings
+from app.tables import Job, JobStatus
+
+PREFIX = "/v1"
+RETRY_SECONDS = "1"
+ENDED = frozenset({JobStatus.SUCCESSFUL, JobStatus.FAILED, JobStatus.DISMISSED})
+
+_TABLE_LINKS = ("frequencies", "critical-wind-speeds", "limit-cycles")
+_PLOT_LINKS = ("amplitude", "orbit")
+
+
+def _settings(request: Request) -> Settings:
+    settings: Settings = request.app.state.settings
+    return settings
+
+
+def _readers(request: Request) -> sessionmaker[Session]:
+    factory: sessionmaker[Session] = request.app.state.readers
+    return factory
+
+
+def _writers(request: Request) -> sessionmaker[Session]:
+    factory: sessionmaker[Session] = request.app.state.writers
+    return factory
+
+
+SettingsOf = Annotated[Settings, Depends(_settings)]
+Readers = Annotated[sessionmaker[Session], Depends(_readers)]
+Writers = Annotated[sessionmaker[Session], Depends(_writers)]
+
+
+def find_job(session: Session, job_id: UUID) -> Job:
+    """Return a job.
+
+    Raises
+    ------
+    ProblemError
+        404 if there is none of that id.
+    """
+    job = jobs.get(session, job_id)
+    if job is None:
+        raise ProblemError(ProblemKind.NOT_FOUND, f"There is no job {job_id}.")
+    return job
+
+
+def job_address(job_id: UUID) -> str:
+    """Return the address of a job's status."""
+    return f"{PREFIX}/jobs/{job_id}"
+
+
+def failure_of(job: Job) -> dict[str, Any] | None:
+    """Return kind and sentence of a job's failure, None if it has not failed."""
+    return {"kind": job.failure_kind.value, "detail": job.failure_detail} if job.failure_kind else None
+
+
+def job_document(job: Job) -> dict[str, Any]:
+    """Return the status document of a job."""
+    return {
+        "id": str(job.id),
+        "status": job.status.value,
+        "progress": job.progress,
+        "step": job.step,
+        "name": job.name,
+        "asset_id": job.asset_id,
+        "tags": {tag.key: tag.value for tag in job.tags},
+        "created_at": job.created_at.isoformat(),
+        "started_at": job.started_at.isoformat() if job.started_at else None,
+        "finished_at": job.finished_at.isoformat() if job.finished_at else None,
+        "attempt": job.attempt,
+        "cancel_requested": job.cancel_requested,
+        "failure": failure_of(job),
+        "engine_version": job.engine_version,
+        "links": _links(job),
+    }
+
+
+def _links(job: Job) -> list[dict[str, str]]:
+    address = job_address(job.id)
+    links = [{"rel": "self", "href": address}]
+    if job.status in {JobStatus.SUCCESSFUL, JobStatus.FAILED}:
+        links.append({"rel": "results", "href": f"{address}/results"})
+        links += [{"rel": name, "href": f"{address}/results/{name}"} for name in _TABLE_LINKS]
+        links += [{"rel": f"{name}-plot", "href": f"{address}/plots/{name}.svg"} for name in _PLOT_LINKS]
+    return links

@@ -1,0 +1,198 @@
+"""Examples of every body and every problem for OpenAPI; each validates against its own schema (tests see to it)."""
+
+from typing import Any
+
+from app.errors import MEDIA_TYPE, ProblemKind, problem_document
+from app.examples import EXAMPLE_NAMES, example
+from app.faults import Fault
+from app.schemas.answers import Problem
+
+_JOB = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e"
+_ADDRESS = f"/v1/jobs/{_JOB}"
+_RESULT_CYCLE: dict[str, Any] = {
+    "model": "hybrid",
+    "loops": 1,
+    "wind_speed_m_per_s": 4.0,
+    "branch": 0,
+    "kind": "periodic",
+    "stability": "stable",
+    "frequency_hz": 0.4816,
+    "second_frequency_hz": None,
+    "observed_at_m": 62.94,
+    "vertical_m": 0.1568,
+    "horizontal_m": 0.0099,
+    "torsional_rad": 0.0020,
+    "vertical_min_m": None,
+    "horizontal_min_m": None,
+    "torsional_min_rad": None,
+    "vertical_ratio": 0.1018,
+    "horizontal_ratio": 0.0064,
+    "reduced_wind_speed": 0.066,
+    "outcome": "converged",
+}
+_FREQUENCY: dict[str, Any] = {
+    "model": "hybrid",
+    "loops": 1,
+    "vertical_hz": 0.4816,
+    "horizontal_hz": 0.4460,
+    "torsional_hz": 0.6343,
+    "outcome": "converged",
+}
+_CRITICAL: dict[str, Any] = {
+    "model": "hybrid",
+    "loops": 1,
+    "wind_speed_m_per_s": 2.403,
+    "crossing": "onset",
+    "type": "oscillation",
+    "direction": "vertical",
+    "frequency_hz": 0.4816,
+    "unstable_pairs_after": 1,
+}
+
+ACCEPTED_JOB: dict[str, Any] = {
+    "id": _JOB,
+    "status": "accepted",
+    "progress": 0.0,
+    "step": "",
+    "name": "C11 twin, 126 m",
+    "asset_id": None,
+    "tags": {"source": "c11"},
+    "created_at": "2026-11-22T10:00:00+00:00",
+    "started_at": None,
+    "finished_at": None,
+    "attempt": 0,
+    "cancel_requested": False,
+    "failure": None,
+    "engine_version": None,
+    "links": [{"rel": "self", "href": _ADDRESS}],
+}
+FINISHED_JOB: dict[str, Any] = {
+    **ACCEPTED_JOB,
+    "status": "successful",
+    "progress": 1.0,
+    "step": "done",
+    "started_at": "2026-11-22T10:00:01+00:00",
+    "finished_at": "2026-11-22T10:00:04+00:00",
+    "attempt": 1,
+    "engine_version": "0.1.0",
+    "links": [{"rel": "self", "href": _ADDRESS}, {"rel": "results", "href": f"{_ADDRESS}/results"}],
+}
+DISMISSED_JOB: dict[str, Any] = {**ACCEPTED_JOB, "status": "dismissed", "finished_at": "2026-11-22T10:00:02+00:00"}
+STOPPING_JOB: dict[str, Any] = {
+    **ACCEPTED_JOB,
+    "status": "running",
+    "progress": 0.4,
+    "step": "limit cycles",
+    "started_at": "2026-11-22T10:00:01+00:00",
+    "attempt": 1,
+    "cancel_requested": True,
+}
+RESULT: dict[str, Any] = {
+    "static": {
+        "horizontal_tension_n": 30000.0,
+        "catenary_parameter_m": 1285.5,
+        "sag_m": 1.54,
+        "longitudinal_stiffness_n_per_m": 128490.0,
+    },
+    "den_hartog": {"coefficient": -0.1667, "unstable": True},
+    "frequencies": [_FREQUENCY],
+    "critical_wind_speeds": [_CRITICAL],
+    "limit_cycles": [_RESULT_CYCLE],
+    "bifurcations": [],
+    "warnings": [],
+    "failures": [],
+    "failure": None,
+    "engine_version": "0.1.0",
+}
+TABLE_EXAMPLES: dict[str, dict[str, Any]] = {
+    "frequencies": _FREQUENCY,
+    "critical_wind_speeds": _CRITICAL,
+    "limit_cycles": _RESULT_CYCLE,
+}
+PROBLEM_PAGE: dict[str, Any] = {
+    "slug": ProblemKind.NOT_READY.slug,
+    "status": ProblemKind.NOT_READY.status,
+    "title": ProblemKind.NOT_READY.title,
+    "description": ProblemKind.NOT_READY.description,
+}
+TABLE_ANSWER: dict[str, Any] = {
+    "description": "The rows of the table, under its name in JSON",
+    "content": {
+        "application/json": {
+            "schema": {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "object"}}},
+            "examples": {name: {"value": {name: [row]}} for name, row in TABLE_EXAMPLES.items()},
+        },
+        "text/csv": {
+            "schema": {"type": "string"},
+            "example": "model,loops,vertical_hz,horizontal_hz,torsional_hz,outcome\r\n"
+            "hybrid,1,0.4816,0.446,0.6343,converged\r\n",
+        },
+    },
+}
+PICTURE_ANSWER: dict[str, Any] = {
+    "description": "The picture",
+    "content": {
+        "image/svg+xml": {"schema": {"type": "string"}, "example": "<svg/>"},
+        "image/png": {"schema": {"type": "string", "format": "binary"}},
+    },
+}
+JOB_PAGE: dict[str, Any] = {"jobs": [FINISHED_JOB], "next": None}
+
+REQUESTS: dict[str, Any] = {
+    **{name: {"summary": example(name)["name"], "value": {"line": example(name)}} for name in EXAMPLE_NAMES},
+    "wind-speed-range": {
+        "summary": "21 wind speeds, hybrid model only",
+        "value": {
+            "line": example("c11-twin"),
+            "analysis": {
+                "loops": [1, 2],
+                "models": ["hybrid"],
+                "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 21},
+            },
+        },
+    },
+    "study": {
+        "summary": "Three tensions",
+        "value": {
+            "line": example("c11-twin"),
+            "analysis": {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [6.0]},
+            "study": {"axes": [{"parameter": "span.horizontal_tension_n", "values": [24000, 30000, 36000]}]},
+        },
+    },
+}
+
+_FAULTS = {
+    ProblemKind.INVALID_DOCUMENT: [
+        Fault("/line/span/length_m", "greater_than_equal", "input should be greater than or equal to 1"),
+        Fault("/line/conductor/colour", "unknown_field", "unknown field"),
+    ],
+    ProblemKind.INVALID_PARAMETER: [Fault("/query/cursor", "invalid", "the cursor is not one of ours")],
+}
+
+# The model brings its schema into the document; the example says under which media type it is sent.
+ANY_PROBLEM: dict[str, Any] = {
+    "model": Problem,
+    "description": "Problem details (RFC 9457), as application/problem+json",
+    "content": {
+        "application/json": {
+            "example": problem_document(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description, _ADDRESS)
+        }
+    },
+}
+
+
+def problems(*kinds: ProblemKind) -> dict[int | str, dict[str, Any]]:
+    """Return the entries of OpenAPI for these problems, and for the two that every address can answer."""
+    every = (*kinds, ProblemKind.UNAVAILABLE, ProblemKind.INTERNAL)
+    return {kind.status: {"description": kind.description, "content": _content(kind)} for kind in every}
+
+
+def body(description: str, *media_types: tuple[str, Any]) -> dict[str, Any]:
+    """Return the entry of OpenAPI for a good answer with an example for each media type."""
+    content = {name: {"example": value} for name, value in media_types}
+    return {"description": description, "content": content}
+
+
+def _content(kind: ProblemKind) -> dict[str, Any]:
+    sample = problem_document(kind, kind.description, _ADDRESS, _FAULTS.get(kind, ()))
+    return {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}, "example": sample}}

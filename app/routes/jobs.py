@@ -1,0 +1,181 @@
+"""Jobs: submitted, looked at, listed, cancelled."""
+
+from typing import Annotated
+from urllib.parse import urlencode
+from uuid import UUID
+
+from fastapi import APIRouter, Body, Query, Request, Response
+from fastapi.responses import JSONResponse
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+
+from app import convert, jobs, paging, schemas
+from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
+from app.jobs import CancelOutcome, JobFilters
+from app.queue import dispatch
+from app.routes import documentation
+from app.routes.common import (
+    ENDED,
+    PREFIX,
+    RETRY_SECONDS,
+    Readers,
+    SettingsOf,
+    Writers,
+    find_job,
+    job_address,
+    job_document,
+)
+from app.schemas.answers import JobDocument, JobPage
+from app.schemas.fields import Label
+from app.settings import cursor_key
+from app.tables import JobStatus
+
+router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
+
+_MOST_ON_PAGE = 500
+_COMMON = documentation.problems(ProblemKind.NOT_FOUND)
+
+
+class ListQuery(BaseModel):
+    """Which jobs a list holds, and where the page begins."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    status: JobStatus | None = Field(default=None, description="Only jobs in this state")
+    asset_id: Label | None = Field(default=None, description="Only jobs of this asset")
+    tag: list[Label] = Field(default=[], max_length=10, description="Only jobs with these tags, each as key:value")
+    created_after: AwareDatetime | None = Field(default=None, description="Only jobs made later, with a time zone")
+    limit: int = Field(default=50, ge=1, le=_MOST_ON_PAGE, description="Jobs on a page")
+    cursor: str | None = Field(default=None, max_length=200, description="Place that a `next` address holds")
+
+    def as_filters(self) -> JobFilters:
+        """Return the filters.
+
+        Raises
+        ------
+        ProblemError
+            400 if a tag is not key:value, or one key is asked for twice.
+        """
+        pairs = [text.partition(":") for text in self.tag]
+        tags = {key: value for key, _, value in pairs}
+        if len(tags) != len(pairs) or not all(key and colon and value for key, colon, value in pairs):
+            raise query_fault("tag", "a tag is key:value, each key at most once")
+        return JobFilters(self.status, self.asset_id, tags, created_after=self.created_after)
+
+
+@router.post(
+    "",
+    status_code=202,
+    response_model=JobDocument,
+    responses={
+        202: {
+            **documentation.body(
+                "Accepted; Location leads to its status", ("application/json", documentation.ACCEPTED_JOB)
+            ),
+            "headers": {
+                "Location": {"description": "Address of the status", "schema": {"type": "string"}},
+                "Retry-After": {"description": "Seconds to wait before looking", "schema": {"type": "integer"}},
+            },
+        },
+        **documentation.problems(
+            ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
+        ),
+    },
+)
+def submit(
+    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
+    settings: SettingsOf,
+    writers: Writers,
+) -> JSONResponse:
+    """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already."""
+    faults = convert.request_faults(document)
+    if faults:
+        raise invalid_document(faults)
+    line = document.line
+    with writers.begin() as session:
+        kept = document.model_dump(mode="json", by_alias=True, exclude={"study"} if document.study is None else None)
+        job = jobs.create(session, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
+        session.refresh(job, ["tags"])
+        status = job_document(job)
+    dispatch(settings, job.id)
+    return JSONResponse(status, 202, headers={"Location": job_address(job.id), "Retry-After": RETRY_SECONDS})
+
+
+@router.get(
+    "/{job_id}",
+    response_model=JobDocument,
+    responses={200: documentation.body("Status", ("application/json", documentation.FINISHED_JOB)), **_COMMON},
+)
+def status(job_id: UUID, readers: Readers) -> JSONResponse:
+    """Tell how far a job is."""
+    with readers() as session:
+        job = find_job(session, job_id)
+        headers = {} if job.status in ENDED else {"Retry-After": RETRY_SECONDS}
+        return JSONResponse(job_document(job), headers=headers)
+
+
+@router.get(
+    "",
+    response_model=JobPage,
+    responses={
+        200: documentation.body("A page of jobs, newest first", ("application/json", documentation.JOB_PAGE)),
+        **documentation.problems(ProblemKind.INVALID_PARAMETER),
+    },
+)
+def list_jobs(
+    request: Request,
+    filters: Annotated[ListQuery, Query()],
+    settings: SettingsOf,
+    readers: Readers,
+) -> JSONResponse:
+    """List jobs, newest first, a page at a time; `next` is the address of the following page."""
+    key = cursor_key(settings)
+    after = _place(key, filters.cursor) if filters.cursor else None
+    with readers() as session:
+        found = jobs.page(session, filters.as_filters(), after, filters.limit + 1)
+        documents = [job_document(job) for job in found[: filters.limit]]
+    following = None
+    if len(found) > filters.limit:
+        last = found[filters.limit - 1]
+        following = _next_address(request, paging.encode(key, (last.created_at, last.id)))
+    return JSONResponse({"jobs": documents, "next": following})
+
+
+@router.delete(
+    "/{job_id}",
+    response_model=None,
+    responses={
+        200: {
+            **documentation.body("A queued job is dismissed", ("application/json", documentation.DISMISSED_JOB)),
+            "model": JobDocument,
+        },
+        202: {
+            **documentation.body("A running job will stop", ("application/json", documentation.STOPPING_JOB)),
+            "model": JobDocument,
+        },
+        204: {"description": "A job that had ended is removed with its results"},
+        **_COMMON,
+    },
+)
+def cancel(job_id: UUID, writers: Writers) -> Response:
+    """Cancel a job, or remove one that has ended."""
+    with writers.begin() as session:
+        outcome = jobs.cancel(session, job_id)
+        if outcome is CancelOutcome.REMOVED:
+            return Response(status_code=204)
+        session.flush()
+        document = job_document(find_job(session, job_id))
+    if outcome is CancelOutcome.REQUESTED:
+        return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
+    return JSONResponse(document)
+
+
+def _place(key: bytes, cursor: str) -> paging.Place:
+    try:
+        return paging.decode(key, cursor)
+    except paging.BadCursor as error:
+        raise query_fault("cursor", str(error)) from error
+
+
+def _next_address(request: Request, cursor: str) -> str:
+    kept = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
+    return f"{PREFIX}/jobs?{urlencode([*kept, ('cursor', cursor)])}"

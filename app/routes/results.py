@@ -1,0 +1,162 @@
+"""Results of a job: the whole document, single tables as JSON or CSV, and pictures. Everything is streamed."""
+
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, Literal
+from uuid import UUID
+
+from fastapi import APIRouter, Query, Request, Response
+from fastapi.responses import StreamingResponse
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import convert, export, results
+from app.errors import ProblemError, ProblemKind
+from app.export import Format
+from app.results import Table
+from app.routes import documentation
+from app.routes.common import PREFIX, RETRY_SECONDS, Readers, failure_of, find_job, job_address
+from app.schemas.answers import ResultDocument
+from app.tables import Job, JobStatus
+
+router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
+
+Picture = Literal["amplitude", "orbit"]
+PictureFormat = Literal["svg", "png"]
+Rows = Iterator[dict[str, object]]
+Pieces = Callable[[Session], Iterator[str]]
+
+_TABLES: dict[str, Table] = {
+    "frequencies": "frequencies",
+    "critical-wind-speeds": "critical_wind_speeds",
+    "limit-cycles": "limit_cycles",
+}
+_PROBLEMS = documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED)
+_TABLE_PROBLEMS = documentation.problems(
+    ProblemKind.INVALID_PARAMETER,
+    ProblemKind.NOT_FOUND,
+    ProblemKind.NOT_ACCEPTABLE,
+    ProblemKind.NOT_READY,
+    ProblemKind.DISMISSED,
+)
+
+
+@router.get(
+    "/results",
+    response_class=StreamingResponse,
+    responses={
+        200: {
+            **documentation.body("Everything that was found", ("application/json", documentation.RESULT)),
+            "model": ResultDocument,
+        },
+        **_PROBLEMS,
+    },
+)
+def whole(job_id: UUID, readers: Readers) -> StreamingResponse:
+    """Return everything that was found; a failed job answers with the rows that it has and its failure."""
+    job = _ended_job(readers, job_id)
+    study, failure = job.document.get("study") is not None, failure_of(job)
+
+    def pieces(session: Session) -> Iterator[str]:
+        points = list(results.points(session, job_id))
+        tables: dict[str, Rows] = {name: results.rows(session, job_id, name) for name in convert.TABLES}
+        return export.result_text(points, tables, study=study, failure=failure)
+
+    return _streamed(readers, pieces, "json")
+
+
+@router.get(
+    "/results/{table}",
+    response_class=StreamingResponse,
+    responses={200: documentation.TABLE_ANSWER, **_TABLE_PROBLEMS},
+)
+def table(
+    job_id: UUID,
+    table: Literal["frequencies", "critical-wind-speeds", "limit-cycles"],
+    request: Request,
+    readers: Readers,
+    format: Annotated[Format | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
+) -> StreamingResponse:
+    """Return one table of flat rows, as JSON or CSV by `?format=` or the Accept header."""
+    chosen = format or export.preferred_format(request.headers.get("accept", ""))
+    if chosen is None:
+        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, "Tables are application/json or text/csv.")
+    job = _ended_job(readers, job_id)
+    name = _TABLES[table]
+    axes = [axis["parameter"] for axis in (job.document.get("study") or {"axes": []})["axes"]]
+
+    def pieces(session: Session) -> Iterator[str]:
+        rows = results.rows(session, job_id, name)
+        if chosen == "csv":
+            return export.csv_text([*axes, *results.columns(name)], rows)
+        return export.json_text(name, rows)
+
+    return _streamed(readers, pieces, chosen)
+
+
+@router.get(
+    "/plots/{picture}.{extension}",
+    response_class=Response,
+    responses={200: documentation.PICTURE_ANSWER, **_PROBLEMS},
+)
+def plot(
+    job_id: UUID,
+    picture: Picture,
+    extension: PictureFormat,
+    readers: Readers,
+    point: Annotated[int, Query(ge=0, description="Point of a study")] = 0,
+) -> Response:
+    """Draw the amplitudes over wind speed, or the orbits where they are observed."""
+    from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
+
+    job = _ended_job(readers, job_id)
+    with readers() as session:
+        found = _point_rows(session, job_id, point)
+    title = job.name or str(job.id)
+    draw = plots.amplitude if picture == "amplitude" else plots.orbit
+    return Response(draw(title, found, extension), media_type=plots.MEDIA_TYPES[extension])
+
+
+def _ended_job(readers: sessionmaker[Session], job_id: UUID) -> Job:
+    with readers() as session:
+        job = find_job(session, job_id)
+    if job.status is JobStatus.DISMISSED:
+        raise ProblemError(ProblemKind.DISMISSED, "The job was cancelled and has no results.")
+    if job.status in {JobStatus.ACCEPTED, JobStatus.RUNNING}:
+        raise ProblemError(
+            ProblemKind.NOT_READY,
+            f"The job is {job.status.value}, {job.progress:.0%} done.",
+            links=[{"rel": "status", "href": job_address(job_id)}],
+            headers={"Retry-After": RETRY_SECONDS},
+        )
+    return job
+
+
+def _streamed(readers: sessionmaker[Session], pieces: Pieces, form: Format) -> StreamingResponse:
+    """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
+
+    def stream() -> Iterator[str]:
+        with readers() as session:
+            yield from export.in_blocks(pieces(session))
+
+    return StreamingResponse(stream(), media_type=export.MEDIA_TYPES[form], headers={"Vary": "Accept"})
+
+
+def _point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dict[str, Any]]]:
+    """Return the rows that pictures show of one point of a job.
+
+    Raises
+    ------
+    ProblemError
+        404 if there is no such point.
+    """
+    axes = next((p["axes"] for p in results.points(session, job_id) if p["point"] == point), None)
+    if axes is None:
+        raise ProblemError(ProblemKind.NOT_FOUND, f"The job has no results at point {point}.")
+    wanted = dict(axes) if isinstance(axes, dict) else {}
+
+    def at_point(name: Table) -> list[dict[str, Any]]:
+        rows = results.rows(session, job_id, name)
+        return [row for row in rows if all(row[key] == value for key, value in wanted.items())]
+
+    found: dict[str, list[dict[str, Any]]] = {name: at_point(name) for name in _TABLES.values()}
+    found["orbits"] = [orbit for orbit in results.orbits(session, job_id) if orbit["point"] == point]
+    return found
