@@ -8,6 +8,7 @@ from sqlalchemy import ColumnElement, insert, select
 from sqlalchemy.orm import Session
 
 from app.tables import (
+    Base,
     BifurcationRow,
     CriticalWindSpeedRow,
     FrequencyRow,
@@ -48,7 +49,8 @@ def store(session: Session, job_id: UUID, point: "PointResult") -> None:
         place: dict[str, object] = {"job_id": job_id, "point": point.point}
         records = [{**place, "row_number": number, **row} for number, row in enumerate(rows_of_table)]
         if records:
-            session.execute(insert(_ROW_TYPES[name]), records)
+            # Into the table rather than by its class, which would drop columns that it does not know without a word.
+            session.execute(insert(Base.metadata.tables[name]), records)
 
 
 def columns(table: Table) -> list[str]:

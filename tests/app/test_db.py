@@ -1,0 +1,65 @@
+from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from sqlalchemy import select, text, update
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.orm import Session, sessionmaker
+
+from app.db import database_time, make_engine, session_factory
+from app.serve import migrate
+from app.settings import Settings
+from app.tables import Job
+from tests.documents import add_job, look
+
+
+def test_writers_at_once_wait_instead_of_failing(sessions: sessionmaker[Session]) -> None:
+    job_id = add_job(sessions)
+
+    def add_tenths(_: int) -> None:
+        for _ in range(20):
+            with sessions.begin() as session:
+                job = session.execute(select(Job).where(Job.id == job_id).with_for_update()).scalar_one()
+                job.attempt += 1
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(add_tenths, range(4)))
+    assert look(sessions, job_id).attempt == 80
+
+
+def test_readers_neither_wait_for_a_writer_nor_see_half_of_it(
+    sessions: sessionmaker[Session], settings: Settings
+) -> None:
+    job_id = add_job(sessions)
+    engine = make_engine(settings)
+    with sessions.begin() as writer, session_factory(engine, read_only=True)() as reader:
+        writer.execute(update(Job).values(progress=0.5))
+        assert reader.scalars(select(Job.progress)).all() == [0.0]
+    engine.dispose()
+    assert look(sessions, job_id).progress == 0.5
+
+
+def test_postgres_refuses_writes_of_readers(postgres_address: str, tmp_path: Path) -> None:
+    engine = make_engine(Settings(data_dir=tmp_path, database_url=postgres_address))
+    with session_factory(engine, read_only=True)() as reader, pytest.raises(DBAPIError, match="read-only transaction"):
+        reader.execute(text("CREATE TABLE forbidden (id integer)"))
+    engine.dispose()
+
+
+def test_database_time_is_now_and_in_utc(sessions: sessionmaker[Session]) -> None:
+    with sessions() as session:
+        first, second = database_time(session), database_time(session)
+    assert first.utcoffset() == timedelta(0)
+    assert abs(first - datetime.now(UTC)) < timedelta(seconds=60)
+    assert second > first
+
+
+def test_sqlite_keeps_a_log_and_enforces_foreign_keys(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "made" / "as needed")
+    migrate(settings)
+    engine = make_engine(settings)
+    with engine.connect() as connection:
+        assert connection.scalar(text("PRAGMA journal_mode")) == "wal"
+        assert connection.scalar(text("PRAGMA foreign_keys")) == 1
+    engine.dispose()
