@@ -1,6 +1,6 @@
 """Result rows in SQL: stored with the end of a job, read as the flat rows of the contract."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 from uuid import UUID
 
@@ -8,7 +8,6 @@ from sqlalchemy import ColumnElement, insert, select
 from sqlalchemy.orm import Session
 
 from app.tables import (
-    Base,
     BifurcationRow,
     CriticalWindSpeedRow,
     FrequencyRow,
@@ -41,21 +40,23 @@ def store(session: Session, job_id: UUID, point: "PointResult") -> None:
     ------
     KeyError
         If the point has a table that there is not.
+    ValueError
+        If a row has a column that there is not, or lacks one.
     sqlalchemy.exc.SQLAlchemyError
-        If a row has a column that there is not, lacks one, or the point is stored already.
+        If a value is missing, or the point is stored already.
     """
     session.execute(insert(PointRow).values(job_id=job_id, **_point_columns(point)))
     for name, rows_of_table in {**point.tables, "orbits": point.orbits}.items():
+        _refuse_other_columns(name, rows_of_table)
         place: dict[str, object] = {"job_id": job_id, "point": point.point}
         records = [{**place, "row_number": number, **row} for number, row in enumerate(rows_of_table)]
         if records:
-            # Into the table rather than by its class, which would drop columns that it does not know without a word.
-            session.execute(insert(Base.metadata.tables[name]), records)
+            session.execute(insert(_ROW_TYPES[name]), records)
 
 
 def columns(table: Table) -> list[str]:
     """Return the names of a table's columns in the order of the contract, without the study's axes."""
-    return [column.name for column in _ROW_TYPES[table].__table__.columns if column.name not in _PLACE]
+    return _columns(table)
 
 
 def axes(session: Session, job_id: UUID) -> list[str]:
@@ -103,6 +104,18 @@ def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
     for row in session.scalars(statement.execution_options(yield_per=_ROWS_A_FETCH)):
         shapes = {"vertical": row.vertical, "horizontal": row.horizontal, "torsional": row.torsional}
         yield {"point": row.point, "cycle": row.cycle, **shapes}
+
+
+def _columns(table: str) -> list[str]:
+    return [column.name for column in _ROW_TYPES[table].__table__.columns if column.name not in _PLACE]
+
+
+def _refuse_other_columns(table: str, rows_of_table: Sequence[Mapping[str, object]]) -> None:
+    """Compare names, since an insert of many rows drops what it does not know without a word."""
+    known = set(_columns(table))
+    for row in rows_of_table:
+        if row.keys() != known:
+            raise ValueError(f"{table} has other columns than a row that was found: {sorted(known ^ row.keys())}")
 
 
 def _point_columns(point: "PointResult") -> dict[str, object]:

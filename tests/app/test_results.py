@@ -1,8 +1,7 @@
-from typing import Any
 from uuid import UUID
 
 import pytest
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import convert, leases, results
@@ -92,12 +91,21 @@ def test_jobs_do_not_see_each_others_rows(sessions: sessionmaker[Session]) -> No
         assert results.axes(session, other) == []
 
 
-@pytest.mark.parametrize("change", [{"vertical_hertz": 1.0}, {"loops": None}])
-def test_rows_with_wrong_columns_are_refused(sessions: sessionmaker[Session], change: dict[str, Any]) -> None:
-    point = point_result()
-    point.tables["frequencies"][0].update(change)
+def test_rows_with_other_columns_are_refused(sessions: sessionmaker[Session]) -> None:
+    more, less = point_result(), point_result()
+    more.tables["frequencies"][0]["vertical_hertz"] = 1.0
+    del less.tables["frequencies"][0]["vertical_hz"]
     job_id = add_job(sessions)
-    with pytest.raises(SQLAlchemyError), sessions.begin() as session:
+    for point, name in ((more, "vertical_hertz"), (less, "vertical_hz")):
+        with pytest.raises(ValueError, match=rf"\['{name}'\]"), sessions.begin() as session:
+            results.store(session, job_id, point)
+
+
+def test_rows_without_a_needed_value_are_refused(sessions: sessionmaker[Session]) -> None:
+    point = point_result()
+    point.tables["frequencies"][0]["loops"] = None
+    job_id = add_job(sessions)
+    with pytest.raises(IntegrityError), sessions.begin() as session:
         results.store(session, job_id, point)
 
 
