@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from engine import polynomial
-from engine.profile import FloatArray
+from engine.arrays import FloatArray, merged
 from engine.sections import Sections
 from engine.spec import AerodynamicModel, Line
 
@@ -55,7 +55,7 @@ def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     """
     terms = polynomial.powers(_local(load, state))
     table = load.table.swapaxes(-1, -2)
-    return np.asarray(terms.reshape(*terms.shape[:-2], -1) @ table.reshape(*table.shape[:-3], -1, table.shape[-1]))
+    return np.asarray(merged(terms, -2) @ merged(table, -3, -2))
 
 
 def force_gradient(load: PolynomialLoad, state: FloatArray) -> FloatArray:
@@ -68,14 +68,12 @@ def force_gradient(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     samples = gradients.shape[-2]
     gradients = gradients.reshape(*gradients.shape[:-1], outputs, variables)
     gradients = np.moveaxis(gradients, -4, -2).reshape(*gradients.shape[:-4], samples, outputs, points * variables)
-    forms = load.forms.reshape(*load.forms.shape[:-3], 1, points * variables, -1)
-    return np.asarray(gradients @ forms)
+    return np.asarray(gradients @ merged(load.forms, -3, -2)[..., None, :, :])
 
 
 def _local(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     """Return the local variables (..., samples, points, local variables)."""
-    flat = load.forms.reshape(*load.forms.shape[:-3], -1, load.forms.shape[-1])
-    values = state @ flat.swapaxes(-1, -2)
+    values = state @ merged(load.forms, -3, -2).swapaxes(-1, -2)
     return np.asarray(values.reshape(*values.shape[:-1], *load.forms.shape[-3:-1]))
 
 
@@ -99,7 +97,7 @@ def span_load(
     PolynomialLoad
         Of leading axes (lines, groups), with every quadrature point as a point.
     """
-    points = fields.reshape(*fields.shape[:-2], -1)
+    points = merged(fields, -2)
     diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
     factor = made_of.wind_factor.reshape(len(lines), 1, -1)
     coefficients = made_of.aerodynamics.reshape(len(lines), 1, -1, 3, 4)
@@ -154,7 +152,7 @@ def relative_wind_table(coefficients: FloatArray) -> FloatArray:
 @lru_cache
 def _relative_wind_basis() -> FloatArray:
     """Return the load per coefficient a_ij: (3, 4, 3 load components, monomials)."""
-    theta, v, w = ({(i,): 1.0} for i in range(3))
+    theta, v, w = (_variable(i) for i in range(3))
     one: _Series = {(): 1.0}
     cube_of_v = _scale(_product(v, _product(v, v)), -1.0 / 3.0)
     slope = _product(v, _sum(one, _sum(w, _product(w, w))))
@@ -174,6 +172,10 @@ def _relative_wind_basis() -> FloatArray:
 
 
 _Series = dict[tuple[int, ...], float]
+
+
+def _variable(index: int) -> _Series:
+    return {(index,): 1.0}
 
 
 def _product(a: _Series, b: _Series) -> _Series:
@@ -248,6 +250,6 @@ def published_load(
     form[..., TORSIONAL] = 1.0
     form[..., 3 + VERTICAL] = -f_vtheta / speed  # (A16)
     form[..., 3 + TORSIONAL] = -0.5 * diameter / speed
-    points = fields.reshape(*fields.shape[:-2], -1)
+    points = merged(fields, -2)
     angle = _angle_forms(points, diameter[..., None], factor)
     return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)

@@ -4,8 +4,8 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from engine.arrays import FloatArray, merged
 from engine.cycles import Cycles, Starts, energy_starts, explicit_starts, find_cycles, joined
 from engine.fem import FIELDS, matrices
 from engine.harmonic import Orbits, resized
@@ -19,7 +19,7 @@ from engine.hybrid import (
 )
 from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.outcome import Fault, InvalidSpec
-from engine.profile import FloatArray, static_profile
+from engine.profile import static_profile
 from engine.report import assembled
 from engine.result import Progress, Result
 from engine.rows import Found
@@ -156,9 +156,9 @@ def _lifted(made: Discretization, modes: FullModes, hybrid: Found, model: Reduce
     vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
     momentum = (vectors @ made.matrices.mass)[line]
     shapes = hybrid.model.shapes[member]
-    whole: NDArray[np.float64] = np.zeros((*shapes.shape[:2], shapes.shape[-1], FIELDS))
+    whole: FloatArray = np.zeros((*shapes.shape[:2], shapes.shape[-1], FIELDS))
     whole[..., 1:] = shapes.swapaxes(-1, -2)
-    lift = momentum @ whole.reshape(*shapes.shape[:2], -1).swapaxes(-1, -2)
+    lift = momentum @ merged(whole, -2).swapaxes(-1, -2)
     orbits = Orbits(
         lift @ cycles.orbits.coefficients[usable],
         cycles.orbits.angular_frequency[usable],

@@ -8,13 +8,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from engine.describing import energy_balance_cycles, explicit_cycles
+from engine.arrays import BoolArray, FloatArray, IntArray, merged
+from engine.describing import FirstHarmonic, energy_balance_cycles, explicit_cycles
 from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, balance, oscillation_size, resized
 from engine.hybrid import ReducedModel, take
-from engine.profile import FloatArray
 
 SAME = 1e-3  # relative distance below which two solutions are one
 UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
@@ -26,8 +25,8 @@ MOST_HARMONICS = 20
 class Starts:
     """First guesses: member and wind index of each, and the orbit guessed."""
 
-    member: NDArray[np.intp]
-    wind: NDArray[np.intp]
+    member: IntArray
+    wind: IntArray
     orbits: Orbits
 
 
@@ -40,30 +39,26 @@ class Cycles:
     even 20 harmonics do not resolve them.
     """
 
-    member: NDArray[np.intp]
-    wind: NDArray[np.intp]
-    branch: NDArray[np.intp]
+    member: IntArray
+    wind: IntArray
+    branch: IntArray
     orbits: Orbits
     floquet: Floquet
-    dropped: NDArray[np.intp]
+    dropped: IntArray
 
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Guess cycles of every unstable mode at every wind speed by the balance of energy, at three sizes each."""
+    """Guess cycles of every unstable mode at every wind speed by the balance of energy, at several sizes each."""
     member, wind = _grid(model, wind_speeds)
     guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
-    return _starts(
-        guess.member, member, wind, wind_speeds, guess.mean, guess.amplitude, guess.angular_frequency, harmonics
-    )
+    return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
 def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
     """Take the explicit cycles of the published closure as guesses, for members that are statically stable."""
     member, wind = _grid(published, wind_speeds)
     guess = explicit_cycles(take(published, member), wind_speeds[wind])
-    return _starts(
-        guess.member, member, wind, wind_speeds, guess.mean, guess.amplitude, guess.angular_frequency, harmonics
-    )
+    return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
 def joined(*starts: Starts) -> Starts:
@@ -122,18 +117,18 @@ class _Family:
 
     def __init__(self, model: ReducedModel) -> None:
         self.model = model
-        self.member: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
-        self.wind: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
+        self.member: IntArray = np.zeros(0, dtype=np.intp)
+        self.wind: IntArray = np.zeros(0, dtype=np.intp)
         self.orbits: list[tuple[FloatArray, float, float]] = []
         self.links: list[tuple[int, int]] = []
         self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
 
-    def orbits_of(self, ids: NDArray[np.intp]) -> Orbits:
+    def orbits_of(self, ids: IntArray) -> Orbits:
         """Stack the orbits with these numbers."""
         coefficients, frequency, speed = zip(*(self.orbits[i] for i in ids), strict=True)
         return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
 
-    def add(self, solved: tuple[Starts, NDArray[np.bool_]], origin: NDArray[np.intp]) -> Iterator[tuple[int, bool]]:
+    def add(self, solved: tuple[Starts, BoolArray], origin: IntArray) -> Iterator[tuple[int, bool]]:
         """Record solutions; yield the number of each and whether it is new."""
         starts, good = solved
         signatures = _signature(self.model, starts)
@@ -156,7 +151,7 @@ class _Family:
         known.append((len(self.orbits), signature))
         return len(self.orbits), True
 
-    def branches(self) -> NDArray[np.intp]:
+    def branches(self) -> IntArray:
         """Return the smallest number in the connected family of each cycle."""
         label = np.arange(len(self.orbits))
         changed = True
@@ -170,27 +165,25 @@ class _Family:
         return label
 
 
-def _grid(model: ReducedModel, wind_speeds: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _grid(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
     usable = np.flatnonzero(~model.statically_unstable)
     return np.repeat(usable, wind_speeds.size), np.tile(np.arange(wind_speeds.size), usable.size)
 
 
 def _starts(
-    row: NDArray[np.intp],
-    member: NDArray[np.intp],
-    wind: NDArray[np.intp],
+    guess: FirstHarmonic,
+    member: IntArray,
+    wind: IntArray,
     wind_speeds: FloatArray,
-    mean: FloatArray,
-    amplitude: NDArray[np.complex128],
-    angular_frequency: FloatArray,
     harmonics: int,
 ) -> Starts:
-    first = np.stack([mean, amplitude.real, -amplitude.imag], axis=-1)
-    orbits = Orbits(first, angular_frequency, wind_speeds[wind[row]])
-    return Starts(member[row], wind[row], resized(orbits, harmonics))
+    """Turn guesses at points of the grid into orbits with more harmonics."""
+    first = np.stack([guess.mean, guess.amplitude.real, -guess.amplitude.imag], axis=-1)
+    orbits = Orbits(first, guess.angular_frequency, wind_speeds[wind[guess.member]])
+    return Starts(member[guess.member], wind[guess.member], resized(orbits, harmonics))
 
 
-def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, NDArray[np.bool_]]:
+def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
     """Balance all starts and tell which ended on a cycle."""
     orbits, solution = balance(model, starts.member, starts.orbits)
     before = oscillation_size(model, starts.member, starts.orbits)
@@ -204,7 +197,7 @@ def _signature(model: ReducedModel, starts: Starts) -> FloatArray:
     weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[starts.member]
     coefficients = starts.orbits.coefficients * weight[..., None]
     size = np.hypot(coefficients[..., 1::2], coefficients[..., 2::2])
-    return np.concatenate([coefficients[..., 0], size.reshape(size.shape[0], -1)], axis=-1)
+    return np.concatenate([coefficients[..., 0], merged(size, -2)], axis=-1)
 
 
 def _judged(model: ReducedModel, family: _Family) -> Cycles:
@@ -233,7 +226,7 @@ def _judged(model: ReducedModel, family: _Family) -> Cycles:
 
 
 def _refined(
-    model: ReducedModel, member: NDArray[np.intp], orbits: Orbits, judged: Floquet, coarse: NDArray[np.intp]
+    model: ReducedModel, member: IntArray, orbits: Orbits, judged: Floquet, coarse: IntArray
 ) -> tuple[Orbits, Floquet]:
     """Balance some cycles again with the most harmonics and judge them anew."""
     finer, solution = balance(model, member[coarse], resized(_pick(orbits, coarse), MOST_HARMONICS))
@@ -251,7 +244,7 @@ def _refined(
     return Orbits(orbits.coefficients, frequency, orbits.wind_speed), Floquet(multipliers, error, stability)
 
 
-def _renumbered(member: NDArray[np.intp], wind: NDArray[np.intp], branch: NDArray[np.intp]) -> NDArray[np.intp]:
+def _renumbered(member: IntArray, wind: IntArray, branch: IntArray) -> IntArray:
     """Count the branches of each member from 0 in the order of their lowest wind speed."""
     numbers: dict[tuple[int, int], int] = {}
     count: dict[int, int] = {}
@@ -263,7 +256,7 @@ def _renumbered(member: NDArray[np.intp], wind: NDArray[np.intp], branch: NDArra
     return np.array([numbers[(int(m), int(b))] for m, b in zip(member, branch, strict=True)], dtype=np.intp)
 
 
-def _pick(orbits: Orbits, index: NDArray[np.intp]) -> Orbits:
+def _pick(orbits: Orbits, index: IntArray) -> Orbits:
     return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
 
 

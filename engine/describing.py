@@ -9,19 +9,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.aerodynamics import force
+from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray
 from engine.hybrid import ReducedModel, take
-from engine.profile import FloatArray
 from engine.stability import at_wind, state_matrices
 
 LARGEST_ANGLE = 3.0  # rad; the cubic load has no meaning beyond
 GRID = 72
 NEIGHBOURS = np.array([1.0, 0.6, 1.6])  # of the size that the energy balance gives
 ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
-
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +29,7 @@ class FirstHarmonic:
     mean: (cycles, 3); amplitude: (cycles, 3), complex.
     """
 
-    member: NDArray[np.intp]
+    member: IntArray
     angular_frequency: FloatArray
     angle: FloatArray
     mean: FloatArray
@@ -134,7 +131,7 @@ def _gains(alpha: FloatArray, angle: FloatArray) -> FloatArray:
     return np.stack([np.ones_like(alpha), 2.0 * alpha, 3.0 * alpha**2 + 0.75 * angle**2], axis=-1)
 
 
-def _even_part(scalar: _Scalar, member: NDArray[np.intp], angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _even_part(scalar: _Scalar, member: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the even part of the polynomial at both roots w^2 of its odd part, and those roots: (..., 2) each."""
     gains = _gains(_mean_angle(scalar.static[member], angle), angle)
     factors = np.concatenate([np.ones((*angle.shape, 1)), -gains], axis=-1)
@@ -149,13 +146,13 @@ def _even_part(scalar: _Scalar, member: NDArray[np.intp], angle: FloatArray) -> 
     return even, square
 
 
-def _branch(scalar: _Scalar, member: NDArray[np.intp], root: NDArray[np.intp], angle: FloatArray) -> FloatArray:
+def _branch(scalar: _Scalar, member: IntArray, root: IntArray, angle: FloatArray) -> FloatArray:
     """Return the even part at one of the two roots of the odd part: (brackets,)."""
     return np.asarray(_even_part(scalar, member, angle)[0][np.arange(member.size), root])
 
 
 def _real_part(
-    scalar: _Scalar, member: NDArray[np.intp], root: NDArray[np.intp], left: FloatArray, right: FloatArray
+    scalar: _Scalar, member: IntArray, root: IntArray, left: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Cut each cell to where the root of the odd part is real and positive: pairs of roots may be born inside."""
     known = [np.isfinite(_branch(scalar, member, root, end)) for end in (left, right)]
@@ -166,7 +163,7 @@ def _real_part(
 
 
 def _bisected(
-    like_left: Callable[[FloatArray], NDArray[np.bool_]], left: FloatArray, right: FloatArray
+    like_left: Callable[[FloatArray], BoolArray], left: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Halve brackets until they are as narrow as the numbers allow."""
     for _ in range(45):
@@ -180,8 +177,8 @@ def _cycles(
     model: ReducedModel,
     wind_speed: FloatArray,
     scalar: _Scalar,
-    member: NDArray[np.intp],
-    root: NDArray[np.intp],
+    member: IntArray,
+    root: IntArray,
     angle: FloatArray,
 ) -> FirstHarmonic:
     _, square = _even_part(scalar, member, angle)
@@ -189,11 +186,11 @@ def _cycles(
     alpha = _mean_angle(scalar.static[member], angle)
     vectors = wind_speed[member, None, None] ** 2 * model.load.table[member, 0].swapaxes(-1, -2)
     gain = (_gains(alpha, angle)[:, None] @ vectors)[:, 0]
-    dynamic = _dynamic_stiffness(take(model, member), 1j * frequency[:, None])[:, 0]
+    dynamic = _dynamic_stiffness(take(model, member), _complex(1j * frequency[:, None]))[:, 0]
     amplitude = np.linalg.solve(dynamic, (gain * angle[:, None])[..., None].astype(np.complex128))[..., 0]
     mean_load = np.stack([alpha, alpha**2 + 0.5 * angle**2, alpha**3 + 1.5 * alpha * angle**2], axis=-1)
     mean = np.linalg.solve(model.stiffness[member], (mean_load[:, None] @ vectors)[:, 0, :, None])[..., 0]
-    return FirstHarmonic(member, frequency, angle, mean, amplitude)
+    return FirstHarmonic(member, frequency, angle, mean, _complex(amplitude))
 
 
 def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
@@ -222,15 +219,19 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     m = model.mass.shape[-1]
     weight = 1.0 / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
     frequency = values.imag[member, mode]
-    shape = vectors[member, :m, mode] * weight
+    shape = _complex(vectors[member, :m, mode] * weight)
     linear, cubic = _work(take(model, member), wind_speed[member], frequency, shape)
     grows = (linear > 0.0) & (cubic < 0.0)
     size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
     chosen = np.tile(np.flatnonzero(grows), len(NEIGHBOURS))
     factor = np.repeat(NEIGHBOURS, grows.sum())
-    amplitude = (factor * size[chosen])[:, None] * shape[chosen]
+    amplitude = _complex((factor * size[chosen])[:, None] * shape[chosen])
     none = np.full(chosen.size, np.nan)
     return FirstHarmonic(member[chosen], frequency[chosen], none, np.zeros((chosen.size, m)), amplitude)
+
+
+def _complex(values: AnyArray) -> ComplexArray:
+    return np.asarray(values, dtype=np.complex128)
 
 
 def _work(

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.profile import GRAVITY, FloatArray, StaticProfile, arc_position, coordinates
+from engine.arrays import BoolArray, FloatArray
+from engine.profile import GRAVITY, StaticProfile, arc_position, coordinates
 from engine.sections import Sections, gauss_rule
 from engine.spec import AirflowSpoiler, DetuningPendulum, Line, Spacer
 
@@ -30,7 +31,7 @@ class Matrices:
 
     stiffness: FloatArray
     mass: FloatArray
-    fixed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
+    fixed: BoolArray
     interpolation: FloatArray
     weight: FloatArray
 
@@ -172,7 +173,7 @@ def _assemble(element: FloatArray) -> FloatArray:
     return total
 
 
-def _fixed(profile: StaticProfile, freedoms: int) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+def _fixed(profile: StaticProfile, freedoms: int) -> BoolArray:
     fixed = np.zeros((profile.arc_length.size, freedoms), dtype=np.bool_)
     fixed[:, [V, W, THETA, -FIELDS + V, -FIELDS + W, -FIELDS + THETA]] = True
     fixed[:, [U, -FIELDS + U]] = np.isinf(profile.end_stiffness)

@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.aerodynamics import force_gradient
+from engine.arrays import ComplexArray, FloatArray, ObjectArray
 from engine.harmonic import Orbits, states
 from engine.hybrid import ReducedModel
 from engine.outcome import Stability
-from engine.profile import FloatArray
 
 PHASE_PER_STEP = 0.6  # rad of the fastest mode: the exponential series below is then exact to 1e-8
 FEWEST_STEPS = 24
@@ -24,9 +23,9 @@ class Floquet:
     bounds what the others may be trusted to; stability: (cycles,) of Stability.
     """
 
-    multipliers: NDArray[np.complex128]
+    multipliers: ComplexArray
     trivial_error: FloatArray
-    stability: NDArray[np.object_]
+    stability: ObjectArray
 
 
 def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
@@ -51,7 +50,7 @@ def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
     return Floquet(values, error, judged(largest, error))
 
 
-def judged(largest: FloatArray, error: FloatArray) -> NDArray[np.object_]:
+def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
     """Judge by the largest modulus of the other multipliers: what the error does not decide is unknown."""
     margin = np.maximum(3.0 * error, 1e-7)
     result = np.full(largest.shape, Stability.UNKNOWN, dtype=np.object_)

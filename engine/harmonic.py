@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.aerodynamics import force, force_gradient
+from engine.arrays import FloatArray, IntArray, merged
 from engine.hybrid import ReducedModel, take
 from engine.newton import Options, Solution, newton
-from engine.profile import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +89,7 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     gradient = force_gradient(model.load, _sampled(orbits, made))
     omega = orbits.angular_frequency[:, None, None]
     speed = orbits.wind_speed[:, None, None]
-    flat = np.moveaxis(gradient, 1, -1).reshape(cycles, m, 2, m, -1)
+    flat = np.moveaxis(gradient, 1, -1).reshape(cycles, m, 2, m, made.values.shape[0])
     by_value, by_slope = _products(orbits.coefficients.shape[-1] // 2)
     q_part = (speed**2)[..., None, None] * (flat[:, :, 0] @ by_value).reshape(cycles, m, m, size, size)
     v_part = (speed * omega)[..., None, None] * (flat[:, :, 1] @ by_slope).reshape(cycles, m, m, size, size)
@@ -102,11 +101,11 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     by_omega = 2.0 * omega * model.mass @ (slope @ made.derivative.T) + model.damping @ slope
     velocity = (orbits.coefficients @ made.slopes.T).swapaxes(-1, -2)[..., None] * speed[..., None]
     by_omega -= (made.projection @ (gradient[..., m:] @ velocity)[..., 0]).swapaxes(-1, -2)
-    return np.concatenate([by_coefficients, by_omega.reshape(cycles, -1, 1)], axis=-1)
+    return np.concatenate([by_coefficients, merged(by_omega, -2)[..., None]], axis=-1)
 
 
 def balance(
-    model: ReducedModel, member: NDArray[np.intp], start: Orbits, options: Options | None = None
+    model: ReducedModel, member: IntArray, start: Orbits, options: Options | None = None
 ) -> tuple[Orbits, Solution]:
     """Solve the harmonic balance from many starts at once.
 
@@ -127,19 +126,20 @@ def balance(
     Solution
         How it went; a start that fell to the equilibrium counts as not converged.
     """
-    cycles, m, size = start.coefficients.shape
+    _, m, size = start.coefficients.shape
     weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
-    reference = (weight[..., None] ** 2 * (start.coefficients @ basis(size // 2).derivative.T)).reshape(cycles, -1)
+    given = merged(start.coefficients, -2)
+    reference = merged(weight[..., None] ** 2 * (start.coefficients @ basis(size // 2).derivative.T), -2)
     norm = np.sqrt(np.einsum("cms,cm->c", start.coefficients**2, weight**2))
     scale = np.repeat(norm[:, None] / weight, size, axis=-1) / np.sqrt(m * size)
     scale = np.concatenate([scale, start.angular_frequency[:, None] / np.sqrt(m * size)], axis=-1)
-    x = np.concatenate([start.coefficients.reshape(cycles, -1), start.angular_frequency[:, None]], axis=-1)
+    x = np.concatenate([given, start.angular_frequency[:, None]], axis=-1)
 
-    def system(x: FloatArray, active: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+    def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
         here = take(model, member[active])
         orbits = _unpacked(x, m, start.wind_speed[active])
-        rows = residual(here, orbits).reshape(active.size, -1)
-        drift = np.einsum("cx,cx->c", reference[active], x[:, :-1] - start.coefficients.reshape(cycles, -1)[active])
+        rows = merged(residual(here, orbits), -2)
+        drift = np.einsum("cx,cx->c", reference[active], x[:, :-1] - given[active])
         phase = np.concatenate([reference[active], np.zeros((active.size, 1))], axis=-1)
         matrix = np.concatenate([jacobian(here, orbits), phase[:, None]], axis=1)
         return np.concatenate([rows, drift[:, None]], axis=-1), matrix
@@ -148,7 +148,7 @@ def balance(
     return _unpacked(solution.x, m, start.wind_speed), solution
 
 
-def oscillation_size(model: ReducedModel, member: NDArray[np.intp], orbits: Orbits) -> FloatArray:
+def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
     """Return the root of sum M_ii |q_i|^2 over the oscillating harmonics: (cycles,)."""
     weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
     return np.asarray(np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight)))
@@ -213,4 +213,4 @@ def _blocks(matrix: FloatArray, operator: FloatArray) -> FloatArray:
 
 
 def _unpacked(x: FloatArray, m: int, wind_speed: FloatArray) -> Orbits:
-    return Orbits(x[:, :-1].reshape(x.shape[0], m, -1), x[:, -1], wind_speed)
+    return Orbits(x[:, :-1].reshape(x.shape[0], m, x.shape[1] // m), x[:, -1], wind_speed)

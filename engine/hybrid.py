@@ -8,12 +8,12 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.aerodynamics import PolynomialLoad, integrated, published_load, span_load
+from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.fem import FIELDS, THETA, Matrices, U, V, W, shape_functions
 from engine.modes import DirectionalShapes, FullModes, at_points
-from engine.profile import FloatArray, StaticProfile
+from engine.profile import StaticProfile
 from engine.sections import Sections
 from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, Line, LongitudinalInertia
 
@@ -34,8 +34,8 @@ class ReducedModel:
     stiffness: FloatArray
     load: PolynomialLoad
     shapes: FloatArray
-    direction: NDArray[np.intp]
-    statically_unstable: NDArray[np.bool_]
+    direction: IntArray
+    statically_unstable: BoolArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def hybrid_model(
     square = np.where(constant[:, None, None], one_loop[:, None], own)
     rate = 2.0 * _ratios(made.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
     damping = _diagonal(rate * np.diagonal(mass, axis1=-2, axis2=-1))  # (11)
-    unstable = (square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0)
+    unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
     nodal = _diagonal_fields(shapes.nodal[:, picked, 1:])
     load = _hybrid_load(made, nodal, analysis)
     return ReducedModel(mass, damping, stiffness, load, nodal, np.arange(3), unstable)
@@ -103,7 +103,7 @@ def finite_element_model(
     nodal = vectors.reshape(*vectors.shape[:2], nodes, FIELDS)[..., list(TRANSVERSE)].swapaxes(-1, -2)
     at = at_points(made.matrices, nodal)
     load = span_load(made.lines, made.sections, made.matrices.weight, at[:, None], analysis.aerodynamic_model)
-    unstable = (values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2))
+    unstable = np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
     return ReducedModel(
         mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
         damping=_modal_damping(made, vectors, shapes, modes.loops),
@@ -134,7 +134,7 @@ def take_load(load: PolynomialLoad, index: Any) -> PolynomialLoad:
 
 
 def observation(made: Discretization, shapes: FloatArray, loops: int) -> FloatArray:
-    """Return V, W, Theta at s = L/(2 loops) of each co-ordinate: (lines, ..., m, 3) from shapes (lines, ..., m, 3, nodes)."""
+    """Return V, W, Theta at s = L/(2 loops), (..., m, 3), of co-ordinates with shapes (..., m, 3, nodes)."""
     elements = made.lines[0].span.elements
     scaled = elements / (2.0 * loops)
     element = min(int(scaled), elements - 1)
@@ -147,10 +147,8 @@ def _condensed(
 ) -> tuple[FloatArray, FloatArray]:
     """Project onto f_u, f_v, f_w, f_theta and condense f_u: M and K (lines, loops, 3, 3), eqs. (18)-(20)."""
     lines, loops, _, nodes = shapes.nodal.shape
-    basis = np.zeros((lines, loops, FIELDS, nodes, FIELDS))
-    for field in range(FIELDS):
-        basis[:, :, field, :, field] = shapes.nodal[:, :, field]
-    basis = basis.reshape(lines, loops, FIELDS, nodes * FIELDS)
+    spread = shapes.nodal[..., None] * np.eye(FIELDS)[:, None, :]
+    basis = spread.reshape(lines, loops, FIELDS, nodes * FIELDS)
     stiffness = basis @ system.stiffness[:, None] @ basis.swapaxes(-1, -2)
     mass = basis @ system.mass[:, None] @ basis.swapaxes(-1, -2)
     follow = -stiffness[..., :1, 1:] / stiffness[..., :1, :1]

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from engine.aerodynamics import force
+from engine.arrays import FloatArray
 from engine.hybrid import ReducedModel
 from engine.outcome import Outcome
-from engine.profile import FloatArray
 
 SAMPLES = 64  # a cycle
 BLOCK = 50  # cycles between two looks at the amplitude
@@ -58,7 +58,7 @@ def integrate(
     Settled
     """
     period = 2.0 * np.pi / _slowest(model)
-    times = np.arange(BLOCK * SAMPLES + 1) * (period / SAMPLES)
+    times = np.linspace(0.0, BLOCK * period, BLOCK * SAMPLES + 1)
     state, before = start, np.full(model.mass.shape[-1], np.inf)
     for block in range(1, longest // BLOCK + 1):
         history = _advance(model, wind_speed, state, times)

@@ -6,10 +6,9 @@ Theory section 4. All problems are symmetric generalized eigenproblems, solved o
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.fem import FIELDS, THETA, Matrices, U, V, W
-from engine.profile import FloatArray
 
 DIRECTIONS = (V, W, THETA)
 
@@ -96,7 +95,7 @@ def at_points(system: Matrices, nodal: FloatArray) -> FloatArray:
     lines = nodal.shape[0]
     flat = by_element.reshape(lines, -1, elements, 3)
     values = np.einsum("lrea,lepa->lrep", flat, system.interpolation, optimize=True)
-    return values.reshape(*nodal.shape[:-1], elements, system.weight.shape[2])
+    return np.asarray(values.reshape(*nodal.shape[:-1], elements, system.weight.shape[2]))
 
 
 def solve_symmetric(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -108,19 +107,19 @@ def solve_symmetric(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray
     return values, np.linalg.solve(factor.swapaxes(-1, -2), vectors)
 
 
-def _always_fixed(freedoms: int) -> NDArray[np.bool_]:
+def _always_fixed(freedoms: int) -> BoolArray:
     held = np.zeros(freedoms, dtype=np.bool_)
     held[[V, W, THETA, V - FIELDS, W - FIELDS, THETA - FIELDS]] = True
     return held
 
 
-def _freedoms(fields: tuple[int, ...], nodes: int) -> NDArray[np.intp]:
+def _freedoms(fields: tuple[int, ...], nodes: int) -> IntArray:
     every = np.arange(FIELDS * nodes)
     return every[np.isin(every % FIELDS, fields) & ~_always_fixed(FIELDS * nodes)]
 
 
 def _labelled(
-    system: Matrices, freedoms: NDArray[np.intp], directions: tuple[int, ...], loops: tuple[int, ...]
+    system: Matrices, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...]
 ) -> tuple[FloatArray, FloatArray]:
     """Solve on some freedoms and pick one mode for each direction and number of loops.
 
@@ -140,7 +139,7 @@ def _labelled(
     return picked * sign, np.take_along_axis(values, chosen, axis=-1)
 
 
-def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: NDArray[np.bool_]) -> None:
+def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: BoolArray) -> None:
     """Cut held freedoms off from the rest: each becomes a mode of its own that overlaps with no loop."""
     lines, held = np.nonzero(fixed)
     for matrix in (stiffness, mass):
@@ -150,14 +149,14 @@ def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: NDArray[np.bool_])
         matrix[lines, held, held] = diagonal
 
 
-def _sines(freedoms: NDArray[np.intp], nodes: int, directions: tuple[int, ...], loops: tuple[int, ...]) -> FloatArray:
+def _sines(freedoms: IntArray, nodes: int, directions: tuple[int, ...], loops: tuple[int, ...]) -> FloatArray:
     """Return sin(k pi s/L) in each direction on the freedoms: (labels, freedoms)."""
     node, field = np.divmod(freedoms, FIELDS)
     wave = np.sin(np.pi * np.outer(loops, node) / (nodes - 1))
     return np.concatenate([wave * (field == direction) for direction in directions])
 
 
-def assign(score: FloatArray) -> NDArray[np.intp]:
+def assign(score: FloatArray) -> IntArray:
     """Give each label the mode of largest score, the surest label first, one mode a label.
 
     score: (lines, labels, modes), not negative; returns (lines, labels).

@@ -4,12 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
 from engine.outcome import Outcome
 
-FloatArray = NDArray[np.float64]
-System = Callable[[FloatArray, NDArray[np.intp]], tuple[FloatArray, FloatArray]]
+System = Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,12 +29,12 @@ class Solution:
     """
 
     x: FloatArray
-    outcome: NDArray[np.object_]
+    outcome: ObjectArray
     step: FloatArray
-    iterations: NDArray[np.intp]
+    iterations: IntArray
 
     @property
-    def converged(self) -> NDArray[np.bool_]:
+    def converged(self) -> BoolArray:
         """Members that met the tolerance, (members,)."""
         return np.asarray(self.outcome == Outcome.CONVERGED, dtype=np.bool_)
 
@@ -75,19 +74,20 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | 
         step[active] = size
         iterations[active] += 1
         active = active[size > options.tolerance]
-    outcome = np.where(step <= options.tolerance, Outcome.CONVERGED, Outcome.NO_CONVERGENCE)
+    outcome = np.full(step.shape, Outcome.NO_CONVERGENCE, dtype=np.object_)
+    outcome[step <= options.tolerance] = Outcome.CONVERGED
     return Solution(x, outcome, step, iterations)
 
 
 def _solve(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
     try:
-        return -np.linalg.solve(jacobian, residual[..., None])[..., 0]
+        return np.asarray(-np.linalg.solve(jacobian, residual[..., None])[..., 0], dtype=np.float64)
     except np.linalg.LinAlgError:
         return np.stack([_solve_one(r, j) for r, j in zip(residual, jacobian, strict=True)])
 
 
 def _solve_one(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
     try:
-        return -np.linalg.solve(jacobian, residual)
+        return np.asarray(-np.linalg.solve(jacobian, residual), dtype=np.float64)
     except np.linalg.LinAlgError:
         return np.full_like(residual, np.nan)

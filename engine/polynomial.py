@@ -10,7 +10,7 @@ from math import comb
 
 import numpy as np
 
-from engine.profile import FloatArray
+from engine.arrays import FloatArray, IntArray
 
 DEGREE = 3
 
@@ -37,7 +37,7 @@ def powers(x: FloatArray, degree: int = DEGREE) -> FloatArray:
 @lru_cache
 def _products(
     variables: int,
-) -> tuple[tuple[np.ndarray[tuple[int], np.dtype[np.intp]], np.ndarray[tuple[int], np.dtype[np.intp]]], ...]:
+) -> tuple[tuple[IntArray, IntArray], ...]:
     """Say for degrees 2 and 3 which monomial of one degree less and which variable multiply to each monomial."""
     pairs = []
     for degree in (2, 3):

@@ -4,12 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from engine.arrays import FloatArray
 from engine.spec import IceSegment, Line, Support
 
 GRAVITY = 9.81
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

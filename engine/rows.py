@@ -2,23 +2,24 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from engine.arrays import FloatArray, IntArray
 from engine.cycles import Cycles
 from engine.harmonic import half_peak_to_peak, states
 from engine.hybrid import Discretization, ReducedModel, observation, take
 from engine.modes import assign, solve_symmetric
 from engine.outcome import Outcome, Stability
-from engine.profile import FloatArray, horizontal_position
+from engine.profile import horizontal_position
 from engine.result import CriticalWindSpeedRow, Direction, FrequencyRow, LimitCycleRow
 from engine.spec import Model
 from engine.stability import Crossings, at_wind, state_matrices, unstable_pairs
 
 DIRECTION_NAMES: tuple[Direction, ...] = ("vertical", "horizontal", "torsional")
 ANGLE_SAMPLES = 48
+_UNSTABLE, _LOST = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +32,8 @@ class Found:
 
     name: Model
     model: ReducedModel
-    line: NDArray[np.intp]
-    loops: NDArray[np.intp]
+    line: IntArray
+    loops: IntArray
     crossings: Crossings
     cycles: Cycles
     winds: FloatArray
@@ -131,27 +132,21 @@ def _equilibria(found: Found, loops: tuple[int, ...], scales: _Scales) -> Iterat
     values = np.linalg.eigvals(at_wind(state_matrices(found.model), speeds)).astype(np.complex128)
     pairs = unstable_pairs(values)
     size = np.abs(values).max(axis=-1, initial=0.0)
-    undecided = np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size
-    oscillating = ((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1)
+    undecided = np.asarray(np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size)
+    oscillating = np.asarray(((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1))
     reached = set(zip(found.cycles.member.tolist(), found.cycles.wind.tolist(), strict=True))
-    for member, line in enumerate(found.line):
+    for member, line in enumerate(found.line.tolist()):
         static = bool(found.model.statically_unstable[member])
         for wind, k in ((w, k) for k in loops if k in found.loops[member] for w in range(found.winds.size)):
+            place = _Place(found.name, k, float(found.winds[wind]), line)
+            if static:
+                yield line, Motion(_row(place, scales, _State("equilibrium", Stability.UNSTABLE, _UNSTABLE)))
+                continue
             stability = Stability.UNSTABLE if pairs[member, wind] else Stability.STABLE
             stability = Stability.UNKNOWN if undecided[member, wind] else stability
-            base = _Blank(found.name, k, float(found.winds[wind]), int(line))
-            if static:
-                yield (
-                    int(line),
-                    Motion(_row(base, scales, "equilibrium", Stability.UNSTABLE, Outcome.STATICALLY_UNSTABLE)),
-                )
-                continue
-            yield (
-                int(line),
-                Motion(_row(base, scales, "equilibrium", stability, Outcome.CONVERGED, amplitude=(0.0, 0.0, 0.0))),
-            )
+            yield line, Motion(_row(place, scales, _State("equilibrium", stability, amplitude=(0.0, 0.0, 0.0))))
             if oscillating[member, wind] and (member, wind) not in reached and k == found.loops[member, 0]:
-                yield int(line), Motion(_row(base, scales, "periodic", Stability.UNKNOWN, Outcome.NO_CONVERGENCE))
+                yield line, Motion(_row(place, scales, _State("periodic", Stability.UNKNOWN, _LOST)))
 
 
 def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
@@ -170,10 +165,8 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
     outside = _largest_angle(found) > made.sections.fitted_range[line]
     branch = _branch_numbers(found)
     for i in range(cycles.member.size):
-        base = _Blank(found.name, int(loops[i]), float(cycles.orbits.wind_speed[i]), int(line[i]))
-        row = _row(
-            base,
-            scales,
+        place = _Place(found.name, int(loops[i]), float(cycles.orbits.wind_speed[i]), int(line[i]))
+        state = _State(
             "periodic",
             cycles.floquet.stability[i],
             Outcome.OUTSIDE_FIT if outside[i] else Outcome.CONVERGED,
@@ -181,11 +174,11 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
             frequency=float(cycles.orbits.angular_frequency[i] / (2.0 * np.pi)),
             branch=int(branch[i]),
         )
-        yield int(line[i]), Motion(row, series[i])
+        yield int(line[i]), Motion(_row(place, scales, state), series[i])
 
 
 @dataclass(frozen=True, slots=True)
-class _Blank:
+class _Place:
     """What identifies a row: model, loops, wind speed [m/s] and the index of the line."""
 
     model: Model
@@ -194,29 +187,31 @@ class _Blank:
     line: int
 
 
-def _row(
-    base: _Blank,
-    scales: _Scales,
-    kind: str,
-    stability: Stability,
-    outcome: Outcome,
-    *,
-    amplitude: tuple[float | None, ...] = (None, None, None),
-    frequency: float | None = None,
-    branch: int | None = None,
-) -> LimitCycleRow:
-    vertical, horizontal, torsional = amplitude
-    sag, speed = float(scales.sag[base.line]), float(scales.speed[base.line])
+@dataclass(frozen=True, slots=True)
+class _State:
+    """What was found there; amplitude holds V, W [m] and Theta [rad], frequency is in Hz."""
+
+    kind: Literal["equilibrium", "periodic"]
+    stability: Stability
+    outcome: Outcome = Outcome.CONVERGED
+    amplitude: tuple[float | None, ...] = (None, None, None)
+    frequency: float | None = None
+    branch: int | None = None
+
+
+def _row(place: _Place, scales: _Scales, state: _State) -> LimitCycleRow:
+    vertical, horizontal, torsional = state.amplitude
+    sag, speed = float(scales.sag[place.line]), float(scales.speed[place.line])
     return LimitCycleRow(
-        model=base.model,
-        loops=base.loops,
-        wind_speed_m_per_s=base.wind_speed,
-        branch=branch,
-        kind="periodic" if kind == "periodic" else "equilibrium",
-        stability=stability,
-        frequency_hz=frequency,
+        model=place.model,
+        loops=place.loops,
+        wind_speed_m_per_s=place.wind_speed,
+        branch=state.branch,
+        kind=state.kind,
+        stability=state.stability,
+        frequency_hz=state.frequency,
         second_frequency_hz=None,
-        observed_at_m=float(scales.observed[base.loops][base.line]),
+        observed_at_m=float(scales.observed[place.loops][place.line]),
         vertical_m=vertical,
         horizontal_m=horizontal,
         torsional_rad=torsional,
@@ -225,8 +220,8 @@ def _row(
         torsional_min_rad=None,
         vertical_ratio=None if vertical is None else vertical / sag,
         horizontal_ratio=None if horizontal is None else horizontal / sag,
-        reduced_wind_speed=base.wind_speed / speed if np.isfinite(speed) else None,
-        outcome=outcome,
+        reduced_wind_speed=place.wind_speed / speed if np.isfinite(speed) else None,
+        outcome=state.outcome,
     )
 
 
@@ -243,7 +238,7 @@ def _observed_at(made: Discretization, loops: int) -> FloatArray:
     return horizontal_position(made.profile, made.profile.arc_length / (2.0 * loops))
 
 
-def _own_loops(found: Found) -> NDArray[np.intp]:
+def _own_loops(found: Found) -> IntArray:
     """Return the number of loops of the co-ordinate of largest M_ii |q_i|^2 in each cycle."""
     mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[found.cycles.member]
     energy = mass * (found.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
@@ -258,7 +253,7 @@ def _largest_angle(found: Found) -> FloatArray:
     return np.asarray(np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2)))
 
 
-def _branch_numbers(found: Found) -> NDArray[np.intp]:
+def _branch_numbers(found: Found) -> IntArray:
     """Number the branches of each member by the onset they are born from: the one of nearest frequency."""
     cycles, crossings = found.cycles, found.crossings
     order: dict[int, list[tuple[float, float, int]]] = {}

@@ -10,7 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.profile import FloatArray, StaticProfile, arc_position, horizontal_position
+from engine.arrays import FloatArray
+from engine.profile import StaticProfile, arc_position, horizontal_position
 from engine.spec import Aerodynamics, AirflowSpoiler, Line, ice_properties
 
 PIECE_POINTS = 5  # exact to degree 9: cubic loads of quadratic shapes, times a shape
@@ -89,9 +90,7 @@ def _piece_edges(lines: Sequence[Line], profile: StaticProfile, elements: int) -
     """Return the local co-ordinates of the piece boundaries, (lines, elements, pieces + 1), padded by empty pieces."""
     marks = [np.array(boundaries(line)) for line in lines]
     most = max(m.size for m in marks)
-    padded = np.stack(
-        [np.pad(m, (0, most - m.size), constant_values=line.span.length) for m, line in _paired(marks, lines)]
-    )
+    padded = np.stack([np.append(m, [x.span.length] * (most - m.size)) for m, x in zip(marks, lines, strict=True)])
     scaled = arc_position(profile, padded) * (elements / profile.arc_length[:, None])
     local = np.clip(2.0 * (scaled[:, None, :] - np.arange(elements)[:, None]) - 1.0, -1.0, 1.0)
     inside = (np.abs(local) < 1.0).sum(axis=-1).max(initial=0)
@@ -99,10 +98,6 @@ def _piece_edges(lines: Sequence[Line], profile: StaticProfile, elements: int) -
     # A mark outside an element was clipped to one of its ends: those pieces are empty, and the surplus is dropped.
     inner = np.sort(np.where(np.abs(local) < 1.0, local, 1.0), axis=-1)[..., :inside]
     return np.concatenate([-ends, inner, ends], axis=-1)
-
-
-def _paired(marks: Sequence[FloatArray], lines: Sequence[Line]) -> list[tuple[FloatArray, Line]]:
-    return list(zip(marks, lines, strict=True))
 
 
 def _line_properties(line: Line, position: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -129,7 +124,7 @@ def _wind_factor(line: Line, position: FloatArray) -> FloatArray:
     if not line.wind.profile:
         return np.ones(position.shape)
     marks, factors = zip(*line.wind.profile, strict=True)
-    return np.interp(position, marks, factors)
+    return np.asarray(np.interp(position, marks, factors))
 
 
 def _table(aerodynamics: Aerodynamics) -> FloatArray:

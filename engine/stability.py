@@ -4,13 +4,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.aerodynamics import force_gradient
+from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from engine.hybrid import ReducedModel
-from engine.profile import FloatArray
-
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +31,13 @@ class Crossings:
     M_ii |x_i|^2; unstable_after: unstable pairs (a real eigenvalue counts as one) just above.
     """
 
-    member: NDArray[np.intp]
+    member: IntArray
     wind_speed: FloatArray
     angular_frequency: FloatArray
-    onset: NDArray[np.bool_]
-    oscillation: NDArray[np.bool_]
-    co_ordinate: NDArray[np.intp]
-    unstable_after: NDArray[np.intp]
+    onset: BoolArray
+    oscillation: BoolArray
+    co_ordinate: IntArray
+    unstable_after: IntArray
 
 
 def state_matrices(model: ReducedModel) -> StateMatrices:
@@ -115,7 +112,7 @@ def critical_wind_speeds(model: ReducedModel, limit: float) -> Crossings:
     return _described(_pick(matrices, member), member, speed, oscillation, limit)
 
 
-def unstable_pairs(eigenvalues: ComplexArray) -> NDArray[np.intp]:
+def unstable_pairs(eigenvalues: ComplexArray) -> IntArray:
     """Count unstable pairs, a real eigenvalue as one, of eigenvalues (..., n): (...)."""
     size = np.abs(eigenvalues).max(axis=-1, keepdims=True)
     unstable = (eigenvalues.real > 1e-12 * size) & (eigenvalues.imag >= 0.0)
@@ -143,11 +140,11 @@ def _antisymmetric(n: int) -> tuple[FloatArray, FloatArray]:
     return 0.5 * injection.T, injection
 
 
-def _pick(matrices: StateMatrices, members: NDArray[np.intp]) -> StateMatrices:
+def _pick(matrices: StateMatrices, members: IntArray) -> StateMatrices:
     return StateMatrices(matrices.constant[members], matrices.linear[members], matrices.quadratic[members])
 
 
-def _oscillations(matrices: StateMatrices, limit: float) -> tuple[NDArray[np.intp], FloatArray]:
+def _oscillations(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
     """Return members and wind speeds of all imaginary pairs, polished by Newton's method on the growth rate."""
     member, speed = _singular_speeds(matrices, limit)
     here = _pick(matrices, member)
@@ -160,7 +157,7 @@ def _oscillations(matrices: StateMatrices, limit: float) -> tuple[NDArray[np.int
     return member[found], speed[found]
 
 
-def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[NDArray[np.intp], FloatArray]:
+def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
     """Solve (B_0 + U B_1 + U^2 B_2) v = 0 for real U in (0, limit] as an eigenproblem in limit/U."""
     b_0, b_1, b_2 = (bialternate_sum(a) for a in (matrices.constant, matrices.linear, matrices.quadratic))
     size = b_0.shape[-1]
@@ -190,7 +187,7 @@ def _nearest_pair(matrices: StateMatrices, speed: FloatArray) -> tuple[ComplexAr
     return values[row, chosen], slopes[row, chosen], vectors[row, :, chosen]
 
 
-def _divergences(model: ReducedModel, usable: NDArray[np.intp], limit: float) -> tuple[NDArray[np.intp], FloatArray]:
+def _divergences(model: ReducedModel, usable: IntArray, limit: float) -> tuple[IntArray, FloatArray]:
     """Return members and wind speeds where K - U^2 K_1 is singular."""
     m = model.mass.shape[-1]
     gradient = force_gradient(model.load, np.zeros((model.mass.shape[0], 1, 2 * m)))[usable, 0, :, :m]
@@ -204,9 +201,9 @@ def _divergences(model: ReducedModel, usable: NDArray[np.intp], limit: float) ->
 
 def _described(
     matrices: StateMatrices,
-    member: NDArray[np.intp],
+    member: IntArray,
     speed: FloatArray,
-    oscillation: NDArray[np.bool_],
+    oscillation: BoolArray,
     limit: float,
 ) -> Crossings:
     """Find direction of crossing, frequency, dominant co-ordinate and the pairs unstable up to the next crossing."""
@@ -234,4 +231,4 @@ def _described(
 def _null_vectors(matrices: StateMatrices, speed: FloatArray) -> FloatArray:
     m = matrices.constant.shape[-1] // 2
     _, _, right = np.linalg.svd(at_wind(matrices, speed)[:, m:, :m])
-    return np.abs(right[:, -1, :])
+    return np.asarray(np.abs(right[:, -1, :]))

@@ -1,0 +1,22 @@
+"""Names for the array types of the engine."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+IntArray = NDArray[np.intp]
+BoolArray = NDArray[np.bool_]
+ObjectArray = NDArray[np.object_]
+AnyArray = NDArray[Any]
+
+
+def merged(array: AnyArray, first: int, last: int = -1) -> AnyArray:
+    """Merge the axes from first to last, both negative, into one; stacks without members keep their shape."""
+    shape = array.shape
+    stop = array.ndim + last + 1
+    start = array.ndim + first
+    return array.reshape(*shape[:start], math.prod(shape[start:stop]), *shape[stop:])

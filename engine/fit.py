@@ -1,0 +1,90 @@
+"""Cubic coefficients from tabulated lift, drag and moment. Theory section 5, paper eqs. (A18), (A19)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import FloatArray
+from engine.outcome import Fault, require
+from engine.spec import Aerodynamics, Coefficients
+
+ORDER = 3
+
+
+@dataclass(frozen=True, slots=True)
+class CoefficientTable:
+    """Measured coefficients of one iced sub-conductor: angle (rows,) rising [rad], lift, drag, moment (rows,)."""
+
+    angle: FloatArray
+    lift: FloatArray
+    drag: FloatArray
+    moment: FloatArray
+
+    def __post_init__(self) -> None:
+        """Check shapes, finiteness and that the angles rise."""
+        columns = {"angle": self.angle, "lift": self.lift, "drag": self.drag, "moment": self.moment}
+        rising = self.angle.ndim == 1 and bool((np.diff(self.angle) > 0.0).all())
+        require(
+            *(
+                Fault(f"table.{name}", column.shape, "must be finite and as long as the angles")
+                for name, column in columns.items()
+                if column.shape != self.angle.shape or not np.isfinite(column).all()
+            ),
+            None if rising else Fault("table.angle", self.angle.shape, "must be one column in rising order"),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class CoefficientFit:
+    """A cubic fit about the static angle: the coefficients, with their range, and the root mean square residuals."""
+
+    aerodynamics: Aerodynamics
+    residual: Coefficients
+
+
+def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: float) -> CoefficientFit:
+    """Fit C_y, C_z and C_theta by cubics in the angle from the static one, constants included.
+
+    Parameters
+    ----------
+    table : CoefficientTable
+    static_angle : float
+        [rad].
+    half_range : float
+        Rows within this angle of the static one are used [rad].
+
+    Returns
+    -------
+    CoefficientFit
+
+    Raises
+    ------
+    InvalidSpec
+        If fewer than five rows lie in the range, or all of them on one side of the static angle.
+    """
+    here = np.abs(table.angle - static_angle) <= half_range * (1.0 + 1e-12)
+    alpha = table.angle[here] - static_angle
+    enough = alpha.size > ORDER + 1 and alpha.min() <= 0.0 <= alpha.max()
+    rule = "must leave at least five rows of the table, on both sides of the static angle"
+    require(None if enough else Fault("half_range", half_range, rule))
+    lift, drag = table.lift[here], table.drag[here]
+    vertical = lift * np.cos(alpha) + drag * np.sin(alpha)
+    horizontal = -lift * np.sin(alpha) + drag * np.cos(alpha)
+    powers = alpha[:, None] ** np.arange(ORDER + 1)
+    measured = np.stack([vertical, horizontal, table.moment[here]], axis=-1)
+    coefficients = np.linalg.lstsq(powers, measured, rcond=None)[0]
+    residual = np.sqrt(np.mean((powers @ coefficients - measured) ** 2, axis=0))
+    rows = [_triple(column) for column in coefficients[1:].T]
+    fitted_range = float(np.abs(alpha).max())
+    aerodynamics = Aerodynamics(rows[0], rows[1], rows[2], _triple(coefficients[0]), fitted_range)
+    return CoefficientFit(aerodynamics, _triple(residual))
+
+
+def den_hartog_coefficient(table: CoefficientTable) -> FloatArray:
+    """Return dC_L/dalpha + C_D at each row of a table by central differences; negative means unstable."""
+    return np.asarray(np.gradient(table.lift, table.angle) + table.drag)
+
+
+def _triple(values: FloatArray) -> Coefficients:
+    first, second, third = values.tolist()
+    return first, second, third
