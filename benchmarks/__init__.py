@@ -1,0 +1,1 @@
+"""Measurements and tables that the documents quote; nothing of the product imports this."""
