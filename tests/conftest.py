@@ -49,3 +49,35 @@ def sessions(settings: Settings) -> Iterator[sessionmaker[Session]]:
     engine = make_engine(settings)
     yield session_factory(engine)
     engine.dispose()
+
+
+@pytest.fixture(params=["embedded", "production"])
+def deployment(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Settings]:
+    """Give settings of a migrated service with short times: SQLite and a folder, or PostgreSQL and Redis."""
+    common = Settings(
+        data_dir=tmp_path,
+        lease_seconds=3.0,
+        heartbeat_seconds=0.1,
+        sweep_seconds=0.3,
+        redispatch_seconds=1.5,
+        shutdown_seconds=1.0,
+        worker_processes=2,
+    )
+    if request.param == "embedded":
+        migrate(common)
+        yield common
+        return
+    with servers.postgres_database(request.getfixturevalue("postgres_address")) as database:
+        broker = request.getfixturevalue("redis_address")
+        # Made anew rather than copied, since the address gets its driver in the making.
+        settings = Settings.model_validate({**common.model_dump(), "database_url": database, "broker_url": broker})
+        migrate(settings)
+        yield settings
+
+
+@pytest.fixture
+def deployed(deployment: Settings) -> Iterator[sessionmaker[Session]]:
+    """Give sessions on the database of the deployment."""
+    engine = make_engine(deployment)
+    yield session_factory(engine)
+    engine.dispose()

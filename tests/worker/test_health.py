@@ -1,0 +1,18 @@
+import os
+import time
+from pathlib import Path
+
+from app.settings import Settings
+from worker.health import is_alive, show_life
+
+
+def test_worker_is_alive_only_while_it_sweeps(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "data")
+    now = time.time()
+    assert not is_alive(settings, now)
+    show_life(settings)
+    assert is_alive(settings, now)
+    os.utime(tmp_path / "data" / "worker-alive", (now - 31.0, now - 31.0))
+    assert not is_alive(settings, now)
+    show_life(settings)
+    assert is_alive(settings, now)

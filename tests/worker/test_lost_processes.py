@@ -1,0 +1,193 @@
+"""Workers and their parts killed with SIGKILL in the middle of a job, embedded and with PostgreSQL and Redis."""
+
+import os
+import signal
+import time
+from contextlib import ExitStack
+from uuid import UUID
+
+import pytest
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import convert, jobs, results
+from app.convert import PointResult
+from app.queue import dispatch, open_queue
+from app.settings import Settings
+from app.tables import FailureKind, JobStatus
+from tests.documents import add_job, count_points, history, long_request, look, short_request
+from tests.processes import Process, busy_child, children, group, kill_group, pool_children, running_worker
+from tests.servers import free_port, redis_server, wait_until
+
+POINTS = 6
+FINISHED_AT_SECOND_ATTEMPT = [("accepted", 0), ("running", 1), ("released", 1), ("running", 2), ("successful", 2)]
+
+
+@pytest.fixture(scope="module")
+def expected() -> list[dict[str, object]]:
+    """Compute the limit cycles of the long request in this process."""
+    points = [item for item in convert.run(long_request(POINTS)) if isinstance(item, PointResult)]
+    return [{**point.axes, **row} for point in points for row in point.tables["limit_cycles"]]
+
+
+def submit(sessions: sessionmaker[Session], settings: Settings) -> UUID:
+    job_id = add_job(sessions, long_request(POINTS))
+    assert dispatch(settings, job_id)
+    return job_id
+
+
+def wait_for_progress(sessions: sessionmaker[Session], job_id: UUID, attempt: int = 1) -> None:
+    def advanced() -> bool:
+        job = look(sessions, job_id)
+        return job.attempt == attempt and job.status is JobStatus.RUNNING and job.progress > 0.0
+
+    wait_until(advanced, 60.0, f"progress of attempt {attempt}")
+    assert look(sessions, job_id).progress < 1.0
+
+
+def wait_for_end(sessions: sessionmaker[Session], job_id: UUID) -> JobStatus:
+    running = (JobStatus.ACCEPTED, JobStatus.RUNNING)
+    wait_until(lambda: look(sessions, job_id).status not in running, 90.0, "the end of the job")
+    return look(sessions, job_id).status
+
+
+def assert_finished_once(sessions: sessionmaker[Session], job_id: UUID, expected: list[dict[str, object]]) -> None:
+    assert wait_for_end(sessions, job_id) is JobStatus.SUCCESSFUL
+    assert history(sessions, job_id) == FINISHED_AT_SECOND_ATTEMPT
+    assert count_points(sessions, job_id) == POINTS
+    with sessions() as session:
+        found = list(results.rows(session, job_id, "limit_cycles"))
+    assert len(found) == len(expected)
+    assert [row["branch"] for row in found] == [row["branch"] for row in expected]
+
+
+def test_whole_worker_killed_and_another_finishes_the_job_once(
+    deployment: Settings, deployed: sessionmaker[Session], expected: list[dict[str, object]]
+) -> None:
+    with running_worker(deployment) as worker:
+        job_id = submit(deployed, deployment)
+        wait_for_progress(deployed, job_id)
+        kill_group(worker)
+    assert look(deployed, job_id).status is JobStatus.RUNNING
+    with running_worker(deployment):
+        assert_finished_once(deployed, job_id, expected)
+
+
+def test_process_at_work_killed_and_the_same_worker_finishes_the_job_once(
+    deployment: Settings, deployed: sessionmaker[Session], expected: list[dict[str, object]]
+) -> None:
+    with running_worker(deployment) as worker:
+        job_id = submit(deployed, deployment)
+        wait_for_progress(deployed, job_id)
+        os.kill(busy_child(worker), signal.SIGKILL)
+        assert_finished_once(deployed, job_id, expected)
+
+
+def test_pool_killed_gives_its_job_back_before_the_lease_ends(
+    deployment: Settings, deployed: sessionmaker[Session], expected: list[dict[str, object]]
+) -> None:
+    patient = deployment.model_copy(update={"lease_seconds": 600.0})
+    with running_worker(patient) as worker:
+        job_id = submit(deployed, patient)
+        wait_for_progress(deployed, job_id)
+        (pool,) = children(worker.pid)
+        os.kill(pool, signal.SIGKILL)
+        assert_finished_once(deployed, job_id, expected)
+
+
+def test_idle_processes_killed_do_not_stop_the_pool(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    with running_worker(deployment) as worker:
+        first = pool_children(worker)
+        for pid in first:
+            os.kill(pid, signal.SIGKILL)
+        job_id = submit(deployed, deployment)
+        assert wait_for_end(deployed, job_id) is JobStatus.SUCCESSFUL
+        assert not set(first) & set(pool_children(worker))
+
+
+def test_orphans_of_a_killed_supervisor_end(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    with running_worker(deployment) as worker:
+        job_id = submit(deployed, deployment)
+        wait_for_progress(deployed, job_id)
+        assert len(group(worker)) == 4
+        worker.kill()
+        worker.wait()
+        wait_until(lambda: group(worker) == [], 5.0, "the end of the orphans")
+    assert look(deployed, job_id).status is JobStatus.RUNNING
+
+
+def test_job_that_loses_all_its_workers_fails_with_the_sentence(
+    deployment: Settings, deployed: sessionmaker[Session]
+) -> None:
+    strict = deployment.model_copy(update={"max_attempts": 2})
+    with running_worker(strict) as worker:
+        job_id = submit(deployed, strict)
+        for attempt in (1, 2):
+            wait_for_progress(deployed, job_id, attempt)
+            (pool,) = children(worker.pid)
+            os.kill(pool, signal.SIGKILL)
+            wait_until(lambda pool=pool: children(worker.pid) not in ([], [pool]), 30.0, "a new pool")  # type: ignore[misc]
+        assert wait_for_end(deployed, job_id) is JobStatus.FAILED
+    job = look(deployed, job_id)
+    assert (job.failure_kind, job.attempt) == (FailureKind.WORKER_LOST, 2)
+    assert job.failure_detail == "The worker was lost in each of 2 attempts, so the job was given up."
+    assert job.document == long_request(POINTS)
+
+
+def stop_in_time(worker: Process, seconds: float) -> int:
+    start = time.monotonic()
+    worker.terminate()
+    code = worker.wait(seconds)
+    assert time.monotonic() - start < seconds
+    return code
+
+
+def test_stopped_worker_gives_its_job_back(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    with running_worker(deployment) as worker:
+        job_id = add_job(deployed, long_request(60))
+        assert dispatch(deployment, job_id)
+        wait_for_progress(deployed, job_id)
+        assert stop_in_time(worker, 20.0) == 0
+        assert group(worker) == []
+    job = look(deployed, job_id)
+    assert (job.status, job.dispatched_at) == (JobStatus.ACCEPTED, None)
+    assert history(deployed, job_id)[-1] == ("released", 1)
+
+
+def test_duplicates_are_harmless_and_a_running_job_can_be_cancelled(
+    deployment: Settings, deployed: sessionmaker[Session]
+) -> None:
+    with running_worker(deployment):
+        job_id, stopped = add_job(deployed, short_request()), add_job(deployed, long_request(60))
+        with open_queue(deployment) as queue:
+            for message in (job_id, job_id, stopped, job_id):
+                queue.send(message)
+        assert wait_for_end(deployed, job_id) is JobStatus.SUCCESSFUL
+        wait_for_progress(deployed, stopped)
+        with deployed.begin() as session:
+            jobs.cancel(session, stopped)
+        assert wait_for_end(deployed, stopped) is JobStatus.DISMISSED
+        with open_queue(deployment) as queue:
+            wait_until(queue.is_empty, what="an empty queue")
+    assert history(deployed, job_id) == [("accepted", 0), ("running", 1), ("successful", 1)]
+
+
+def test_job_that_was_never_sent_is_found_and_done(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    job_id = add_job(deployed, short_request())
+    with running_worker(deployment):
+        assert wait_for_end(deployed, job_id) is JobStatus.SUCCESSFUL
+
+
+@pytest.mark.parametrize("deployment", ["production"], indirect=True)
+def test_worker_outlives_its_redis(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    port = free_port()
+    moved = deployment.model_copy(update={"broker_url": f"redis://127.0.0.1:{port}/0"})
+    with ExitStack() as worker:
+        with redis_server(port):
+            worker.enter_context(running_worker(moved))
+            before = add_job(deployed, short_request())
+            assert dispatch(moved, before)
+            assert wait_for_end(deployed, before) is JobStatus.SUCCESSFUL
+        between = add_job(deployed, short_request())
+        assert not dispatch(moved, between)
+        with redis_server(port):
+            assert wait_for_end(deployed, between) is JobStatus.SUCCESSFUL
