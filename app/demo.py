@@ -144,7 +144,7 @@ def _frequency_table(jobs: Mapping[str, Json], service: httpx.Client) -> Table:
     """Set our frequencies beside Table 2 of the source."""
     source = json.loads((files("app") / "data" / "table2.json").read_text(encoding="utf-8"))
     printed = {(row["subconductors"], row["model"]): row["loops"] for row in source["rows"]}
-    table = _table("Natural frequencies [Hz]: ours, Table 2 of the source, difference", *_DIRECTIONS)
+    table = _table("Natural frequencies [Hz]: ours, Table 2 of the source, difference in %", *_DIRECTIONS)
     for subconductors, (name, job) in enumerate(jobs.items(), start=1):
         for row in client.results(service, job)["frequencies"]:
             theirs = printed[subconductors, row["model"]][str(row["loops"])]
@@ -155,7 +155,7 @@ def _frequency_table(jobs: Mapping[str, Json], service: httpx.Client) -> Table:
 
 
 def _beside(ours: float, theirs: float) -> str:
-    return f"{ours:.4f} {theirs:.3f} {100.0 * (ours / theirs - 1.0):+.2f}%"
+    return f"{ours:.4f} {theirs:.3f} {100.0 * (ours / theirs - 1.0):+.2f}"
 
 
 def _critical_table(results: Mapping[str, Json]) -> Table:

@@ -1,0 +1,171 @@
+import math
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app import convert
+from app.faults import BadInput, Fault
+from tests.app.lines import FULL_LINE, changed
+
+
+def pointers(document: dict[str, Any]) -> list[str]:
+    return [fault.pointer for fault in convert.check(document)]
+
+
+BAD_LINES = [
+    ("span.length_m", -1.0, "/line/span/length_m"),
+    ("span.length_m", 0, "/line/span/length_m"),
+    ("span.length_m", math.nan, "/line/span/length_m"),
+    ("span.length_m", math.inf, "/line/span/length_m"),
+    ("span.length_m", 1e9, "/line/span/length_m"),
+    ("span.length_m", "125", "/line/span/length_m"),
+    ("span.length_m", True, "/line/span/length_m"),
+    ("span.length_m", None, "/line/span/length_m"),
+    ("span.elements", 10.5, "/line/span/elements"),
+    ("span.elements", 1000, "/line/span/elements"),
+    ("span.sag_m", 1.5, "/line/span"),
+    ("span.horizontal_tension_n", None, "/line/span"),
+    ("conductor.area_m2", 4e-4, "/line/conductor"),
+    ("conductor.colour", "red", "/line/conductor/colour"),
+    ("conductor.axial_torsional_coupling_n_m", 1e6, "/line/conductor/axial_torsional_coupling_n_m"),
+    ("conductor", [], "/line/conductor"),
+    ("bundle.radius_m", 0.0, "/line/bundle/radius_m"),
+    ("bundle.subconductors", 1, "/line/bundle/radius_m"),
+    ("bundle", {"positions_m": [[0.0, 0.0], [0.0, 0.0]]}, "/line/bundle/positions_m"),
+    ("ice.aerodynamics.vertical", [1.0, 2.0], "/line/ice/aerodynamics/vertical"),
+    ("ice.aerodynamics.vertical.1", "x", "/line/ice/aerodynamics/vertical/1"),
+    ("ice.eccentricity_y_m", 0.1, "/line/ice/eccentricity_y_m"),
+    ("ice.segments.0.to_m", 300.0, "/line/ice/segments/0/to_m"),
+    ("ice.segments.0.from_m", 62.94, "/line/ice/segments/0/to_m"),
+    ("ice.segments", [{"from_m": 0, "to_m": 20}, {"from_m": 19, "to_m": 40}], "/line/ice/segments/1"),
+    ("ice.segments", [{"from_m": 0, "to_m": 1, "aerodynamics_at_rest": FULL_LINE["ice"]["aerodynamics_at_rest"]}],
+     "/line/ice/segments/0"),
+    ("wind.profile.1.position_m", 0.0, "/line/wind/profile"),
+    ("wind.profile.1.position_m", 126.0, "/line/wind/profile/1/position_m"),
+    ("wind.profile.0.factor", 0, "/line/wind/profile/0/factor"),
+    ("damping.vertical_ratio", 1.0, "/line/damping/vertical_ratio"),
+    ("damping.model", "viscous", "/line/damping/model"),
+    ("devices.0.position_m", 200.0, "/line/devices/0/position_m"),
+    ("devices.0.type", "anchor", "/line/devices/0"),
+    ("devices.0.mass_kg", "6", "/line/devices/0/mass_kg"),
+    ("devices.2.to_m", 20.0, "/line/devices/2/to_m"),
+    ("devices.2.to_m", 200.0, "/line/devices/2/to_m"),
+    ("supports.left.insulator_length_m", 0.0, "/line/supports/left/insulator_length_m"),
+    ("tags", {"a:b": "c"}, "/line/tags/a:b/[key]"),
+    ("tags", {"a": 3}, "/line/tags/a"),
+    ("name", "a\x00b", "/line/name"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("path", "value", "pointer"), BAD_LINES)
+def test_one_fault_in_a_line_is_named_by_its_pointer(path: str, value: Any, pointer: str) -> None:
+    assert pointers({"line": changed(path, value)}) == [pointer]
+
+
+@pytest.mark.parametrize(
+    ("analysis", "pointer"),
+    [
+        ({"loops": []}, "/analysis/loops"),
+        ({"loops": [1, 1]}, "/analysis"),
+        ({"loops": [0]}, "/analysis/loops/0"),
+        ({"harmonics": 21}, "/analysis/harmonics"),
+        ({"models": ["hybrid", "other"]}, "/analysis/models/1"),
+        ({"wind_speeds_m_per_s": [4.0, -1.0]}, "/analysis/wind_speeds_m_per_s/1"),
+        ({"wind_speeds_m_per_s": [5.0] * 1001}, "/analysis/wind_speeds_m_per_s"),
+        ({"wind_speeds_m_per_s": 4.0}, "/analysis/wind_speeds_m_per_s"),
+        ({"wind_speeds_m_per_s": {"start": 6.0, "stop": 4.0, "count": 3}}, "/analysis/wind_speeds_m_per_s"),
+        ({"wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 10**9}}, "/analysis/wind_speeds_m_per_s/count"),
+        ({"closure": "published", "aerodynamic_model": "relative_wind"}, "/analysis/closure"),
+        ({"closure": "published"}, "/analysis/closure"),
+        ({"aerodynamic_model": "relative_wind"}, "/line/devices/2/aerodynamics_at_rest"),
+        ({"loop": [1]}, "/analysis/loop"),
+    ],
+)
+def test_one_fault_in_an_analysis_is_named_by_its_pointer(analysis: dict[str, Any], pointer: str) -> None:
+    assert pointers({"line": FULL_LINE, "analysis": analysis}) == [pointer]
+
+
+def test_faults_of_schema_parts_and_combination_come_together() -> None:
+    line = changed("conductor.diameter_m", -1.0, changed("devices.0.position_m", 200.0))
+    line = changed("ice.segments", [{"from_m": 0, "to_m": 20}, {"from_m": 19, "to_m": 40}], line)
+    line = changed("devices.1", {"type": "anchor"}, line)
+    line = changed("span.elements", 5, line)
+    document = {"line": line, "analysis": {"loops": [9], "aerodynamic_model": "relative_wind"}, "webhook_url": "x"}
+    assert sorted(pointers(document)) == [
+        "/analysis/loops",
+        "/line/conductor/diameter_m",
+        "/line/devices/0/position_m",
+        "/line/devices/1",
+        "/line/devices/2/aerodynamics_at_rest",
+        "/line/ice/segments/1",
+        "/webhook_url",
+    ]
+
+
+@pytest.mark.parametrize("document", [None, 3, [], "x", {}, {"line": None}, {"line": []}, {"line": {"span": []}}])
+def test_what_is_no_request_at_all_is_refused(document: object) -> None:
+    with pytest.raises(BadInput):
+        convert.read(document)
+
+
+@pytest.mark.parametrize(
+    ("axis", "pointer"),
+    [
+        ({"parameter": "span.lenght_m", "values": [1]}, "/study/axes/0/parameter"),
+        ({"parameter": "devices.7.position_m", "values": [1]}, "/study/axes/0/parameter"),
+        ({"parameter": "devices.x.position_m", "values": [1]}, "/study/axes/0/parameter"),
+        ({"parameter": "devices.0.type", "values": ["spacer"]}, "/study/axes/0/parameter"),
+        ({"parameter": "tags.region", "values": ["x"]}, "/study/axes/0/parameter"),
+        ({"parameter": "supports.left.dead_end", "values": [1]}, "/study/axes/0/parameter"),
+        ({"parameter": "ice.aerodynamics.vertical", "values": [1]}, "/study/axes/0/parameter"),
+        ({"parameter": "span.length_m", "values": [126.0, -1]}, "/study/axes/0/values/1"),
+        ({"parameter": "span.length_m", "values": [126.0, "long"]}, "/study/axes/0/values/1"),
+        ({"parameter": "span.sag_m", "values": [1.5]}, "/study/axes/0/values/0"),
+        ({"parameter": "devices.0.position_m", "values": [20.0, 200.0]}, "/study/axes/0/values/1"),
+        ({"parameter": "damping.model", "values": ["constant_ratio", "other"]}, "/study/axes/0/values/1"),
+    ],
+)
+def test_a_fault_of_a_study_is_named_by_its_pointer(axis: dict[str, Any], pointer: str) -> None:
+    assert pointers({"line": FULL_LINE, "study": {"axes": [axis]}}) == [pointer]
+
+
+def test_a_study_that_fits_is_taken() -> None:
+    axes = [
+        {"parameter": "devices.0.position_m", "values": [20, 30.5]},
+        {"parameter": "damping.model", "values": ["constant_ratio", "constant_coefficient"]},
+    ]
+    assert convert.check({"line": FULL_LINE, "study": {"axes": axes}}) == []
+
+
+def test_points_that_only_together_do_not_fit_are_named() -> None:
+    axes = [
+        {"parameter": "span.length_m", "values": [125.88, 100.0]},
+        {"parameter": "devices.0.position_m", "values": [20.0, 110.0]},
+    ]
+    line = changed("devices", FULL_LINE["devices"][:1], changed("wind.profile", [], changed("ice.segments", [])))
+    faults = convert.check({"line": line, "study": {"axes": axes}})
+    assert [fault.pointer for fault in faults] == ["/study/axes"]
+    assert "span.length_m = 100.0, devices.0.position_m = 110.0" in faults[0].detail
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=10),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=10), inner, max_size=4),
+    max_leaves=10,
+)
+PATHS = st.sampled_from(sorted({path for path, _, _ in BAD_LINES} | {"devices", "wind", "ice", "supports", "span"}))
+
+
+@settings(max_examples=200, deadline=None)
+@given(PATHS, JSON)
+def test_whatever_stands_in_a_field_is_taken_or_named(path: str, value: Any) -> None:
+    found = convert.check({"line": changed(path, value)})
+    assert all(isinstance(fault, Fault) and fault.detail for fault in found)
+
+
+@settings(max_examples=100, deadline=None)
+@given(JSON)
+def test_whatever_comes_as_a_request_is_refused_with_reasons(document: Any) -> None:
+    assert convert.check(document)

@@ -1,0 +1,85 @@
+import math
+from typing import Any
+
+import pytest
+
+from app import schemas
+from app.convert.assemble import SoundParts, gather
+from app.examples import example
+from engine import spec
+from tests.app.lines import COEFFICIENTS, FULL_LINE, changed
+
+
+def built(line: dict[str, Any], analysis: dict[str, Any] | None = None) -> tuple[spec.Line, spec.Analysis]:
+    made, asked, faults = gather(
+        SoundParts.of(schemas.Line.model_validate(line)), schemas.Analysis.model_validate(analysis or {})
+    )
+    assert faults == []
+    assert made is not None
+    return made, asked
+
+
+def test_every_field_of_the_contract_arrives_in_the_engine_in_its_unit() -> None:
+    line, _ = built(FULL_LINE)
+    vertical, horizontal, torsional = (tuple(COEFFICIENTS[n]) for n in ("vertical", "horizontal", "torsional"))
+    own = spec.Aerodynamics(vertical, horizontal, torsional, at_rest=(0.1, 1.0, 0.2))
+    on_segment = spec.Aerodynamics(vertical, horizontal, torsional, at_rest=(0.3, 1.1, 0.4))
+    assert line == spec.Line(
+        conductor=spec.Conductor(0.0286, 28418105.8, 101.0, 2.379, 3.334e-4, 0.5),
+        bundle=spec.Bundle.regular(2, 0.2355, math.pi / 2),
+        span=spec.Span(125.88, horizontal_tension=30000.0, elements=12),
+        ice=spec.Ice(own, 2.05e-3, -0.63e-3, (spec.IceSegment(0.0, 62.94, on_segment, 1e-3, None, 2.3),)),
+        wind=spec.Wind(1.2, ((0.0, 0.7), (125.88, 1.3)), spec.BlowOut(10.0, 1.1)),
+        damping=spec.Damping(0.000515, 0.0006, 0.308, spec.DampingModel.CONSTANT_RATIO),
+        supports=spec.Supports(None, spec.Support(dead_end=True), spec.Support(False, 99.0, 2.0, 300.0)),
+        devices=(
+            spec.Spacer(25.0, 6.5, 0.4),
+            spec.DetuningPendulum(62.94, 12.0, 0.35, math.pi / 6),
+            spec.AirflowSpoiler(30.0, 60.0, spec.Aerodynamics(vertical, horizontal, torsional), 0.3),
+        ),
+    )
+
+
+def test_every_field_of_an_analysis_arrives_in_the_engine() -> None:
+    _, analysis = built(
+        example("c11-twin"),
+        {
+            "loops": [2],
+            "models": ["finite_element"],
+            "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 3},
+            "closure": "published",
+            "longitudinal_inertia": "condensed",
+            "critical_wind_limit_m_per_s": 12.0,
+            "harmonics": 7,
+            "finite_element_loops": [2, 3],
+        },
+    )
+    assert analysis == spec.Analysis(
+        loops=(2,),
+        models=(spec.Model.FINITE_ELEMENT,),
+        wind_speeds=(4.0, 5.0, 6.0),
+        closure=spec.Closure.PUBLISHED,
+        longitudinal_inertia=spec.LongitudinalInertia.CONDENSED,
+        critical_wind_limit=12.0,
+        harmonics=7,
+        finite_element_loops=(2, 3),
+    )
+
+
+def test_absent_parts_are_the_defaults_of_the_engine() -> None:
+    line, analysis = built(example("c11-single"))
+    assert analysis == spec.Analysis()
+    assert line.supports == spec.Supports()
+    assert line.wind == spec.Wind()
+    assert line.bundle == spec.Bundle()
+
+
+def test_area_and_modulus_make_the_rigidity() -> None:
+    line = changed("conductor.area_m2", 4e-4, changed("conductor.youngs_modulus_pa", 5e10))
+    del line["conductor"]["axial_rigidity_n"]
+    assert built(line)[0].conductor.axial_rigidity == pytest.approx(2e7)
+
+
+def test_positions_are_taken_as_they_stand() -> None:
+    line = changed("bundle", {"positions_m": [[0.1, -0.2], [-0.1, 0]]})
+    assert built(line)[0].bundle == spec.Bundle(((0.1, -0.2), (-0.1, 0.0)))

@@ -1,0 +1,73 @@
+from typing import Any
+
+import pytest
+
+from app import convert
+from app.convert import Advance, PointResult
+from app.examples import example
+from engine.outcome import InvalidSpec
+from tests.app.lines import FULL_LINE, SHORT, changed
+
+
+def results(document: dict[str, Any]) -> tuple[list[PointResult], list[Advance]]:
+    items = list(convert.run(document))
+    return [i for i in items if isinstance(i, PointResult)], [i for i in items if isinstance(i, Advance)]
+
+
+def test_the_twin_gives_the_figures_of_the_theory() -> None:
+    (point,), advances = results({"line": example("c11-twin"), "analysis": SHORT})
+    assert point.failure is None
+    assert point.static["horizontal_tension_n"] == 30000.0
+    assert point.den_hartog == {"coefficient": -0.1667, "unstable": True}
+    (frequencies,) = point.tables["frequencies"]
+    assert frequencies["vertical_hz"] == pytest.approx(0.482, rel=0.01)
+    assert point.tables["critical_wind_speeds"][0]["wind_speed_m_per_s"] == pytest.approx(2.403, rel=0.005)
+    cycles = [row for row in point.tables["limit_cycles"] if row["kind"] == "periodic"]
+    assert [row["vertical_m"] for row in cycles] == [pytest.approx(0.1568, rel=0.01), pytest.approx(0.2884, rel=0.01)]
+    assert {row["stability"] for row in cycles} == {"stable"}
+    assert [orbit["cycle"] for orbit in point.orbits] == [
+        number for number, row in enumerate(point.tables["limit_cycles"]) if row["kind"] == "periodic"
+    ]
+    fractions = [advance.fraction for advance in advances]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+def test_rows_hold_nothing_but_what_json_can_carry() -> None:
+    (point,), _ = results({"line": example("c11-single"), "analysis": SHORT})
+    for row in (row for rows in point.tables.values() for row in rows):
+        assert {type(value) for value in row.values()} <= {str, int, float, bool, type(None)}
+    assert {type(number) for orbit in point.orbits for number in orbit["vertical"]} == {float}  # type: ignore[attr-defined]
+
+
+def test_a_study_runs_every_combination_with_the_last_axis_fastest() -> None:
+    axes = [
+        {"parameter": "span.horizontal_tension_n", "values": [24000.0, 36000.0]},
+        {"parameter": "damping.vertical_ratio", "values": [0.0005, 0.001]},
+    ]
+    analysis = {**SHORT, "wind_speeds_m_per_s": []}
+    points, advances = results({"line": example("c11-twin"), "analysis": analysis, "study": {"axes": axes}})
+    assert [tuple(point.axes.values()) for point in points] == [
+        (24000.0, 0.0005),
+        (24000.0, 0.001),
+        (36000.0, 0.0005),
+        (36000.0, 0.001),
+    ]
+    assert [point.static["horizontal_tension_n"] for point in points] == [24000.0, 24000.0, 36000.0, 36000.0]
+    onset = [point.tables["critical_wind_speeds"][0]["wind_speed_m_per_s"] for point in points]
+    assert onset[0] < onset[1]  # type: ignore[operator]
+    assert advances[-1].fraction == 1.0
+
+
+def test_a_point_that_fails_does_not_end_its_study() -> None:
+    line = changed("devices", FULL_LINE["devices"][:1], example("c11-twin"))
+    axis = {"parameter": "devices.0.position_m", "values": [20.0, 200.0, 30.0]}
+    points, _ = results({"line": line, "analysis": {**SHORT, "wind_speeds_m_per_s": []}, "study": {"axes": [axis]}})
+    assert [point.failure is None for point in points] == [True, False, True]
+    assert "devices.0.position must lie on the span" in str(points[1].failure)
+    assert points[1].tables["frequencies"] == []
+
+
+def test_a_single_line_at_fault_raises() -> None:
+    with pytest.raises(InvalidSpec, match=r"devices\.0\.position"):
+        list(convert.run({"line": changed("devices.0.position_m", 200.0), "analysis": SHORT}))

@@ -1,0 +1,58 @@
+"""The real application behind a real server on a free loopback port, for tests that speak HTTP."""
+
+import contextlib
+import socket
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import httpx
+import uvicorn
+
+from app.main import create_app
+from app.serve import migrate
+from app.settings import Settings
+from tests.documents import short_request
+from tests.servers import wait_until
+from worker.execute import run_job
+
+
+@contextlib.contextmanager
+def running(settings: Settings) -> Iterator[httpx.Client]:
+    """Serve the application with these settings on a migrated database, and give a client of it."""
+    migrate(settings)
+    server = uvicorn.Server(
+        uvicorn.Config(create_app(settings), log_config=None, ws="none", timeout_graceful_shutdown=5)
+    )
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
+        thread.start()
+        try:
+            wait_until(lambda: server.started, what="the server")
+            with httpx.Client(base_url=f"http://127.0.0.1:{listener.getsockname()[1]}", timeout=60.0) as client:
+                yield client
+        finally:
+            server.should_exit = True
+            thread.join(30.0)
+
+
+def sqlite_settings(directory: Path, **changes: Any) -> Settings:
+    """Return settings whose every file lies in a directory."""
+    return Settings(data_dir=directory, **changes)
+
+
+def submit(client: httpx.Client, document: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Post a request and return the status document."""
+    answer = client.post("/v1/jobs", json=document or short_request())
+    assert answer.status_code == 202, answer.text
+    status: dict[str, Any] = answer.json()
+    return status
+
+
+def finished(client: httpx.Client, settings: Settings, document: dict[str, Any] | None = None) -> str:
+    """Post a request, work it off in this process with the real engine, and return the address of its status."""
+    status = submit(client, document)
+    run_job(settings, UUID(status["id"]), "test")
+    return f"/v1/jobs/{status['id']}"
