@@ -114,16 +114,15 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     model = take(grid, (line, column))
     published = take(with_published_load(prepared.made, grid), (line, column))
     winds = _winds(analysis)
-    starts = joined(
-        explicit_starts(published, winds, analysis.harmonics), energy_starts(model, winds, analysis.harmonics)
-    )
+    explicit = explicit_starts(published, winds, analysis.harmonics)
+    energy = energy_starts(model, winds, analysis.harmonics)
     return Found(
         name=Model.HYBRID,
         model=model,
         line=line,
         loops=np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp),
         crossings=critical_wind_speeds(model, analysis.critical_wind_limit),
-        cycles=find_cycles(model, winds, starts),
+        cycles=find_cycles(model, winds, explicit, energy),
         winds=winds,
     )
 

@@ -4,7 +4,6 @@ Every start is balanced; every cycle found is carried to the neighbouring wind s
 that lead to one another form a branch.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +18,8 @@ SAME = 1e-3  # relative distance below which two solutions are one
 UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 20
+NEAR = 0.02  # relative difference of frequency below which a guess adds nothing to a known cycle
+ALIKE = 3.0  # ratio of sizes up to which neighbours may be the same motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class Cycles:
 
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Guess cycles of every unstable mode at every wind speed by the balance of energy, at several sizes each."""
+    """Guess cycles of every unstable mode at every wind speed by the balance of energy."""
     member, wind = _grid(model, wind_speeds)
     guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
     return _starts(guess, member, wind, wind_speeds, harmonics)
@@ -79,8 +80,8 @@ def joined_orbits(*orbits: Orbits) -> Orbits:
     )
 
 
-def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts) -> Cycles:
-    """Find every cycle that the starts and continuation over the wind speeds reach.
+def find_cycles(model: ReducedModel, wind_speeds: FloatArray, *guesses: Starts) -> Cycles:
+    """Find every cycle that the guesses and continuation over the wind speeds reach.
 
     Parameters
     ----------
@@ -88,7 +89,8 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts) ->
         Leading axis (members,).
     wind_speeds : (winds,)
         In rising order [m/s].
-    starts : Starts
+    *guesses : Starts
+        In the order of trust: of a later set only those are balanced near whose frequency nothing was found.
 
     Returns
     -------
@@ -96,19 +98,16 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts) ->
         Sorted by member, wind speed and branch.
     """
     family = _Family(model)
-    frontier = [item for item, _ in family.add(_solved(model, starts), np.full(starts.member.size, -1))]
-    while frontier:
-        ids = np.array(frontier)
-        moves = [(ids, wind) for wind in (family.wind[ids] - 1, family.wind[ids] + 1)]
-        origin = np.concatenate([i for i, _ in moves])
-        wind = np.concatenate([w for _, w in moves])
-        inside = (wind >= 0) & (wind < wind_speeds.size)
-        origin, wind = origin[inside], wind[inside]
+    for guess in guesses:
+        family.add(_solved(model, family.lacking(guess)))
+    frontier = np.arange(len(family.orbits))
+    while frontier.size:
+        origin, wind = family.loose_ends(frontier, wind_speeds.size)
         here = family.orbits_of(origin)
-        moved = Starts(
-            family.member[origin], wind, Orbits(here.coefficients, here.angular_frequency, wind_speeds[wind])
-        )
-        frontier = [item for item, new in family.add(_solved(model, moved), origin) if new]
+        orbits = Orbits(here.coefficients, here.angular_frequency, wind_speeds[wind])
+        before = len(family.orbits)
+        family.add(_solved(model, Starts(family.member[origin], wind, orbits)), origin)
+        frontier = np.arange(before, len(family.orbits))
     return _judged(model, family)
 
 
@@ -121,27 +120,82 @@ class _Family:
         self.wind: IntArray = np.zeros(0, dtype=np.intp)
         self.orbits: list[tuple[FloatArray, float, float]] = []
         self.links: list[tuple[int, int]] = []
+        self._signatures: list[FloatArray] = []
         self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
 
     def orbits_of(self, ids: IntArray) -> Orbits:
         """Stack the orbits with these numbers."""
+        size = self.model.mass.shape[-1]
+        if ids.size == 0:
+            return Orbits(np.zeros((0, size, 3)), np.zeros(0), np.zeros(0))
         coefficients, frequency, speed = zip(*(self.orbits[i] for i in ids), strict=True)
         return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
 
-    def add(self, solved: tuple[Starts, BoolArray], origin: IntArray) -> Iterator[tuple[int, bool]]:
-        """Record solutions; yield the number of each and whether it is new."""
+    def lacking(self, starts: Starts) -> Starts:
+        """Keep the starts near whose frequency no cycle of the same member and wind speed is known."""
+        keep = [
+            all(
+                abs(self.orbits[number][1] - frequency) > NEAR * frequency
+                for number, _ in self._known.get((member, wind), [])
+            )
+            for member, wind, frequency in zip(
+                starts.member.tolist(), starts.wind.tolist(), starts.orbits.angular_frequency.tolist(), strict=True
+            )
+        ]
+        index = np.flatnonzero(keep)
+        return Starts(starts.member[index], starts.wind[index], _pick(starts.orbits, index))
+
+    def add(self, solved: tuple[Starts, BoolArray], origin: IntArray | None = None) -> None:
+        """Record solutions, and links to the cycles that they were carried from."""
         starts, good = solved
         signatures = _signature(self.model, starts)
-        for i in np.flatnonzero(good):
+        for i in np.flatnonzero(good).tolist():
             key = (int(starts.member[i]), int(starts.wind[i]))
             number, new = self._number(key, signatures[i])
             if new:
                 self.member, self.wind = np.append(self.member, key[0]), np.append(self.wind, key[1])
                 orbits = starts.orbits
-                self.orbits.append((orbits.coefficients[i], orbits.angular_frequency[i], orbits.wind_speed[i]))
-            if origin[i] >= 0:
+                self.orbits.append(
+                    (orbits.coefficients[i], float(orbits.angular_frequency[i]), float(orbits.wind_speed[i]))
+                )
+            if origin is not None:
                 self.links.append((int(origin[i]), number))
-            yield number, new
+
+    def loose_ends(self, ids: IntArray, winds: int) -> tuple[IntArray, IntArray]:
+        """Link neighbours that are plainly the same motion; return the cycles and winds that remain to be tried."""
+        origin, wind = [], []
+        for i in ids.tolist():
+            for step in (-1, 1):
+                there = int(self.wind[i]) + step
+                if 0 <= there < winds:
+                    mate = self._mate(i, there)
+                    if mate is None:
+                        origin.append(i)
+                        wind.append(there)
+                    else:
+                        self.links.append((i, mate))
+        return np.array(origin, dtype=np.intp), np.array(wind, dtype=np.intp)
+
+    def _mate(self, i: int, wind: int) -> int | None:
+        """Return the mutually nearest cycle at another wind speed if frequency and size agree with this one."""
+        member = int(self.member[i])
+        there = self._nearest((member, wind), self.signatures[i])
+        if there is None or self._nearest((member, int(self.wind[i])), self.signatures[there]) != i:
+            return None
+        near = abs(self.orbits[i][1] - self.orbits[there][1]) <= NEAR * self.orbits[i][1]
+        sizes = [float(np.linalg.norm(self.signatures[n])) for n in (i, there)]
+        return there if near and max(sizes) <= ALIKE * min(sizes) else None
+
+    def _nearest(self, key: tuple[int, int], signature: FloatArray) -> int | None:
+        known = self._known.get(key, [])
+        if not known:
+            return None
+        return min(known, key=lambda item: float(np.linalg.norm(item[1] - signature)))[0]
+
+    @property
+    def signatures(self) -> list[FloatArray]:
+        """What identifies each cycle apart from its phase."""
+        return self._signatures
 
     def _number(self, key: tuple[int, int], signature: FloatArray) -> tuple[int, bool]:
         known = self._known.setdefault(key, [])
@@ -149,6 +203,7 @@ class _Family:
             if np.linalg.norm(signature - other) <= SAME * np.linalg.norm(other):
                 return number, False
         known.append((len(self.orbits), signature))
+        self._signatures.append(signature)
         return len(self.orbits), True
 
     def branches(self) -> IntArray:

@@ -15,9 +15,8 @@ from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArra
 from engine.hybrid import ReducedModel, take
 from engine.stability import at_wind, state_matrices
 
-LARGEST_ANGLE = 3.0  # rad; the cubic load has no meaning beyond
-GRID = 72
-NEIGHBOURS = np.array([1.0, 0.6, 1.6])  # of the size that the energy balance gives
+LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
+GRID = 40
 ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
 
 
@@ -68,14 +67,14 @@ def explicit_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmoni
     angles = np.broadcast_to(angle, (wind_speed.size, GRID))
     even, _ = _even_part(scalar, np.arange(wind_speed.size)[:, None], angles)
     known = np.isfinite(even)
-    member, cell, root = np.nonzero(known[:, 1:] | known[:, :-1])
-    left, right = angle[cell], angle[cell + 1]
-    left, right = _real_part(scalar, member, root, left, right)
+    changes = known[:, 1:] & known[:, :-1] & (np.sign(even[:, 1:]) != np.sign(even[:, :-1]))
+    member, cell, root = np.nonzero(changes | (known[:, 1:] ^ known[:, :-1]))
+    left, right = _real_part(scalar, member, root, angle[cell], angle[cell + 1])
     ends = [np.sign(_branch(scalar, member, root, end)) for end in (left, right)]
     bracket = ends[0] * ends[1] < 0.0
-    member, root = member[bracket], root[bracket]
+    member, root, sign = member[bracket], root[bracket], ends[0][bracket]
     refined = _bisected(
-        lambda middle: np.sign(_branch(scalar, member, root, middle)) == ends[0][bracket], left[bracket], right[bracket]
+        lambda middle: np.sign(_branch(scalar, member, root, middle)) == sign, left[bracket], right[bracket]
     )
     return _cycles(model, wind_speed, scalar, member, root, 0.5 * (refined[0] + refined[1]))
 
@@ -119,7 +118,7 @@ def _mean_angle(static: FloatArray, angle: FloatArray) -> FloatArray:
     g_1, g_2, g_3 = (static[..., j] for j in range(3))
     half = 0.5 * angle**2
     alpha = np.zeros_like(angle)
-    for _ in range(12):
+    for _ in range(6):
         value = g_1 * alpha + g_2 * (alpha**2 + half) + g_3 * (alpha**3 + 3.0 * alpha * half) - alpha
         slope = g_1 + 2.0 * g_2 * alpha + 3.0 * g_3 * (alpha**2 + half) - 1.0
         alpha = alpha - np.clip(value / np.where(slope == 0.0, np.inf, slope), -0.5, 0.5)
@@ -166,7 +165,7 @@ def _bisected(
     like_left: Callable[[FloatArray], BoolArray], left: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Halve brackets until they are as narrow as the numbers allow."""
-    for _ in range(45):
+    for _ in range(30):
         middle = 0.5 * (left + right)
         same = like_left(middle)
         left, right = np.where(same, middle, left), np.where(same, right, middle)
@@ -197,7 +196,7 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     """Guess a cycle along every unstable mode of any model from the energy of one period.
 
     Along q = R Re(v exp(i w t)) the wind's work less the damping's is p_1 R^2 + p_3 R^4 for a cubic load; the even
-    powers do no work. The guess is the R where it vanishes, and two neighbours of it, since the shape changes with R.
+    powers do no work. The guess is the R where it vanishes.
 
     Parameters
     ----------
@@ -223,9 +222,8 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     linear, cubic = _work(take(model, member), wind_speed[member], frequency, shape)
     grows = (linear > 0.0) & (cubic < 0.0)
     size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
-    chosen = np.tile(np.flatnonzero(grows), len(NEIGHBOURS))
-    factor = np.repeat(NEIGHBOURS, grows.sum())
-    amplitude = _complex((factor * size[chosen])[:, None] * shape[chosen])
+    chosen = np.flatnonzero(grows)
+    amplitude = _complex(size[chosen, None] * shape[chosen])
     none = np.full(chosen.size, np.nan)
     return FirstHarmonic(member[chosen], frequency[chosen], none, np.zeros((chosen.size, m)), amplitude)
 

@@ -83,20 +83,21 @@ def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
 
 
 def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
-    """Differentiate the residual by the coefficients and by w: (cycles, m (2 H + 1), m (2 H + 1) + 1)."""
+    """Differentiate the residual by the coefficients and by w: (cycles, m (2 H + 1), m (2 H + 1) + 1).
+
+    Each block of two co-ordinates is linear in M_ij, C_ij, K_ij and the samples of the load's gradient, so one product
+    with a constant matrix makes all blocks.
+    """
     made = basis(orbits.coefficients.shape[-1] // 2)
     cycles, m, size = orbits.coefficients.shape
     gradient = force_gradient(model.load, _sampled(orbits, made))
     omega = orbits.angular_frequency[:, None, None]
     speed = orbits.wind_speed[:, None, None]
-    flat = np.moveaxis(gradient, 1, -1).reshape(cycles, m, 2, m, made.values.shape[0])
-    by_value, by_slope = _products(orbits.coefficients.shape[-1] // 2)
-    q_part = (speed**2)[..., None, None] * (flat[:, :, 0] @ by_value).reshape(cycles, m, m, size, size)
-    v_part = (speed * omega)[..., None, None] * (flat[:, :, 1] @ by_slope).reshape(cycles, m, m, size, size)
-    second = made.derivative @ made.derivative
-    blocks = _blocks(model.mass * omega**2, second) + _blocks(model.damping * omega, made.derivative)
-    blocks += _blocks(model.stiffness, np.eye(size)) - q_part - v_part
-    by_coefficients = blocks.swapaxes(2, 3).reshape(cycles, m * size, m * size)
+    samples = np.moveaxis(gradient, 1, -1)
+    linear = np.stack([omega**2 * model.mass, omega * model.damping, model.stiffness], axis=-1)
+    parts = [linear, -((speed**2)[..., None]) * samples[:, :, :m], -((speed * omega)[..., None]) * samples[:, :, m:]]
+    blocks = np.concatenate(parts, axis=-1) @ _block_basis(size // 2)
+    by_coefficients = blocks.reshape(cycles, m, m, size, size).swapaxes(2, 3).reshape(cycles, m * size, m * size)
     slope = orbits.coefficients @ made.derivative.T
     by_omega = 2.0 * omega * model.mass @ (slope @ made.derivative.T) + model.damping @ slope
     velocity = (orbits.coefficients @ made.slopes.T).swapaxes(-1, -2)[..., None] * speed[..., None]
@@ -186,12 +187,13 @@ def _peak(values: FloatArray) -> FloatArray:
 
 
 @lru_cache
-def _products(harmonics: int) -> tuple[FloatArray, FloatArray]:
-    """Return the maps from samples of a gradient to its blocks in the Jacobian: (samples, (2 H + 1)^2) each."""
+def _block_basis(harmonics: int) -> FloatArray:
+    """Return the blocks of the Jacobian per unit of w^2 M, w C, K and of each sample of the gradient, flattened."""
     made = basis(harmonics)
+    linear = np.stack([made.derivative @ made.derivative, made.derivative, np.eye(2 * harmonics + 1)])
     by_value = np.einsum("as,sb->sab", made.projection, made.values)
     by_slope = np.einsum("as,sb->sab", made.projection, made.slopes)
-    return by_value.reshape(len(made.values), -1), by_slope.reshape(len(made.values), -1)
+    return merged(np.concatenate([linear, by_value, by_slope]), -2)
 
 
 def _sampled(orbits: Orbits, made: Basis) -> FloatArray:
@@ -206,10 +208,6 @@ def _linear_part(model: ReducedModel, orbits: Orbits, made: Basis) -> FloatArray
     bend = slope @ made.derivative.T
     result = omega**2 * model.mass @ bend + omega * model.damping @ slope + model.stiffness @ orbits.coefficients
     return np.asarray(result)
-
-
-def _blocks(matrix: FloatArray, operator: FloatArray) -> FloatArray:
-    return np.asarray(matrix[..., None, None] * operator)
 
 
 def _unpacked(x: FloatArray, m: int, wind_speed: FloatArray) -> Orbits:
