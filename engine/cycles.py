@@ -11,7 +11,7 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray, IntArray, merged
 from engine.describing import FirstHarmonic, energy_balance_cycles, explicit_cycles
 from engine.floquet import Floquet, floquet
-from engine.harmonic import Orbits, balance, oscillation_size, resized
+from engine.harmonic import Orbits, balance, oscillation_size, pick, resized
 from engine.hybrid import ReducedModel, take
 
 SAME = 1e-3  # relative distance below which two solutions are one
@@ -143,7 +143,7 @@ class _Family:
             )
         ]
         index = np.flatnonzero(keep)
-        return Starts(starts.member[index], starts.wind[index], _pick(starts.orbits, index))
+        return Starts(starts.member[index], starts.wind[index], pick(starts.orbits, index))
 
     def add(self, solved: tuple[Starts, BoolArray], origin: IntArray | None = None) -> None:
         """Record solutions, and links to the cycles that they were carried from."""
@@ -188,8 +188,8 @@ class _Family:
 
     def _nearest(self, key: tuple[int, int], signature: FloatArray) -> int | None:
         known = self._known.get(key, [])
-        if not known:
-            return None
+        if len(known) < 2:
+            return known[0][0] if known else None
         return min(known, key=lambda item: float(np.linalg.norm(item[1] - signature)))[0]
 
     @property
@@ -274,7 +274,7 @@ def _judged(model: ReducedModel, family: _Family) -> Cycles:
         family.member[order],
         family.wind[order],
         _renumbered(family.member[order], family.wind[order], branch[order]),
-        _pick(orbits, order),
+        pick(orbits, order),
         Floquet(judged.multipliers[order], judged.trivial_error[order], judged.stability[order]),
         dropped,
     )
@@ -284,7 +284,7 @@ def _refined(
     model: ReducedModel, member: IntArray, orbits: Orbits, judged: Floquet, coarse: IntArray
 ) -> tuple[Orbits, Floquet]:
     """Balance some cycles again with the most harmonics and judge them anew."""
-    finer, solution = balance(model, member[coarse], resized(_pick(orbits, coarse), MOST_HARMONICS))
+    finer, solution = balance(model, member[coarse], resized(pick(orbits, coarse), MOST_HARMONICS))
     again = floquet(take(model, member[coarse]), finer)
     orbits = resized(orbits, MOST_HARMONICS)
     orbits.coefficients[coarse] = finer.coefficients
@@ -309,10 +309,6 @@ def _renumbered(member: IntArray, wind: IntArray, branch: IntArray) -> IntArray:
             numbers[key] = count.get(key[0], 0)
             count[key[0]] = numbers[key] + 1
     return np.array([numbers[(int(m), int(b))] for m, b in zip(member, branch, strict=True)], dtype=np.intp)
-
-
-def _pick(orbits: Orbits, index: IntArray) -> Orbits:
-    return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
 
 
 def _nothing(model: ReducedModel) -> Cycles:

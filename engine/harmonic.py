@@ -96,8 +96,9 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     samples = np.moveaxis(gradient, 1, -1)
     linear = np.stack([omega**2 * model.mass, omega * model.damping, model.stiffness], axis=-1)
     parts = [linear, -((speed**2)[..., None]) * samples[:, :, :m], -((speed * omega)[..., None]) * samples[:, :, m:]]
-    blocks = np.concatenate(parts, axis=-1) @ _block_basis(size // 2)
-    by_coefficients = blocks.reshape(cycles, m, m, size, size).swapaxes(2, 3).reshape(cycles, m * size, m * size)
+    flat = np.concatenate(parts, axis=-1).reshape(cycles * m * m, -1 if cycles else 0)
+    blocks = (flat @ _block_basis(size // 2)).reshape(cycles, m, m, size, size)
+    by_coefficients = blocks.swapaxes(2, 3).reshape(cycles, m * size, m * size)
     slope = orbits.coefficients @ made.derivative.T
     by_omega = 2.0 * omega * model.mass @ (slope @ made.derivative.T) + model.damping @ slope
     velocity = (orbits.coefficients @ made.slopes.T).swapaxes(-1, -2)[..., None] * speed[..., None]
@@ -162,6 +163,11 @@ def resized(orbits: Orbits, harmonics: int) -> Orbits:
     padded = np.zeros((*kept.shape[:-1], size))
     padded[..., : kept.shape[-1]] = kept
     return Orbits(padded, orbits.angular_frequency, orbits.wind_speed)
+
+
+def pick(orbits: Orbits, index: IntArray) -> Orbits:
+    """Pick or repeat orbits of a stack."""
+    return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
 
 
 def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:

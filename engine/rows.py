@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.cycles import Cycles
-from engine.harmonic import half_peak_to_peak, states
+from engine.harmonic import half_peak_to_peak, pick, states
 from engine.hybrid import Discretization, ReducedModel, observation, take
 from engine.modes import assign, solve_symmetric
 from engine.outcome import Outcome, Stability
@@ -162,7 +162,7 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
         seen = observation(made, shapes[here], int(k))
         series[here] = seen.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
     amplitude = half_peak_to_peak(series)
-    outside = _largest_angle(found) > made.sections.fitted_range[line]
+    outside = _outside_fit(found, made.sections.fitted_range[line])
     branch = _branch_numbers(found)
     for i in range(cycles.member.size):
         place = _Place(found.name, int(loops[i]), float(cycles.orbits.wind_speed[i]), int(line[i]))
@@ -245,12 +245,17 @@ def _own_loops(found: Found) -> IntArray:
     return np.asarray(found.loops[found.cycles.member, energy.argmax(axis=-1)])
 
 
-def _largest_angle(found: Found) -> FloatArray:
-    """Return the largest |alpha| along the span and over the period of each cycle [rad]."""
+def _outside_fit(found: Found, fitted_range: FloatArray) -> BoolArray:
+    """Tell where the largest |alpha| along the span and over the period exceeds the fitted range (cycles,) [rad]."""
     cycles = found.cycles
-    state = states(cycles.orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
-    angle = take(found.model, cycles.member).load.angle
-    return np.asarray(np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2)))
+    result = np.zeros(cycles.member.size, dtype=np.bool_)
+    known = np.flatnonzero(np.isfinite(fitted_range))
+    if known.size:
+        orbits = pick(cycles.orbits, known)
+        state = states(orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
+        angle = take(found.model, cycles.member[known]).load.angle
+        result[known] = np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2)) > fitted_range[known]
+    return result
 
 
 def _branch_numbers(found: Found) -> IntArray:
