@@ -17,7 +17,7 @@ from engine.hybrid import ReducedModel, take
 SAME = 1e-3  # relative distance below which two solutions are one
 UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
-MOST_HARMONICS = 20
+MOST_HARMONICS = 12
 NEAR = 0.02  # relative difference of frequency below which a guess adds nothing to a known cycle
 ALIKE = 3.0  # ratio of sizes up to which neighbours may be the same motion
 
@@ -37,7 +37,7 @@ class Cycles:
 
     member, wind: (cycles,), indices of model and wind speed; branch: (cycles,), number of the connected family within
     its member, in the order of discovery from low wind speeds up; dropped: (members,), solutions left out because
-    even 20 harmonics do not resolve them.
+    more harmonics did not resolve them either.
     """
 
     member: IntArray
@@ -284,9 +284,10 @@ def _refined(
     model: ReducedModel, member: IntArray, orbits: Orbits, judged: Floquet, coarse: IntArray
 ) -> tuple[Orbits, Floquet]:
     """Balance some cycles again with the most harmonics and judge them anew."""
-    finer, solution = balance(model, member[coarse], resized(pick(orbits, coarse), MOST_HARMONICS))
+    harmonics = max(MOST_HARMONICS, orbits.coefficients.shape[-1] // 2)
+    finer, solution = balance(model, member[coarse], resized(pick(orbits, coarse), harmonics))
     again = floquet(take(model, member[coarse]), finer)
-    orbits = resized(orbits, MOST_HARMONICS)
+    orbits = resized(orbits, harmonics)
     orbits.coefficients[coarse] = finer.coefficients
     frequency, multipliers = orbits.angular_frequency.copy(), judged.multipliers.copy()
     error, stability = judged.trivial_error.copy(), judged.stability.copy()

@@ -85,7 +85,7 @@ def critical_rows(found: Found) -> list[list[CriticalWindSpeedRow]]:
 def dropped_warnings(found: Found, lines: int) -> list[list[str]]:
     """Say how many solutions were left out; a list a line."""
     count = np.bincount(found.line, weights=found.cycles.dropped, minlength=lines).astype(int)
-    text = "{} solutions of the {} model with large angles of attack are left out: 20 harmonics do not resolve them."
+    text = "{} solutions of the {} model at large angles of attack are left out: more harmonics do not resolve them."
     return [[text.format(n, found.name.value.replace("_", " "))] if n else [] for n in count]
 
 
