@@ -22,7 +22,7 @@ from engine.outcome import Fault, InvalidSpec
 from engine.profile import static_profile
 from engine.report import assembled
 from engine.result import Progress, Result
-from engine.rows import Found
+from engine.rows import Found, FrequencyTable, coupled_squares
 from engine.sections import sections
 from engine.spec import Analysis, Line, Model, check_compatible
 from engine.stability import critical_wind_speeds
@@ -78,12 +78,16 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
     prepared = _prepare(lines, analysis)
     yield Progress(0.1, "critical wind speeds and limit cycles of the hybrid model")
     hybrid = _hybrid(prepared, analysis)
-    found = [hybrid] if Model.HYBRID in analysis.models else []
+    wanted = Model.HYBRID in analysis.models
+    found = [hybrid] if wanted else []
+    squares = [FrequencyTable(Model.HYBRID, hybrid.line, hybrid.loops, coupled_squares(hybrid.model))] if wanted else []
     if prepared.modes is not None:
-        yield Progress(0.4, "critical wind speeds and limit cycles of the finite element model")
-        found.append(_finite_element(prepared, prepared.modes, hybrid, analysis))
+        squares.append(_full_squares(prepared.modes))
+        if analysis.finite_element_loops:
+            yield Progress(0.4, "critical wind speeds and limit cycles of the finite element model")
+            found.append(_finite_element(prepared, prepared.modes, hybrid, analysis))
     yield Progress(0.95, "result rows")
-    results = assembled(prepared.made, prepared.shapes, tuple(found), analysis)
+    results = assembled(prepared.made, prepared.shapes, tuple(squares), tuple(found), analysis)
     yield Progress(1.0, "done")
     return results
 
@@ -144,6 +148,12 @@ def _finite_element(prepared: _Prepared, modes: FullModes, hybrid: Found, analys
         cycles=find_cycles(model, winds, starts),
         winds=winds,
     )
+
+
+def _full_squares(modes: FullModes) -> FrequencyTable:
+    count = modes.eigenvalues.shape[0]
+    loops = np.broadcast_to(np.tile(modes.loops, 3), (count, 3 * len(modes.loops)))
+    return FrequencyTable(Model.FINITE_ELEMENT, np.arange(count), loops, modes.eigenvalues.reshape(count, -1))
 
 
 def _lifted(made: Discretization, modes: FullModes, hybrid: Found, model: ReducedModel, harmonics: int) -> Starts:

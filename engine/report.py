@@ -7,14 +7,18 @@ from engine.hybrid import Discretization
 from engine.modes import DirectionalShapes
 from engine.profile import mean_mass
 from engine.result import DenHartog, LimitCycleRow, Orbit, Result, StaticState
-from engine.rows import Found, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
+from engine.rows import Found, FrequencyTable, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
 from engine.spec import AirflowSpoiler, Analysis, Line
 
 HEAVY_DEVICES = 0.1  # of the span's weight
 
 
 def assembled(
-    made: Discretization, shapes: DirectionalShapes, found: tuple[Found, ...], analysis: Analysis
+    made: Discretization,
+    shapes: DirectionalShapes,
+    squares: tuple[FrequencyTable, ...],
+    found: tuple[Found, ...],
+    analysis: Analysis,
 ) -> list[Result]:
     """Write the result of each line.
 
@@ -22,8 +26,10 @@ def assembled(
     ----------
     made : Discretization
     shapes : DirectionalShapes
-    found : tuple of Found
+    squares : tuple of FrequencyTable
         One for each model asked for.
+    found : tuple of Found
+        One for each model whose motions are asked for.
     analysis : Analysis
 
     Returns
@@ -32,7 +38,7 @@ def assembled(
         In the order of the lines.
     """
     lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
-    frequencies = [frequency_rows(one, analysis.loops) for one in found]
+    frequencies = [frequency_rows(table, analysis.loops) for table in squares]
     critical = [critical_rows(one) for one in found]
     motions = [motion_rows(made, one, analysis.loops, lowest) for one in found]
     dropped = [dropped_warnings(one, len(made.lines)) for one in found]

@@ -1,5 +1,6 @@
 """Flat rows from what was found with one kind of model. Theory section 8."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -47,25 +48,43 @@ class Motion:
     series: FloatArray | None = None
 
 
-def frequency_rows(found: Found, loops: tuple[int, ...]) -> list[list[FrequencyRow]]:
-    """Label the coupled frequencies by the co-ordinate of largest M_ii |x_i|^2, one a co-ordinate; a list a line."""
-    values, vectors = solve_symmetric(found.model.stiffness, found.model.mass)
-    share = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[..., None] * vectors**2
-    own = np.take_along_axis(values, assign(share), axis=-1)
-    frequency = np.sqrt(np.where(own > 0.0, own, np.nan)) / (2.0 * np.pi)
-    table: list[list[FrequencyRow]] = _by_line(found)
-    for member, line in enumerate(found.line):
+@dataclass(frozen=True, slots=True)
+class FrequencyTable:
+    """Squared frequencies of each co-ordinate of a stack of models.
+
+    line: (members,), index of the line; loops: (members, m); square: (members, m) [rad^2/s^2], the co-ordinates in the
+    order vertical, horizontal, torsional for each number of loops.
+    """
+
+    name: Model
+    line: IntArray
+    loops: IntArray
+    square: FloatArray
+
+
+def coupled_squares(model: ReducedModel) -> FloatArray:
+    """Return the squared frequencies of (M, K), each given to the co-ordinate of largest M_ii |x_i|^2: (members, m)."""
+    values, vectors = solve_symmetric(model.stiffness, model.mass)
+    share = np.diagonal(model.mass, axis1=-2, axis2=-1)[..., None] * vectors**2
+    return np.take_along_axis(values, assign(share), axis=-1)
+
+
+def frequency_rows(table: FrequencyTable, loops: tuple[int, ...]) -> list[list[FrequencyRow]]:
+    """Write the frequencies of the loops asked for; a list a line."""
+    frequency = np.sqrt(np.where(table.square > 0.0, table.square, np.nan)) / (2.0 * np.pi)
+    rows: list[list[FrequencyRow]] = _by_line(table.line)
+    for member, line in enumerate(table.line.tolist()):
         for k in loops:
-            picked = [_number(f) for f in frequency[member, found.loops[member] == k]]
+            picked = [_number(f) for f in frequency[member, table.loops[member] == k].tolist()]
             if picked:
                 outcome = Outcome.STATICALLY_UNSTABLE if None in picked else Outcome.CONVERGED
-                table[line].append(FrequencyRow(found.name, k, picked[0], picked[1], picked[2], outcome))
-    return table
+                rows[line].append(FrequencyRow(table.name, k, picked[0], picked[1], picked[2], outcome))
+    return rows
 
 
 def critical_rows(found: Found) -> list[list[CriticalWindSpeedRow]]:
     """Write every crossing of the static state; a list a line."""
-    table: list[list[CriticalWindSpeedRow]] = _by_line(found)
+    table: list[list[CriticalWindSpeedRow]] = _by_line(found.line)
     c = found.crossings
     for i, member in enumerate(c.member):
         row = CriticalWindSpeedRow(
@@ -101,7 +120,7 @@ def motion_rows(made: Discretization, found: Found, loops: tuple[int, ...], lowe
     lowest : (lines,)
         Lowest vertical frequency of each line [Hz].
     """
-    table: list[list[Motion]] = _by_line(found)
+    table: list[list[Motion]] = _by_line(found.line)
     scales = _Scales(
         sag=made.profile.sag,
         speed=lowest * made.profile.span_length,
@@ -225,12 +244,12 @@ def _row(place: _Place, scales: _Scales, state: _State) -> LimitCycleRow:
     )
 
 
-def _by_line(found: Found) -> list[list[Any]]:
-    return [[] for _ in range(int(found.line.max(initial=-1)) + 1)]
+def _by_line(line: IntArray) -> list[list[Any]]:
+    return [[] for _ in range(int(line.max(initial=-1)) + 1)]
 
 
 def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+    return value if math.isfinite(value) else None
 
 
 def _observed_at(made: Discretization, loops: int) -> FloatArray:

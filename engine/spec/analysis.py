@@ -40,7 +40,10 @@ class LongitudinalInertia(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model."""
+    """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model.
+
+    Without finite_element_loops the finite element model gives its frequencies only, not its motions.
+    """
 
     loops: tuple[int, ...] = (1, 2)
     models: tuple[Model, ...] = (Model.HYBRID, Model.FINITE_ELEMENT)
@@ -57,7 +60,7 @@ class Analysis:
         relative = self.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
         require(
             *_loops_faults("loops", self.loops),
-            *_loops_faults("finite_element_loops", self.finite_element_loops),
+            *_loops_faults("finite_element_loops", self.finite_element_loops or (1,)),
             None if self.models else Fault("models", self.models, "must name a model"),
             *(positive(f"wind_speeds.{i}", speed) for i, speed in enumerate(self.wind_speeds)),
             positive("critical_wind_limit", self.critical_wind_limit),
