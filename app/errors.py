@@ -11,9 +11,9 @@ from fastapi.responses import JSONResponse
 from fastapi.routing import APIRoute
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app import convert
+from app.bodies import BodyLimit
 from app.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer, parse_json
 
 MEDIA_TYPE = "application/problem+json"
@@ -87,7 +87,9 @@ def install(app: FastAPI, max_body_bytes: int) -> None:
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(OperationalError, _on_database)
     app.add_exception_handler(Exception, _on_defect)
-    app.add_middleware(BodyLimit, max_body_bytes=max_body_bytes)
+    detail = f"The body is larger than {max_body_bytes} bytes."
+    too_large = ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
+    app.add_middleware(BodyLimit, most_bytes=max_body_bytes, too_large=too_large, refuse=_on_problem)
 
 
 class StrictJsonRoute(APIRoute):
@@ -104,43 +106,6 @@ class StrictJsonRoute(APIRoute):
             return await handler(_StrictRequest(request.scope, request.receive))
 
         return strict
-
-
-class BodyLimit:
-    """ASGI middleware that stops reading a body at a limit; one announced as larger is not read at all."""
-
-    def __init__(self, app: ASGIApp, max_body_bytes: int) -> None:
-        """Wrap an application."""
-        self.app = app
-        self.max_body_bytes = max_body_bytes
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on with a counting receive."""
-        if scope["type"] != "http":
-            await self.app(scope, receive, send)
-            return
-        announced = dict(scope["headers"]).get(b"content-length", b"0")
-        if announced.isdigit() and int(announced[:20]) > self.max_body_bytes:
-            await _respond(Request(scope), self._too_large())(scope, receive, send)
-            return
-        await self.app(scope, self._counting(receive), send)
-
-    def _counting(self, receive: Receive) -> Receive:
-        taken = 0
-
-        async def counted() -> Message:
-            nonlocal taken
-            message = await receive()
-            taken += len(message.get("body", b""))
-            if taken > self.max_body_bytes:
-                raise self._too_large()
-            return message
-
-        return counted
-
-    def _too_large(self) -> ProblemError:
-        detail = f"The body is larger than {self.max_body_bytes} bytes."
-        return ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
 
 
 class _StrictRequest(Request):

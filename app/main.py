@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from typing import Any
 
 from fastapi import FastAPI
 
@@ -17,7 +18,17 @@ Post a line to `/v1/jobs`, follow `Location` until the status is `successful`, t
 Units stand in the names of the fields. Faults are `application/problem+json` and name every field at once."""
 
 
-def create_app(settings: Settings | None = None) -> FastAPI:
+class Service(FastAPI):
+    """The application, whose OpenAPI document keeps the nulls of its examples."""
+
+    def openapi(self) -> dict[str, Any]:
+        """Return the OpenAPI document."""
+        if not self.openapi_schema:
+            self.openapi_schema = documentation.with_nulls(super().openapi())
+        return self.openapi_schema
+
+
+def create_app(settings: Settings | None = None) -> Service:
     """Make the application; without settings it takes those of the process' environment.
 
     Raises
@@ -33,12 +44,13 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         yield
         database.dispose()
 
-    app = FastAPI(
+    app = Service(
         title="Galloping of iced conductors",
         version=ENGINE_VERSION,
         description=_DESCRIPTION,
         lifespan=lifespan,
         redoc_url=None,
+        redirect_slashes=False,
         responses={"default": documentation.ANY_PROBLEM},
     )
     app.state.settings = settings

@@ -7,8 +7,20 @@ from app.examples import EXAMPLE_NAMES, example
 from app.faults import Fault
 from app.schemas.answers import Problem
 
+_NULL = "\0null"
 _JOB = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e"
 _ADDRESS = f"/v1/jobs/{_JOB}"
+
+
+def _marked(value: Any) -> Any:
+    """Put a mark in the place of every null of an example, since FastAPI drops nulls when it writes the document."""
+    if isinstance(value, dict):
+        return {key: _marked(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_marked(inner) for inner in value]
+    return _NULL if value is None else value
+
+
 _RESULT_CYCLE: dict[str, Any] = {
     "model": "hybrid",
     "loops": 1,
@@ -120,7 +132,7 @@ TABLE_ANSWER: dict[str, Any] = {
     "content": {
         "application/json": {
             "schema": {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "object"}}},
-            "examples": {name: {"value": {name: [row]}} for name, row in TABLE_EXAMPLES.items()},
+            "examples": {name: {"value": _marked({name: [row]})} for name, row in TABLE_EXAMPLES.items()},
         },
         "text/csv": {
             "schema": {"type": "string"},
@@ -187,9 +199,18 @@ def problems(*kinds: ProblemKind) -> dict[int | str, dict[str, Any]]:
     return {kind.status: {"description": kind.description, "content": _content(kind)} for kind in every}
 
 
+def with_nulls(document: Any) -> Any:
+    """Return a document in which every mark of a null is a null."""
+    if isinstance(document, dict):
+        return {key: with_nulls(value) for key, value in document.items()}
+    if isinstance(document, list):
+        return [with_nulls(value) for value in document]
+    return None if document == _NULL else document
+
+
 def body(description: str, *media_types: tuple[str, Any]) -> dict[str, Any]:
     """Return the entry of OpenAPI for a good answer with an example for each media type."""
-    content = {name: {"example": value} for name, value in media_types}
+    content = {name: {"example": _marked(value)} for name, value in media_types}
     return {"description": description, "content": content}
 
 

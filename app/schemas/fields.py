@@ -30,7 +30,7 @@ class Answer(BaseModel):
 
 
 def quantity(
-    name: str, description: str, unit: str, bounds: tuple[float, float], example: float | None, default: Any = ...
+    name: str, description: str, unit: str, bounds: tuple[float, float], example: float, default: Any = ...
 ) -> Any:
     """Declare a number of the contract.
 
@@ -42,7 +42,7 @@ def quantity(
         What it is, and its unit as the schema shows it; `1` for a pure number.
     bounds : tuple of two floats
         Smallest and largest value that is plausible.
-    example : float or None
+    example : float
         A usual value.
     default : Any
         The value that holds if the field is absent; without it the field is required.

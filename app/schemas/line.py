@@ -31,9 +31,11 @@ class Conductor(Document):
     axial_rigidity: float | None = quantity(
         "axial_rigidity_n", "Axial rigidity EA; or give area and Young's modulus", "N", (1e4, 1e10), 28418105.8, None
     )
-    area: float | None = quantity("area_m2", "Metallic area, with youngs_modulus_pa", "m2", (1e-6, 0.01), None, None)
+    area: float | None = quantity(
+        "area_m2", "Metallic area, with youngs_modulus_pa", "m2", (1e-6, 0.01), 4.2324e-4, None
+    )
     youngs_modulus: float | None = quantity(
-        "youngs_modulus_pa", "Young's modulus, with area_m2", "Pa", (1e8, 1e12), None, None
+        "youngs_modulus_pa", "Young's modulus, with area_m2", "Pa", (1e8, 1e12), 4.78033e10, None
     )
     torsional_rigidity: float = quantity("torsional_rigidity_n_m2", "Torsional rigidity GJ", "N m2", (1e-3, 1e5), 101.0)
     axial_torsional_coupling: float = quantity(
@@ -71,7 +73,7 @@ class Bundle(Document):
         min_length=1,
         max_length=32,
         description="Or positions (y up, z downwind) of the centres about the reference curve [m]",
-        examples=[None],
+        examples=[[[0.0, -0.2], [0.0, 0.2]]],
         json_schema_extra={"unit": "m"},
     )
 
@@ -101,7 +103,7 @@ class Span(Document):
         None,
         None,
     )
-    sag: float | None = quantity("sag_m", "Or sag at mid-span, iced", "m", (1e-3, 1000.0), None, None)
+    sag: float | None = quantity("sag_m", "Or sag at mid-span, iced", "m", (1e-3, 1000.0), 1.54, None)
     elements: int = Field(
         default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"unit": "1"}
     )

@@ -1,0 +1,80 @@
+"""A limit on request bodies that holds while they come in, and lets the client read why it was refused."""
+
+import asyncio
+import contextlib
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+
+from fastapi import Request, Response
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+# A connection that is closed on a client who still sends is reset, and the answer with it. So what comes after the
+# answer is read for a while and thrown away.
+_LINGER_SECONDS = 2.0
+
+Refuse = Callable[[Request, Exception], Awaitable[Response]]
+
+
+class BodyLimit:
+    """ASGI middleware: no application sees more of a body than the limit; one announced as larger it does not see."""
+
+    def __init__(self, app: ASGIApp, most_bytes: int, too_large: HTTPException, refuse: Refuse) -> None:
+        """Wrap an application; `too_large` is raised in it as it reads on, or made an answer by `refuse` before."""
+        self.app = app
+        self.most_bytes = most_bytes
+        self.too_large = too_large
+        self.refuse = refuse
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        announced = dict(scope["headers"]).get(b"content-length", b"0")
+        exchange = _Exchange(receive, send, self.most_bytes, self.too_large)
+        if announced.isdigit() and int(announced[:20]) > self.most_bytes:
+            exchange.exceeded = True
+            answer = await self.refuse(Request(scope), self.too_large)
+            await answer(scope, receive, exchange.send_lingering)
+        else:
+            await self.app(scope, exchange.receive_counting, exchange.send_lingering)
+
+
+@dataclass
+class _Exchange:
+    receive: Receive
+    send: Send
+    most_bytes: int
+    too_large: HTTPException
+    taken: int = 0
+    exceeded: bool = False
+    ended: bool = False
+
+    async def receive_counting(self) -> Message:
+        message = await self._next()
+        self.taken += len(message.get("body", b""))
+        if self.taken > self.most_bytes:
+            self.exceeded = True
+            raise self.too_large
+        return message
+
+    async def send_lingering(self, message: Message) -> None:
+        last = message["type"] == "http.response.body" and not message.get("more_body", False)
+        if not (self.exceeded and last):
+            await self.send(message)
+            return
+        await self.send({**message, "more_body": True})
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(_LINGER_SECONDS):
+                await self._discard()
+        await self.send({"type": "http.response.body", "body": b""})
+
+    async def _discard(self) -> None:
+        while not self.ended:
+            await self._next()
+
+    async def _next(self) -> Message:
+        message = await self.receive()
+        self.ended = not message.get("more_body", False)
+        return message

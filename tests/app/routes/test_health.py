@@ -1,0 +1,33 @@
+from pathlib import Path
+
+from sqlalchemy import text
+from sqlalchemy.orm import Session, sessionmaker
+
+from app.settings import Settings
+from tests.app import service
+
+
+def test_a_service_with_database_and_broker_is_ready(settings: Settings) -> None:
+    with service.running(settings) as client:
+        assert client.get("/health/live").json() == {"status": "ok", "checks": {}}
+        answer = client.get("/health/ready")
+    assert answer.status_code == 200
+    assert answer.json() == {"status": "ok", "checks": {"database": "ok", "migrations": "ok", "broker": "ok"}}
+
+
+def test_without_its_broker_it_is_alive_but_not_ready(tmp_path: Path) -> None:
+    away = service.sqlite_settings(tmp_path, broker_url="redis://127.0.0.1:9/0", broker_timeout_seconds=0.3)
+    with service.running(away) as client:
+        answer = client.get("/health/ready")
+        assert client.get("/health/live").status_code == 200
+    assert answer.status_code == 503
+    assert answer.json()["checks"] == {"database": "ok", "migrations": "ok", "broker": "cannot be reached"}
+
+
+def test_a_database_of_another_revision_is_not_ready(settings: Settings, sessions: sessionmaker[Session]) -> None:
+    with service.running(settings) as client:
+        with sessions.begin() as session:
+            session.execute(text("UPDATE alembic_version SET version_num = 'older'"))
+        answer = client.get("/health/ready")
+    assert answer.status_code == 503
+    assert answer.json()["checks"] == {"database": "ok", "migrations": "not the newest", "broker": "ok"}

@@ -1,0 +1,92 @@
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pydantic import BaseModel
+
+from app import convert, schemas
+from app.main import create_app
+from app.schemas import answers
+from tests.app import service
+
+
+@pytest.fixture(scope="module")
+def document(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Give the OpenAPI document."""
+    made: dict[str, Any] = create_app(service.sqlite_settings(tmp_path_factory.mktemp("openapi"))).openapi()
+    return made
+
+
+def bodies(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Yield place, media type and content of every body of every operation."""
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            named = {"request": operation["requestBody"]} if "requestBody" in operation else {}
+            for name, body in {**named, **operation["responses"]}.items():
+                for media_type, content in body.get("content", {}).items():
+                    yield f"{method} {path} {name}", media_type, content
+
+
+def model_of(content: dict[str, Any]) -> type[BaseModel] | None:
+    name = content.get("schema", {}).get("$ref", "").rpartition("/")[2]
+    found = getattr(schemas, name, None) or getattr(answers, name, None)
+    return found if isinstance(found, type) and issubclass(found, BaseModel) else None
+
+
+def examples(content: dict[str, Any]) -> list[Any]:
+    several = [item["value"] for item in content.get("examples", {}).values()]
+    return several + ([content["example"]] if "example" in content else [])
+
+
+def test_the_document_is_openapi_3_1(document: dict[str, Any]) -> None:
+    assert document["openapi"].startswith("3.1")
+    assert "/v1/jobs/{job_id}/results/{table}" in document["paths"]
+
+
+def test_every_body_but_a_photograph_has_an_example(document: dict[str, Any]) -> None:
+    missing = [place for place, media_type, content in bodies(document) if not examples(content)]
+    assert missing == ["get /v1/jobs/{job_id}/plots/{picture}.{extension} 200"]
+
+
+def test_every_example_is_valid_by_its_own_schema(document: dict[str, Any]) -> None:
+    checked = 0
+    for place, media_type, content in bodies(document):
+        model = model_of(content)
+        if media_type in {"application/json", "application/problem+json"} and model is not None:
+            for value in examples(content):
+                model.model_validate(value)
+                checked += 1
+        elif media_type == "application/problem+json":
+            pytest.fail(f"{place} has no schema")
+    assert checked >= 50
+
+
+def test_every_request_example_can_be_run(document: dict[str, Any]) -> None:
+    (content,) = document["paths"]["/v1/jobs"]["post"]["requestBody"]["content"].values()
+    assert len(examples(content)) >= 6
+    for value in examples(content):
+        assert convert.check(value) == []
+
+
+def test_every_problem_that_an_operation_can_answer_is_named(document: dict[str, Any]) -> None:
+    def statuses(method: str, path: str) -> set[str]:
+        return set(document["paths"][path][method]["responses"])
+
+    assert statuses("post", "/v1/jobs") >= {"202", "413", "415", "422", "500", "503"}
+    assert statuses("get", "/v1/jobs/{job_id}/results") >= {"200", "404", "409", "410"}
+    assert statuses("get", "/v1/jobs/{job_id}/results/{table}") >= {"200", "400", "404", "406", "409", "410"}
+    assert statuses("delete", "/v1/jobs/{job_id}") >= {"200", "202", "204", "404"}
+    assert "HTTPValidationError" not in document["components"]["schemas"]
+
+
+def test_units_stand_in_the_schema(document: dict[str, Any]) -> None:
+    length = document["components"]["schemas"]["Span"]["properties"]["length_m"]
+    assert (length["unit"], length["minimum"], length["maximum"]) == ("m", 1.0, 5000.0)
+    assert length["description"].endswith("[m]")
+
+
+def test_the_interactive_documentation_is_there(tmp_path: Path) -> None:
+    with service.running(service.sqlite_settings(tmp_path)) as client:
+        assert client.get("/docs").status_code == 200
+        assert client.get("/openapi.json").json()["info"]["version"] == convert.ENGINE_VERSION
