@@ -18,6 +18,7 @@ SAME = 1e-3  # relative distance below which two solutions are one
 UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 12
+SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static one in disguise
 NEAR = 0.02  # relative difference of frequency below which a guess adds nothing to a known cycle
 ALIKE = 3.0  # ratio of sizes up to which neighbours may be the same motion
 
@@ -243,7 +244,9 @@ def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
     orbits, solution = balance(model, starts.member, starts.orbits)
     before = oscillation_size(model, starts.member, starts.orbits)
     size = oscillation_size(model, starts.member, orbits)
-    good = solution.converged & (size > SMALLEST * before) & (orbits.angular_frequency > 0.0)
+    square = np.diagonal(model.stiffness, axis1=-2, axis2=-1) / np.diagonal(model.mass, axis1=-2, axis2=-1)
+    slowest = np.sqrt(np.abs(square).min(axis=-1))[starts.member]
+    good = solution.converged & (size > SMALLEST * before) & (orbits.angular_frequency > SLOWEST * slowest)
     return Starts(starts.member, starts.wind, orbits), good
 
 
