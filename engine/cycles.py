@@ -100,7 +100,9 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, *guesses: Starts) 
     """
     family = _Family(model)
     for guess in guesses:
-        family.add(_solved(model, family.lacking(guess)))
+        wanted = family.lacking(guess)
+        if wanted.member.size:
+            family.add(_solved(model, wanted))
     frontier = np.arange(len(family.orbits))
     while frontier.size:
         origin, wind = family.loose_ends(frontier, wind_speeds.size)

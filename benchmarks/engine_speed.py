@@ -1,0 +1,188 @@
+"""The engine against what a user would pick instead, and against the LAPACK calls that it cannot avoid."""
+
+import time
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from benchmarks.auto import Branch, continued_branch
+from benchmarks.lines import random_line, source_line
+from benchmarks.measure import median_seconds, recorded_lapack
+from benchmarks.models import discretized, hybrid_models, plain_rate
+from engine.analysis import analyse_stack
+from engine.arrays import FloatArray
+from engine.cycles import Cycles, energy_starts, explicit_starts, find_cycles
+from engine.harmonic import half_peak_to_peak
+from engine.hybrid import ReducedModel, take
+from engine.result import Result
+from engine.spec import Analysis, Line, Model
+
+HARMONICS = 5
+STACK = 32  # lines a stack: the arrays of one stay in the processor's cache
+STANDARD_JOB = Analysis(
+    loops=(1, 2),
+    models=(Model.HYBRID, Model.FINITE_ELEMENT),
+    finite_element_loops=(),
+    wind_speeds=tuple(np.linspace(4.0, 12.0, 11).tolist()),
+)
+SOURCE_WINDS = np.array([4.0, 6.0])
+LONGEST = 6000  # cycles of direct integration
+
+
+def found_cycles(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Cycles:
+    """Find all cycles with stability as the product does."""
+    explicit = explicit_starts(published, winds, HARMONICS)
+    return find_cycles(model, winds, explicit, energy_starts(model, winds, HARMONICS))
+
+
+def settled_amplitude(model: ReducedModel, wind: float) -> tuple[FloatArray, int]:
+    """Integrate until the amplitude moves less than 0.1 % over 50 cycles; return it and the number of cycles."""
+    rate = plain_rate(model, wind)
+    period = 2.0 * np.pi / np.sqrt(model.stiffness[0, 0] / model.mass[0, 0])
+    span = (0.0, 50.0 * period)
+    times = np.linspace(*span, 50 * 48 + 1)
+    state, before = np.full(6, 1e-2), np.full(3, np.inf)
+    block = 0
+    while block < LONGEST // 50:
+        block += 1
+        run = solve_ivp(rate, span, state, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-10)
+        state = run.y[:, -1]
+        last = run.y[:3, -10 * 48 :]
+        amplitude = 0.5 * np.ptp(last, axis=1)
+        if (np.abs(amplitude - before) <= 1e-3 * amplitude).all():
+            break
+        before = amplitude
+    return amplitude, 50 * block
+
+
+def one_cycle() -> Iterator[tuple[str, float]]:
+    """Yield the figures of a limit cycle of the source's lines against direct integration."""
+    made = discretized([source_line(n) for n in (1, 2, 3)])
+    model, published = hybrid_models(made, (1, 2))
+    members, winds = range(model.mass.shape[0]), SOURCE_WINDS
+    cycles = found_cycles(model, published, winds)
+    count = int((cycles.floquet.stability == "stable").sum())
+    together = median_seconds(lambda: found_cycles(model, published, winds)) / count
+    alone = median_seconds(
+        lambda: [
+            found_cycles(take(model, [i]), take(published, [i]), winds[j : j + 1]) for i in members for j in (0, 1)
+        ]
+    ) / (len(members) * winds.size)
+    begin = time.perf_counter()
+    settled = {(i, j): settled_amplitude(take(model, i), float(winds[j])) for i in members for j in range(winds.size)}
+    direct = (time.perf_counter() - begin) / len(settled)
+    yield "cycle_direct_seconds", direct
+    yield "cycle_direct_cycles", float(np.mean([n for _, n in settled.values()]))
+    yield "cycle_stack_seconds", together
+    yield "cycle_alone_seconds", alone
+    yield "cycle_ratio", direct / together
+    yield "cycle_ratio_alone", direct / alone
+    yield "cycle_error", _largest_error(cycles, settled)
+
+
+def _largest_error(cycles: Cycles, settled: dict[tuple[int, int], tuple[FloatArray, int]]) -> float:
+    """Return the largest relative difference of the dominant amplitude from direct integration."""
+    errors = []
+    for (i, j), (amplitude, _) in settled.items():
+        here = (cycles.member == i) & (cycles.wind == j) & (cycles.floquet.stability == "stable")
+        own = half_peak_to_peak(cycles.orbits.coefficients[here])
+        main = int(amplitude[:2].argmax())
+        errors.append(np.abs(own[:, main] / amplitude[main] - 1.0).min(initial=np.inf))
+    return float(max(errors))
+
+
+def branch() -> Iterator[tuple[str, float]]:
+    """Yield the figures of whole branches of 41 winds with Floquet stability against AUTO."""
+    made = discretized([source_line(n) for n in (1, 2, 3)])
+    model, published = hybrid_models(made, (1, 2))
+    ratios, errors, seconds, points = [], [], [], []
+    for i in (2, 3, 4, 5):
+        one, its_published = take(model, [i]), take(published, [i])
+        winds = np.linspace(2.6, 6.0, 41)
+        own = median_seconds(lambda a=one, b=its_published, w=winds: found_cycles(a, b, w))  # type: ignore[misc]
+        runs = [continued_branch(take(model, i), 2.0, 6.0) for _ in range(3)]
+        auto = float(np.median([run.seconds for run in runs]))
+        ratios.append(auto / own)
+        seconds.append(auto)
+        points.append(runs[0].wind_speed.size)
+        errors.append(_difference(one, its_published, runs[0]))
+    yield "branch_auto_seconds", float(np.median(seconds))
+    yield "branch_auto_points", float(np.median(points))
+    yield "branch_ratio", float(np.median(ratios))
+    yield "branch_difference", float(max(errors))
+
+
+def _difference(model: ReducedModel, published: ReducedModel, auto: Branch) -> float:
+    """Return the largest relative difference of the dominant amplitude at the wind speeds where AUTO has points."""
+    inside = auto.wind_speed > 2.6
+    winds = np.sort(auto.wind_speed[inside])
+    amplitude = auto.amplitude[inside][np.argsort(auto.wind_speed[inside])]
+    cycles = found_cycles(model, published, winds)
+    own = half_peak_to_peak(cycles.orbits.coefficients)
+    main = int(amplitude[-1, :2].argmax())
+    gaps = [
+        np.abs(own[cycles.wind == j, main] / amplitude[j, main] - 1.0).min(initial=np.inf) for j in range(winds.size)
+    ]
+    return float(max(gaps))
+
+
+def analysed(lines: Sequence[Line], analysis: Analysis) -> list[Result]:
+    """Run the standard job on lines, one stack after another."""
+    results: list[Result] = []
+    for first in range(0, len(lines), STACK):
+        steps = analyse_stack(lines[first : first + STACK], analysis)
+        while True:
+            try:
+                next(steps)
+            except StopIteration as stop:
+                results += stop.value
+                break
+    return results
+
+
+def fleet(largest: int) -> Iterator[tuple[str, float]]:
+    """Yield lines a second and core, the ratio to the LAPACK calls alone, and the exponent of cost over lines."""
+    generator = np.random.default_rng(20260101)
+    lines = [random_line(generator) for _ in range(min(largest, 2000))]
+    analysed(lines[:STACK], STANDARD_JOB)
+    rates, floors = [], []
+    for first in range(0, 320, 64):
+        part = lines[first : first + 64]
+        with recorded_lapack() as calls:
+            analysed(part, STANDARD_JOB)
+        begin = time.perf_counter()
+        analysed(part, STANDARD_JOB)
+        whole = time.perf_counter() - begin
+        begin = time.perf_counter()
+        calls.replay()
+        floors.append(whole / (time.perf_counter() - begin))
+        rates.append(64 / whole)
+    yield "fleet_lines_per_s_core", float(np.median(rates))
+    yield "fleet_floor_ratio", float(np.median(floors))
+    yield "fleet_exponent", _exponent(lines, largest)
+
+
+def _exponent(lines: list[Line], largest: int) -> float:
+    """Fit the exponent of the time over the number of lines; beyond the drawn ones they repeat."""
+    sizes = [n for n in (100, 1000, 10_000, 100_000) if n <= largest]
+    times = []
+    for size in sizes:
+        whole, rest = divmod(size, len(lines))
+        begin = time.perf_counter()
+        for _ in range(whole):
+            analysed(lines, STANDARD_JOB)
+        analysed(lines[:rest], STANDARD_JOB)
+        times.append(time.perf_counter() - begin)
+    return float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
+
+
+def hybrid_against_finite_element() -> Iterator[tuple[str, float]]:
+    """Yield the cost of the finite element model over that of the hybrid one on the source's lines."""
+    lines = [source_line(n) for n in (1, 2, 3, 4)]
+    winds = tuple(np.linspace(4.0, 6.0, 5).tolist())
+    hybrid = Analysis(models=(Model.HYBRID,), wind_speeds=winds)
+    both = Analysis(wind_speeds=winds)
+    lean = median_seconds(lambda: analysed(lines, hybrid))
+    full = median_seconds(lambda: analysed(lines, both))
+    yield "finite_element_over_hybrid", (full - lean) / lean

@@ -1,0 +1,59 @@
+"""Timing: medians of several runs, and the time spent inside LAPACK."""
+
+import statistics
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+LAPACK = ("solve", "inv", "eig", "eigvals", "eigh", "eigvalsh", "cholesky", "svd", "det")
+
+
+def median_seconds(task: Callable[[], object], runs: int = 5) -> float:
+    """Return the median wall time of several runs [s]."""
+    times = []
+    for _ in range(runs):
+        begin = time.perf_counter()
+        task()
+        times.append(time.perf_counter() - begin)
+    return statistics.median(times)
+
+
+@dataclass(slots=True)
+class Calls:
+    """Every LAPACK call of a recorded run: its function and arguments."""
+
+    recorded: list[tuple[Callable[..., Any], tuple[Any, ...]]] = field(default_factory=list)
+
+    def replay(self) -> None:
+        """Repeat the calls and nothing else."""
+        for function, arguments in self.recorded:
+            function(*arguments)
+
+    def systems(self) -> int:
+        """Return the number of matrices handed to LAPACK."""
+        return sum(int(np.prod(np.shape(arguments[0])[:-2])) for _, arguments in self.recorded)
+
+
+@contextmanager
+def recorded_lapack() -> Iterator[Calls]:
+    """Record the calls of numpy.linalg that reach LAPACK while the context is open."""
+    calls, originals = Calls(), {name: getattr(np.linalg, name) for name in LAPACK}
+
+    def recorder(function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*arguments: Any, **options: Any) -> Any:
+            calls.recorded.append((function, tuple(np.array(a) for a in arguments)))
+            return function(*arguments, **options)
+
+        return call
+
+    try:
+        for name, function in originals.items():
+            setattr(np.linalg, name, recorder(function))
+        yield calls
+    finally:
+        for name, function in originals.items():
+            setattr(np.linalg, name, function)

@@ -1,0 +1,51 @@
+"""Reduced models of lines, and their equations in the plainest form, for the measurements."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from engine import polynomial
+from engine.arrays import FloatArray
+from engine.fem import matrices
+from engine.hybrid import Discretization, ReducedModel, hybrid_model, take, with_published_load
+from engine.modes import directional_shapes
+from engine.profile import static_profile
+from engine.sections import sections
+from engine.spec import Analysis, Line
+
+Rate = Callable[[float, FloatArray], FloatArray]
+
+
+def discretized(lines: Sequence[Line]) -> Discretization:
+    """Return everything that reduced models of lines are made from."""
+    profile = static_profile(lines)
+    made_of = sections(lines, profile)
+    return Discretization(tuple(lines), profile, made_of, matrices(lines, profile, made_of))
+
+
+def hybrid_models(made: Discretization, loops: tuple[int, ...]) -> tuple[ReducedModel, ReducedModel]:
+    """Return the hybrid models (lines x loops,), line-major, with the exact and with the published load."""
+    shapes = directional_shapes(made.matrices, made.profile.arc_length, tuple(sorted({1, *loops})))
+    grid = hybrid_model(made, shapes, loops, Analysis(loops=loops))
+    index = np.divmod(np.arange(len(made.lines) * len(loops)), len(loops))
+    return take(grid, index), take(with_published_load(made, grid), index)
+
+
+def plain_rate(model: ReducedModel, wind_speed: float) -> Rate:
+    """Return the first-order equations of one hybrid model with as few operations as numpy allows."""
+    m = model.mass.shape[-1]
+    inverse = np.linalg.inv(model.mass)
+    linear = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])
+    active = np.flatnonzero(model.load.forms[0].any(axis=0))
+    scale = np.where(active < m, 1.0, 1.0 / wind_speed)
+    cubic = wind_speed**2 * inverse @ model.load.table[0]
+    order = [int(np.flatnonzero(row)[0]) for row in model.load.forms[0]]
+    back = np.searchsorted(active, order)
+    index, scale = active[back], scale[back]
+
+    def rate(_: float, y: FloatArray) -> FloatArray:
+        result = linear @ y
+        result[m:] += cubic @ polynomial.powers(y[index] * scale)
+        return result
+
+    return rate
