@@ -125,6 +125,12 @@ def release_expired(session: Session, settings: Settings, owner: str | None = No
     return len(released)
 
 
+def holds_jobs(session: Session, owner: str) -> bool:
+    """Tell whether an owner has running jobs."""
+    held = select(Job.id).where(Job.status == JobStatus.RUNNING, Job.lease_owner == owner)
+    return session.execute(held.limit(1)).first() is not None
+
+
 def take_undispatched(session: Session, settings: Settings, *, queue_is_empty: bool) -> list[UUID]:
     """Mark jobs that wait for a message as dispatched, oldest first, and return their ids for sending after the commit.
 
@@ -157,6 +163,11 @@ def mark_undispatched(session: Session, job_ids: Sequence[UUID]) -> None:
 def _set_dispatched(session: Session, job_ids: Sequence[UUID], moment: datetime | None) -> None:
     statement = update(Job).where(Job.id.in_(job_ids), Job.status == JobStatus.ACCEPTED).values(dispatched_at=moment)
     session.execute(statement.execution_options(synchronize_session=False))
+
+
+def time_limit_sentence(settings: Settings) -> str:
+    """Say which limit a job ran into."""
+    return f"The job ran longer than the limit of {settings.soft_time_limit_seconds:g} s."
 
 
 def _guard(held: Claim) -> Iterator[ColumnElement[bool]]:
@@ -212,8 +223,3 @@ def _verdict(job: Job, settings: Settings, now: datetime) -> tuple[JobEventKind,
         sentence = f"The worker was lost in each of {job.attempt} attempts, so the job was given up."
         return JobEventKind.FAILED, Failure(FailureKind.WORKER_LOST, sentence)
     return JobEventKind.RELEASED, None
-
-
-def time_limit_sentence(settings: Settings) -> str:
-    """Say which limit a job ran into."""
-    return f"The job ran longer than the limit of {settings.soft_time_limit_seconds:g} s."

@@ -21,7 +21,7 @@ def _default_database(data: dict[str, object]) -> str:
 
 
 def _default_broker(_: dict[str, object]) -> str:
-    return "filesystem://"
+    return "filesystem://localhost"
 
 
 def _usable_processors() -> int:

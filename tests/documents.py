@@ -13,15 +13,18 @@ from app.tables import Job, JobEvent, PointRow
 
 
 def short_request() -> dict[str, Any]:
-    """Return a request that takes about half a second."""
+    """Return a request that takes a small part of a second."""
     analysis = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 5.0, 6.0]}
     return {"line": example("c11-twin"), "analysis": analysis}
 
 
 def long_request(points: int) -> dict[str, Any]:
-    """Return a study whose every point takes about half a second."""
-    tensions = [25000.0 + 1000.0 * number for number in range(points)]
-    return {**short_request(), "study": {"axes": [{"parameter": "span.horizontal_tension_n", "values": tensions}]}}
+    """Return a study whose every point takes about half a second, so that a test can break in on it."""
+    winds = {"start": 3.0, "stop": 12.0, "count": 20}
+    analysis = {"loops": [1, 2], "models": ["hybrid", "finite_element"], "wind_speeds_m_per_s": winds}
+    tensions = [25000.0 + 100.0 * number for number in range(points)]
+    study = {"axes": [{"parameter": "span.horizontal_tension_n", "values": tensions}]}
+    return {"line": example("c11-twin"), "analysis": analysis, "study": study}
 
 
 def point_result(number: int = 0, *, tension: float = 30000.0, failure: str | None = None) -> PointResult:

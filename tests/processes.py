@@ -8,8 +8,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
 from app.processes import environment
 from app.settings import Settings
 from tests.servers import wait_until
@@ -68,10 +66,12 @@ def pool_children(worker: Process) -> list[int]:
 
 def busy_child(worker: Process) -> int:
     """Return the id of the one process that runs a job: its heartbeat is a second thread."""
-    busy = [pid for pid in pool_children(worker) if len(list(Path(f"/proc/{pid}/task").iterdir())) > 1]
-    if len(busy) != 1:
-        pytest.fail(f"one process should be at work, found {len(busy)}")
-    return busy[0]
+    wait_until(lambda: len(_busy(worker)) == 1, 10.0, "one process at work")
+    return _busy(worker)[0]
+
+
+def _busy(worker: Process) -> list[int]:
+    return [pid for pid in pool_children(worker) if len(list(Path(f"/proc/{pid}/task").iterdir())) > 1]
 
 
 def _all() -> list[int]:

@@ -39,12 +39,12 @@ def binary(name: str) -> str:
 
 
 def wait_until(condition: Callable[[], object], seconds: float = 30.0, what: str = "the condition") -> None:
-    """Look every 20 ms until the condition holds, and fail the test if it does not in time."""
+    """Look every 50 ms until the condition holds, and fail the test if it does not in time."""
     deadline = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > deadline:
             pytest.fail(f"{what} did not come about within {seconds:g} s")
-        time.sleep(0.02)
+        time.sleep(0.05)
 
 
 @contextlib.contextmanager

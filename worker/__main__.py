@@ -5,19 +5,20 @@ import os
 import signal
 import socket
 import sys
+import time
 from uuid import uuid4
 
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import processes
+from app import leases, processes
 from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
 from worker.health import show_life
 from worker.sweep import release, sweep
 from worker.tasks import OWNER
 
-_MARGIN_SECONDS = 5.0
+_LOOK_SECONDS = 0.2
 
 _logger = logging.getLogger(__name__)
 
@@ -44,9 +45,29 @@ def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) 
                 _repair(sessions, settings, owner)
                 pool = _start_pool(settings, owner)
             _repair(sessions, settings)
-        # SIGQUIT gives running jobs the shutdown time and then ends them, where SIGTERM would wait for ever.
-        processes.stop([pool], signal.SIGQUIT, settings.shutdown_seconds + _MARGIN_SECONDS)
+        _drain(sessions, settings, owner, pool)
         _repair(sessions, settings, owner)
+
+
+def _drain(sessions: sessionmaker[Session], settings: Settings, owner: str, pool: processes.Child) -> None:
+    """Let the pool end its jobs, but take no more; what takes too long is cut off, for the caller to give back.
+
+    An idle pool is not waited for: Celery takes seconds to end one, and there is nothing that it could lose.
+    """
+    pool.send_signal(signal.SIGTERM)
+    deadline = time.monotonic() + settings.shutdown_seconds
+    time.sleep(_LOOK_SECONDS)  # for a job whose message has arrived but is not claimed yet
+    while pool.poll() is None and time.monotonic() < deadline and _holds_jobs(sessions, owner):
+        time.sleep(_LOOK_SECONDS)
+    processes.stop([pool], signal.SIGKILL, settings.shutdown_seconds)
+
+
+def _holds_jobs(sessions: sessionmaker[Session], owner: str) -> bool:
+    try:
+        with sessions() as session:
+            return leases.holds_jobs(session, owner)
+    except SQLAlchemyError:
+        return True
 
 
 def _start_pool(settings: Settings, owner: str) -> processes.Child:

@@ -198,7 +198,11 @@ def test_a_dead_owners_jobs_come_back_before_their_leases_end(
     take(sessions, of_dead, LONG, "dead")
     take(sessions, of_living, LONG, "living")
     assert give_back(sessions, settings) == 0
+    with sessions() as session:
+        assert [leases.holds_jobs(session, owner) for owner in ("dead", "living", "other")] == [True, True, False]
     assert give_back(sessions, settings, "dead") == 1
+    with sessions() as session:
+        assert [leases.holds_jobs(session, owner) for owner in ("dead", "living")] == [False, True]
     assert look(sessions, of_dead).status is JobStatus.ACCEPTED
     assert look(sessions, of_living).status is JobStatus.RUNNING
 

@@ -12,7 +12,7 @@ from app.settings import Settings, cursor_key
 def test_defaults_need_no_other_server(tmp_path: Path) -> None:
     settings = Settings(data_dir=tmp_path)
     assert settings.database_url == f"sqlite:///{tmp_path}/galloping.sqlite3"
-    assert settings.broker_url == "filesystem://"
+    assert settings.broker_url == "filesystem://localhost"
     assert settings.max_attempts == 3
     assert settings.max_body_bytes == 20_000_000
     assert settings.cursor_secret is None

@@ -1,0 +1,128 @@
+"""`galloping serve` as a whole: the job by HTTP, a clean end, and a start after everything was killed."""
+
+import contextlib
+import socket
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import httpx
+import pytest
+from sqlalchemy.orm import Session, sessionmaker
+
+from app.db import make_engine, session_factory
+from app.settings import Settings
+from tests.documents import history, long_request, short_request
+from tests.processes import Process, group, kill_group, running
+from tests.servers import free_port, wait_until
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    """Give settings of an embedded service with short times."""
+    return Settings(
+        data_dir=tmp_path,
+        lease_seconds=3.0,
+        heartbeat_seconds=0.1,
+        sweep_seconds=0.3,
+        redispatch_seconds=1.5,
+        shutdown_seconds=1.0,
+        worker_processes=2,
+    )
+
+
+@pytest.fixture
+def sessions(settings: Settings) -> Iterator[sessionmaker[Session]]:
+    """Give sessions on the service's database, which the service itself makes."""
+    engine = make_engine(settings)
+    yield session_factory(engine)
+    engine.dispose()
+
+
+@contextlib.contextmanager
+def serving(settings: Settings, port: int) -> Iterator[tuple[Process, httpx.Client]]:
+    arguments = ["serve", "--port", str(port), "--data-dir", str(settings.data_dir)]
+    address = f"http://127.0.0.1:{port}"
+    with running(settings, "-m", "app.cli", *arguments) as process, httpx.Client(base_url=address) as client:
+        wait_until(lambda: is_ready(client), 60.0, "readiness")
+        yield process, client
+
+
+def is_ready(client: httpx.Client) -> bool:
+    try:
+        return client.get("/health/ready").status_code == 200
+    except httpx.TransportError:
+        return False
+
+
+def submit(client: httpx.Client, document: dict[str, Any]) -> str:
+    answer = client.post("/v1/jobs", json=document)
+    assert answer.status_code == 202, answer.text
+    return answer.headers["Location"]
+
+
+def status(client: httpx.Client, location: str) -> dict[str, Any]:
+    found: dict[str, Any] = client.get(location).raise_for_status().json()
+    return found
+
+
+def wait_for(client: httpx.Client, location: str, state: str) -> None:
+    wait_until(lambda: status(client, location)["status"] == state, 90.0, state)
+
+
+def test_job_by_http_and_a_clean_end(settings: Settings, sessions: sessionmaker[Session]) -> None:
+    with serving(settings, free_port()) as (process, client):
+        location = submit(client, short_request())
+        wait_for(client, location, "successful")
+        rows = client.get(f"{location}/results/limit-cycles").raise_for_status().json()
+        assert rows
+        start = time.monotonic()
+        process.terminate()
+        assert process.wait(20.0) == 0
+        assert time.monotonic() - start < 15.0
+        assert group(process) == []
+
+
+def test_next_start_goes_on_where_it_was(settings: Settings, sessions: sessionmaker[Session]) -> None:
+    port = free_port()
+    with serving(settings, port) as (process, client):
+        interrupted = submit(client, long_request(4))
+        wait_for_progress(client, interrupted, 1)
+        queued = [submit(client, short_request()) for _ in range(3)]
+        process.kill()
+        process.wait()
+        # The API gives up its port, and the worker ends, though nobody told them.
+        wait_until(lambda: group(process) == [], 10.0, "the end of the orphans")
+    with serving(settings, port) as (process, client):
+        wait_for_progress(client, interrupted, 2)
+        kill_group(process)
+    with serving(settings, port) as (_, client):
+        for location in (interrupted, *queued):
+            wait_for(client, location, "successful")
+        ids = [UUID(status(client, location)["id"]) for location in (interrupted, *queued)]
+    assert [kind for kind, _ in history(sessions, ids[0])] == [
+        "accepted",
+        *("running", "released"),
+        *("running", "released"),
+        *("running", "successful"),
+    ]
+    for job_id in ids[1:]:
+        assert [kind for kind, _ in history(sessions, job_id)].count("successful") == 1
+
+
+def wait_for_progress(client: httpx.Client, location: str, attempt: int) -> None:
+    def advanced() -> bool:
+        job = status(client, location)
+        return bool(job["attempt"] == attempt and 0.0 < job["progress"] < 1.0)
+
+    wait_until(advanced, 60.0, f"progress of attempt {attempt}")
+
+
+def test_api_that_cannot_start_ends_the_service_with_its_code(settings: Settings) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+        with running(settings, "-m", "app.cli", "serve", "--port", str(port)) as second:
+            assert second.wait(60.0) not in (0, None)
+            assert group(second) == []
