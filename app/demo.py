@@ -26,7 +26,7 @@ from app.examples import EXAMPLE_NAMES, example
 Json = Mapping[str, Any]
 
 _CYCLES: Json = {"loops": [1, 2], "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 5}}
-_FREQUENCIES: Json = {"loops": [1, 2, 3], "wind_speeds_m_per_s": []}
+_FREQUENCIES: Json = {"loops": [1, 2, 3], "wind_speeds_m_per_s": [], "finite_element_loops": []}
 _TABLES = ("frequencies", "critical-wind-speeds", "limit-cycles")
 _PICTURES = ("amplitude", "orbit")
 _DIRECTIONS = ("vertical", "horizontal", "torsional")

@@ -88,9 +88,8 @@ class Analysis(Document):
     )
     finite_element_loops: list[Loops] = Field(
         default=[1, 2, 3],
-        min_length=1,
         max_length=10,
-        description="Loops of the modes in the finite element model [1]",
+        description="Loops of the modes in the finite element model; without any it gives its frequencies only [1]",
         examples=[[1, 2, 3]],
         json_schema_extra={"unit": "1"},
     )

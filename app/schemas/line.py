@@ -100,7 +100,7 @@ class Span(Document):
         "Or catenary parameter: tension over weight per length, iced",
         "m",
         (1.0, 1e5),
-        None,
+        1285.5,
         None,
     )
     sag: float | None = quantity("sag_m", "Or sag at mid-span, iced", "m", (1e-3, 1000.0), 1.54, None)
