@@ -108,7 +108,7 @@ def _amplitude_figure(title: str, found: Found) -> Figure:
     for panel in panels[-1]:
         panel.set_xlabel("wind speed [m/s]")
     figure.suptitle(textwrap.fill(title, 90), fontweight="bold")
-    figure.legend(handles=_amplitude_legend(models), loc="outside lower center", ncols=5, frameon=False)
+    figure.legend(handles=_amplitude_legend(models), loc="outside lower center", ncols=3, frameon=False)
     return figure
 
 
@@ -166,7 +166,9 @@ def _amplitude_legend(models: Sequence[str]) -> list[Line2D]:
         )
 
     entries = [marker(model, stability) for model in models for stability in ("stable", "unstable")]
-    entries.append(Line2D([], [], color="grey", linestyle="--", linewidth=1.0, label="critical wind speed"))
+    entries.append(
+        Line2D([], [], color="grey", linestyle="--", linewidth=1.0, label="critical wind speed, dotted: stable again")
+    )
     return entries
 
 
