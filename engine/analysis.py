@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import FloatArray, merged
-from engine.cycles import Cycles, Starts, energy_starts, explicit_starts, find_cycles, joined
+from engine.cycles import Cycles, energy_starts, explicit_starts, find_cycles, joined
+from engine.family import Starts
 from engine.fem import FIELDS, matrices
 from engine.harmonic import Orbits, resized
 from engine.hybrid import (

@@ -8,28 +8,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, merged
+from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.describing import FirstHarmonic, energy_balance_cycles, explicit_cycles
+from engine.family import CycleFamily, Starts
 from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, balance, oscillation_size, pick, resized
 from engine.hybrid import ReducedModel, take
 
-SAME = 1e-3  # relative distance below which two solutions are one
 UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 12
 SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static one in disguise
-NEAR = 0.02  # relative difference of frequency below which a guess adds nothing to a known cycle
-ALIKE = 3.0  # ratio of sizes up to which neighbours may be the same motion
-
-
-@dataclass(frozen=True, slots=True)
-class Starts:
-    """First guesses: member and wind index of each, and the orbit guessed."""
-
-    member: IntArray
-    wind: IntArray
-    orbits: Orbits
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,129 +87,20 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, *guesses: Starts) 
     Cycles
         Sorted by member, wind speed and branch.
     """
-    family = _Family(model)
+    family = CycleFamily(model)
     for guess in guesses:
         wanted = family.lacking(guess)
         if wanted.member.size:
-            family.add(_solved(model, wanted))
-    frontier = np.arange(len(family.orbits))
+            family.add(*_solved(model, wanted))
+    frontier = np.arange(len(family))
     while frontier.size:
         origin, wind = family.loose_ends(frontier, wind_speeds.size)
         here = family.orbits_of(origin)
         orbits = Orbits(here.coefficients, here.angular_frequency, wind_speeds[wind])
-        before = len(family.orbits)
-        family.add(_solved(model, Starts(family.member[origin], wind, orbits)), origin)
-        frontier = np.arange(before, len(family.orbits))
+        before = len(family)
+        family.add(*_solved(model, Starts(family.places(origin)[0], wind, orbits)), origin)
+        frontier = np.arange(before, len(family))
     return _judged(model, family)
-
-
-class _Family:
-    """Distinct cycles as they are found, with the links between neighbours; only `find_cycles` uses it."""
-
-    def __init__(self, model: ReducedModel) -> None:
-        self.model = model
-        self.member: IntArray = np.zeros(0, dtype=np.intp)
-        self.wind: IntArray = np.zeros(0, dtype=np.intp)
-        self.orbits: list[tuple[FloatArray, float, float]] = []
-        self.links: list[tuple[int, int]] = []
-        self._signatures: list[FloatArray] = []
-        self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
-
-    def orbits_of(self, ids: IntArray) -> Orbits:
-        """Stack the orbits with these numbers."""
-        size = self.model.mass.shape[-1]
-        if ids.size == 0:
-            return Orbits(np.zeros((0, size, 3)), np.zeros(0), np.zeros(0))
-        coefficients, frequency, speed = zip(*(self.orbits[i] for i in ids), strict=True)
-        return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
-
-    def lacking(self, starts: Starts) -> Starts:
-        """Keep the starts near whose frequency no cycle of the same member and wind speed is known."""
-        keep = [
-            all(
-                abs(self.orbits[number][1] - frequency) > NEAR * frequency
-                for number, _ in self._known.get((member, wind), [])
-            )
-            for member, wind, frequency in zip(
-                starts.member.tolist(), starts.wind.tolist(), starts.orbits.angular_frequency.tolist(), strict=True
-            )
-        ]
-        index = np.flatnonzero(keep)
-        return Starts(starts.member[index], starts.wind[index], pick(starts.orbits, index))
-
-    def add(self, solved: tuple[Starts, BoolArray], origin: IntArray | None = None) -> None:
-        """Record solutions, and links to the cycles that they were carried from."""
-        starts, good = solved
-        signatures = _signature(self.model, starts)
-        for i in np.flatnonzero(good).tolist():
-            key = (int(starts.member[i]), int(starts.wind[i]))
-            number, new = self._number(key, signatures[i])
-            if new:
-                self.member, self.wind = np.append(self.member, key[0]), np.append(self.wind, key[1])
-                orbits = starts.orbits
-                self.orbits.append(
-                    (orbits.coefficients[i], float(orbits.angular_frequency[i]), float(orbits.wind_speed[i]))
-                )
-            if origin is not None:
-                self.links.append((int(origin[i]), number))
-
-    def loose_ends(self, ids: IntArray, winds: int) -> tuple[IntArray, IntArray]:
-        """Link neighbours that are plainly the same motion; return the cycles and winds that remain to be tried."""
-        origin, wind = [], []
-        for i in ids.tolist():
-            for step in (-1, 1):
-                there = int(self.wind[i]) + step
-                if 0 <= there < winds:
-                    mate = self._mate(i, there)
-                    if mate is None:
-                        origin.append(i)
-                        wind.append(there)
-                    else:
-                        self.links.append((i, mate))
-        return np.array(origin, dtype=np.intp), np.array(wind, dtype=np.intp)
-
-    def _mate(self, i: int, wind: int) -> int | None:
-        """Return the mutually nearest cycle at another wind speed if frequency and size agree with this one."""
-        member = int(self.member[i])
-        there = self._nearest((member, wind), self.signatures[i])
-        if there is None or self._nearest((member, int(self.wind[i])), self.signatures[there]) != i:
-            return None
-        near = abs(self.orbits[i][1] - self.orbits[there][1]) <= NEAR * self.orbits[i][1]
-        sizes = [float(np.linalg.norm(self.signatures[n])) for n in (i, there)]
-        return there if near and max(sizes) <= ALIKE * min(sizes) else None
-
-    def _nearest(self, key: tuple[int, int], signature: FloatArray) -> int | None:
-        known = self._known.get(key, [])
-        if len(known) < 2:
-            return known[0][0] if known else None
-        return min(known, key=lambda item: float(np.linalg.norm(item[1] - signature)))[0]
-
-    @property
-    def signatures(self) -> list[FloatArray]:
-        """What identifies each cycle apart from its phase."""
-        return self._signatures
-
-    def _number(self, key: tuple[int, int], signature: FloatArray) -> tuple[int, bool]:
-        known = self._known.setdefault(key, [])
-        for number, other in known:
-            if np.linalg.norm(signature - other) <= SAME * np.linalg.norm(other):
-                return number, False
-        known.append((len(self.orbits), signature))
-        self._signatures.append(signature)
-        return len(self.orbits), True
-
-    def branches(self) -> IntArray:
-        """Return the smallest number in the connected family of each cycle."""
-        label = np.arange(len(self.orbits))
-        changed = True
-        while changed:
-            changed = False
-            for a, b in self.links:
-                low = min(label[a], label[b])
-                if label[a] != low or label[b] != low:
-                    label[a] = label[b] = low
-                    changed = True
-        return label
 
 
 def _grid(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
@@ -252,33 +132,27 @@ def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
     return Starts(starts.member, starts.wind, orbits), good
 
 
-def _signature(model: ReducedModel, starts: Starts) -> FloatArray:
-    """Return what does not depend on the phase: weighted means and sizes of every harmonic, (cycles, ...)."""
-    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[starts.member]
-    coefficients = starts.orbits.coefficients * weight[..., None]
-    size = np.hypot(coefficients[..., 1::2], coefficients[..., 2::2])
-    return np.concatenate([coefficients[..., 0], merged(size, -2)], axis=-1)
-
-
-def _judged(model: ReducedModel, family: _Family) -> Cycles:
+def _judged(model: ReducedModel, family: CycleFamily) -> Cycles:
     """Judge the stability of all cycles, with more harmonics where they were too few."""
     members = model.mass.shape[0]
-    if not family.orbits:
+    if not len(family):
         return _nothing(model)
-    orbits = family.orbits_of(np.arange(len(family.orbits)))
-    judged = floquet(take(model, family.member), orbits)
+    everything = np.arange(len(family))
+    member, wind = family.places(everything)
+    orbits = family.orbits_of(everything)
+    judged = floquet(take(model, member), orbits)
     coarse = np.flatnonzero(~(judged.trivial_error <= UNRESOLVED))
     branch = family.branches()
     if coarse.size:
-        orbits, judged = _refined(model, family.member, orbits, judged, coarse)
+        orbits, judged = _refined(model, member, orbits, judged, coarse)
     keep = judged.trivial_error <= UNRESOLVED
-    dropped = np.bincount(family.member[~keep], minlength=members)
+    dropped = np.bincount(member[~keep], minlength=members)
     order = np.flatnonzero(keep)
-    order = order[np.lexsort((branch[order], family.wind[order], family.member[order]))]
+    order = order[np.lexsort((branch[order], wind[order], member[order]))]
     return Cycles(
-        family.member[order],
-        family.wind[order],
-        _renumbered(family.member[order], family.wind[order], branch[order]),
+        member[order],
+        wind[order],
+        _renumbered(member[order], wind[order], branch[order]),
         pick(orbits, order),
         Floquet(judged.multipliers[order], judged.trivial_error[order], judged.stability[order]),
         dropped,
