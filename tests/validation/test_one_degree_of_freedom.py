@@ -69,7 +69,7 @@ def test_section_11_amplitude_of_a_line(loops: int, wind_speed: float, factor: f
     (row,) = stable_cycles(result(Model.HYBRID, factor), loops=loops, wind_speed=wind_speed)
     speed = factor * wind_speed
     expected = speed / (loops * one_loop_rate()) * math.sqrt(4.0 / (3.0 * 0.75 * A3) * (A1 - damping_gain(speed)))
-    # What the formula leaves out are the higher harmonics, of the order of the aerodynamic damping ratio squared (1e-5).
+    # The formula leaves out higher harmonics, of the order of the aerodynamic damping ratio squared (1e-5).
     assert row.vertical_m == pytest.approx(expected, rel=1e-3)
     assert row.horizontal_m == pytest.approx(0.0, abs=1e-9)
     assert row.torsional_rad == pytest.approx(0.0, abs=1e-9)
