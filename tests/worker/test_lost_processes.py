@@ -137,6 +137,37 @@ def stop_in_time(worker: Process, seconds: float) -> int:
     return code
 
 
+def test_process_that_hangs_is_killed_and_its_job_fails_by_the_limit(
+    deployment: Settings, deployed: sessionmaker[Session]
+) -> None:
+    limits = {"soft_time_limit_seconds": 3.0, "hard_time_limit_seconds": 4.0, "lease_seconds": 5.0}
+    strict = deployment.model_copy(update={**limits, "worker_processes": 1})
+    with running_worker(strict) as worker:
+        job_id = add_job(deployed, long_request(60))
+        assert dispatch(strict, job_id)
+        wait_for_progress(deployed, job_id)
+        hanging = busy_child(worker)
+        os.kill(hanging, signal.SIGSTOP)  # it neither computes nor beats nor hears of the soft limit
+        assert wait_for_end(deployed, job_id) is JobStatus.FAILED
+        job = look(deployed, job_id)
+        assert (job.failure_kind, job.attempt) == (FailureKind.TIME_LIMIT, 1)
+        next_job = add_job(deployed, short_request())
+        assert dispatch(strict, next_job)
+        assert wait_for_end(deployed, next_job) is JobStatus.SUCCESSFUL
+        assert hanging not in pool_children(worker)
+
+
+def test_job_too_long_ends_at_the_soft_limit(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    strict = deployment.model_copy(update={"soft_time_limit_seconds": 1.0, "hard_time_limit_seconds": 30.0})
+    with running_worker(strict) as worker:
+        before = pool_children(worker)
+        job_id = add_job(deployed, long_request(60))
+        assert dispatch(strict, job_id)
+        assert wait_for_end(deployed, job_id) is JobStatus.FAILED
+        assert look(deployed, job_id).failure_kind is FailureKind.TIME_LIMIT
+        assert pool_children(worker) == before
+
+
 @pytest.mark.parametrize("deployment", ["production"], indirect=True)
 def test_stopped_worker_gives_its_job_back(deployment: Settings, deployed: sessionmaker[Session]) -> None:
     with running_worker(deployment) as worker:
