@@ -4,7 +4,8 @@ Where a part is not sound, a neutral one stands in for it, so that what concerns
 others; the neutral part itself causes no fault.
 """
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypedDict, TypeVar
 
@@ -16,6 +17,8 @@ from engine.outcome import Fault, InvalidSpec
 Made = TypeVar("Made")
 Source = TypeVar("Source")
 
+_GRAVITY = 9.81
+_STEEPEST = 100.0  # far beyond a sag of the length, and far below what overflows
 _STILL = spec.Aerodynamics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), at_rest=(0.0, 0.0, 0.0))
 _NEUTRAL_CONDUCTOR = spec.Conductor(0.03, 1e7, 100.0, 1e-3, 1e3)
 _NEUTRAL_SPAN = spec.Span(1e9, horizontal_tension=1e4, elements=1000)
@@ -109,6 +112,8 @@ def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line
     gathered = Gathered()
     values = _values(sound, gathered)
     line = gathered.attempt("", lambda: spec.Line(**values))
+    if line is not None and not gathered.neutral:
+        gathered.faults.extend(_slack_faults(line))
     analysis = gathered.make("analysis", asked, parts.analysis, _NEUTRAL_ANALYSIS)
     comparable = line or _apart_from_positions(values)
     if comparable is not None:
@@ -154,6 +159,25 @@ def _apart_from_positions(values: _LineParts) -> spec.Line | None:
         "conductor": _NEUTRAL_CONDUCTOR,
     }
     return Gathered().attempt("", lambda: spec.Line(**other))
+
+
+def _slack_faults(line: spec.Line) -> Iterator[Fault]:
+    """Refuse a span that sags more than its length: no line is so slack, and its catenary soon has no numbers."""
+    span = line.span
+    if span.sag is not None:
+        given, sag = "sag", span.sag
+    elif span.catenary_parameter is not None:
+        given, sag = "catenary_parameter", _sag(span.length, span.catenary_parameter)
+    else:
+        tension = span.horizontal_tension or 0.0
+        given, sag = "horizontal_tension", _sag(span.length, tension / (line.conductor.mass * _GRAVITY))
+    if sag > span.length:
+        yield Fault(f"span.{given}", getattr(span, given), "must let the span sag less than its length")
+
+
+def _sag(length: float, catenary_parameter: float) -> float:
+    ratio = 0.5 * length / catenary_parameter
+    return catenary_parameter * (math.cosh(ratio) - 1.0) if ratio < _STEEPEST else math.inf
 
 
 def _rooted(prefix: str, path: str) -> str:

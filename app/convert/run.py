@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Literal
 
-from pydantic import ValidationError
-
 from app import schemas
 from app.convert import study
 from app.convert.assemble import SoundParts, gather
@@ -60,8 +58,8 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
     ------
     pydantic.ValidationError
         If the document does not pass its schema.
-    InvalidSpec
-        If the line of a job without study is at fault.
+    ValueError, ArithmeticError
+        If the line of a job without study is at fault (`InvalidSpec`) or numerically out of reach.
     """
     request = schemas.JobRequest.model_validate(document)
     total = study.count(request.study)
@@ -88,7 +86,7 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
                 yield _point_result(end.value, number, values)
                 return
             yield Advance(step.fraction, step.step)
-    except (ValidationError, InvalidSpec, ArithmeticError) as error:
+    except (ArithmeticError, ValueError) as error:  # both also cover numpy's, and what a specification raises
         if request.study is None:
             raise
         yield _failed_point(error, number, values)

@@ -27,6 +27,9 @@ BAD_LINES = [
     ("span.elements", 1000, "/line/span/elements"),
     ("span.sag_m", 1.5, "/line/span"),
     ("span.horizontal_tension_n", None, "/line/span"),
+    ("span.horizontal_tension_n", 500.0, "/line/span/horizontal_tension_n"),
+    ("span", {"length_m": 126.0, "sag_m": 127.0}, "/line/span/sag_m"),
+    ("span", {"length_m": 126.0, "catenary_parameter_m": 1.0}, "/line/span/catenary_parameter_m"),
     ("conductor.area_m2", 4e-4, "/line/conductor"),
     ("conductor.colour", "red", "/line/conductor/colour"),
     ("conductor.axial_torsional_coupling_n_m", 1e6, "/line/conductor/axial_torsional_coupling_n_m"),
@@ -85,6 +88,11 @@ def test_one_fault_in_a_line_is_named_by_its_pointer(path: str, value: Any, poin
 )
 def test_one_fault_in_an_analysis_is_named_by_its_pointer(analysis: dict[str, Any], pointer: str) -> None:
     assert pointers({"line": FULL_LINE, "analysis": analysis}) == [pointer]
+
+
+@pytest.mark.parametrize("span", [{"sag_m": 125.0}, {"catenary_parameter_m": 40.0}, {"horizontal_tension_n": 1000.0}])
+def test_a_slack_span_is_taken_up_to_a_sag_of_its_length(span: dict[str, float]) -> None:
+    assert pointers({"line": changed("span", {"length_m": 126.0, **span})}) == []
 
 
 def test_faults_of_schema_parts_and_combination_come_together() -> None:
