@@ -12,7 +12,7 @@ from benchmarks.measure import median_seconds, recorded_lapack
 from benchmarks.models import discretized, hybrid_models, plain_rate
 from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
-from engine.cycles import Cycles, energy_starts, explicit_starts, find_cycles
+from engine.cycles import Cycles, explicit_starts, find_cycles
 from engine.harmonic import half_peak_to_peak
 from engine.hybrid import ReducedModel, take
 from engine.result import Result
@@ -32,8 +32,7 @@ LONGEST = 6000  # cycles of direct integration
 
 def found_cycles(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Cycles:
     """Find all cycles with stability as the product does."""
-    explicit = explicit_starts(published, winds, HARMONICS)
-    return find_cycles(model, winds, explicit, energy_starts(model, winds, HARMONICS))
+    return find_cycles(model, winds, explicit_starts(published, winds, HARMONICS), HARMONICS)
 
 
 def settled_amplitude(model: ReducedModel, wind: float) -> tuple[FloatArray, int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.lines import source_line
 from engine.analysis import analyse
-from engine.cycles import energy_starts, explicit_starts, find_cycles, joined
+from engine.cycles import explicit_starts, find_cycles
 from engine.fem import matrices
 from engine.harmonic import Orbits, half_peak_to_peak, states
 from engine.hybrid import Discretization, hybrid_model, observation, take, with_published_load
@@ -141,7 +141,7 @@ def _brute_force() -> Iterator[str]:
 def _integrated(line: Line, subconductors: int) -> Iterator[list[str]]:
     made, model, published = _hybrid(line)
     winds = np.array(WINDS)
-    cycles = find_cycles(model, winds, joined(explicit_starts(published, winds, 5), energy_starts(model, winds, 5)))
+    cycles = find_cycles(model, winds, explicit_starts(published, winds, 5), 5)
     for i in np.flatnonzero(cycles.floquet.stability == "stable"):
         orbit = _one(cycles.orbits, i)
         member = int(cycles.member[i])

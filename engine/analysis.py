@@ -119,15 +119,14 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     model = take(grid, (line, column))
     published = take(with_published_load(prepared.made, grid), (line, column))
     winds = _winds(analysis)
-    explicit = explicit_starts(published, winds, analysis.harmonics)
-    energy = energy_starts(model, winds, analysis.harmonics)
+    starts = explicit_starts(published, winds, analysis.harmonics)
     return Found(
         name=Model.HYBRID,
         model=model,
         line=line,
         loops=np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp),
         crossings=critical_wind_speeds(model, analysis.critical_wind_limit),
-        cycles=find_cycles(model, winds, explicit, energy),
+        cycles=find_cycles(model, winds, starts, analysis.harmonics),
         winds=winds,
     )
 
@@ -146,7 +145,7 @@ def _finite_element(prepared: _Prepared, modes: FullModes, hybrid: Found, analys
         line=np.arange(len(prepared.made.lines)),
         loops=np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
         crossings=critical_wind_speeds(model, analysis.critical_wind_limit),
-        cycles=find_cycles(model, winds, starts),
+        cycles=find_cycles(model, winds, starts, analysis.harmonics),
         winds=winds,
     )
 

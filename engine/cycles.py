@@ -38,9 +38,11 @@ class Cycles:
     dropped: IntArray
 
 
-def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Guess cycles of every unstable mode at every wind speed by the balance of energy."""
-    member, wind = _grid(model, wind_speeds)
+def energy_starts(
+    model: ReducedModel, wind_speeds: FloatArray, harmonics: int, points: tuple[IntArray, IntArray] | None = None
+) -> Starts:
+    """Guess cycles of every unstable mode by the balance of energy, at all points or at those (member, wind) named."""
+    member, wind = _grid(model, wind_speeds) if points is None else points
     guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
@@ -70,8 +72,10 @@ def joined_orbits(*orbits: Orbits) -> Orbits:
     )
 
 
-def find_cycles(model: ReducedModel, wind_speeds: FloatArray, *guesses: Starts) -> Cycles:
-    """Find every cycle that the guesses and continuation over the wind speeds reach.
+def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts, harmonics: int) -> Cycles:
+    """Find every cycle that the starts and continuation over the wind speeds reach.
+
+    Where the starts find nothing, the balance of energy of each unstable mode is tried as well.
 
     Parameters
     ----------
@@ -79,8 +83,8 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, *guesses: Starts) 
         Leading axis (members,).
     wind_speeds : (winds,)
         In rising order [m/s].
-    *guesses : Starts
-        In the order of trust: of a later set only those are balanced near whose frequency nothing was found.
+    starts : Starts
+    harmonics : int
 
     Returns
     -------
@@ -88,10 +92,9 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, *guesses: Starts) 
         Sorted by member, wind speed and branch.
     """
     family = CycleFamily(model)
-    for guess in guesses:
-        wanted = family.lacking(guess)
-        if wanted.member.size:
-            family.add(*_solved(model, wanted))
+    family.add(*_solved(model, starts))
+    bare = family.without_cycle(*_grid(model, wind_speeds))
+    family.add(*_solved(model, energy_starts(model, wind_speeds, harmonics, bare)))
     frontier = np.arange(len(family))
     while frontier.size:
         origin, wind = family.loose_ends(frontier, wind_speeds.size)

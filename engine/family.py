@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, merged
-from engine.harmonic import Orbits, pick
+from engine.harmonic import Orbits
 from engine.hybrid import ReducedModel
 
 SAME = 1e-3  # relative distance below which two solutions are one
-NEAR = 0.02  # relative difference of frequency below which a guess adds nothing to a known cycle
-ALIKE = 3.0  # ratio of sizes up to which neighbours may be the same motion
+NEAR = 0.02  # relative difference of frequency up to which neighbours may be the same motion
+ALIKE = 3.0  # ratio of sizes, likewise
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +32,7 @@ class CycleFamily:
         self._orbits: list[tuple[FloatArray, float, float]] = []
         self._links: list[tuple[int, int]] = []
         self._signatures: list[FloatArray] = []
+        self._sizes: list[float] = []
         self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
 
     def __len__(self) -> int:
@@ -51,28 +52,21 @@ class CycleFamily:
         coefficients, frequency, speed = zip(*(self._orbits[i] for i in ids), strict=True)
         return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
 
-    def lacking(self, starts: Starts) -> Starts:
-        """Keep the starts near whose frequency no cycle of the same member and wind speed is known."""
-        keep = [
-            all(
-                abs(self._orbits[number][1] - frequency) > NEAR * frequency
-                for number, _ in self._known.get((member, wind), [])
-            )
-            for member, wind, frequency in zip(
-                starts.member.tolist(), starts.wind.tolist(), starts.orbits.angular_frequency.tolist(), strict=True
-            )
-        ]
-        index = np.flatnonzero(keep)
-        return Starts(starts.member[index], starts.wind[index], pick(starts.orbits, index))
+    def without_cycle(self, member: IntArray, wind: IntArray) -> tuple[IntArray, IntArray]:
+        """Keep the points (member, wind) at which no cycle is known."""
+        bare = [key not in self._known for key in zip(member.tolist(), wind.tolist(), strict=True)]
+        return member[bare], wind[bare]
 
     def add(self, starts: Starts, good: BoolArray, origin: IntArray | None = None) -> None:
         """Record the good ones of these solutions, and links to the cycles that they were carried from."""
         signatures = _signature(self._model, starts)
+        sizes = np.linalg.norm(signatures, axis=-1).tolist()
         for i in np.flatnonzero(good).tolist():
             key = (int(starts.member[i]), int(starts.wind[i]))
             number, new = self._number(key, signatures[i])
             if new:
                 self._place.append(key)
+                self._sizes.append(sizes[i])
                 orbits = starts.orbits
                 self._orbits.append(
                     (orbits.coefficients[i], float(orbits.angular_frequency[i]), float(orbits.wind_speed[i]))
@@ -101,8 +95,8 @@ class CycleFamily:
         if there is None or self._nearest(self._place[i], self._signatures[there]) != i:
             return None
         near = abs(self._orbits[i][1] - self._orbits[there][1]) <= NEAR * self._orbits[i][1]
-        sizes = [float(np.linalg.norm(self._signatures[n])) for n in (i, there)]
-        return there if near and max(sizes) <= ALIKE * min(sizes) else None
+        small, large = sorted((self._sizes[i], self._sizes[there]))
+        return there if near and large <= ALIKE * small else None
 
     def _nearest(self, key: tuple[int, int], signature: FloatArray) -> int | None:
         known = self._known.get(key, [])
@@ -113,7 +107,7 @@ class CycleFamily:
     def _number(self, key: tuple[int, int], signature: FloatArray) -> tuple[int, bool]:
         known = self._known.setdefault(key, [])
         for number, other in known:
-            if np.linalg.norm(signature - other) <= SAME * np.linalg.norm(other):
+            if np.linalg.norm(signature - other) <= SAME * self._sizes[number]:
                 return number, False
         known.append((len(self._orbits), signature))
         self._signatures.append(signature)

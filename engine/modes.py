@@ -100,11 +100,10 @@ def at_points(system: Matrices, nodal: FloatArray) -> FloatArray:
 
 def solve_symmetric(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Solve K x = lambda M x on stacks: eigenvalues (..., n) ascending and vectors (..., n, n) with X^T M X = 1."""
-    factor = np.linalg.cholesky(mass)
-    half = np.linalg.solve(factor, stiffness)
-    standard = np.linalg.solve(factor, half.swapaxes(-1, -2))
+    inverse = np.linalg.inv(np.linalg.cholesky(mass))
+    standard = inverse @ stiffness @ inverse.swapaxes(-1, -2)
     values, vectors = np.linalg.eigh(0.5 * (standard + standard.swapaxes(-1, -2)))
-    return values, np.linalg.solve(factor.swapaxes(-1, -2), vectors)
+    return values, inverse.swapaxes(-1, -2) @ vectors
 
 
 def _always_fixed(freedoms: int) -> BoolArray:
