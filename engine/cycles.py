@@ -144,11 +144,11 @@ def _judged(model: ReducedModel, family: CycleFamily) -> Cycles:
     member, wind = family.places(everything)
     orbits = family.orbits_of(everything)
     judged = floquet(take(model, member), orbits)
-    coarse = np.flatnonzero(~(judged.trivial_error <= UNRESOLVED))
+    coarse = np.flatnonzero(judged.trivial_error > UNRESOLVED)
     branch = family.branches()
     if coarse.size:
         orbits, judged = _refined(model, member, orbits, judged, coarse)
-    keep = judged.trivial_error <= UNRESOLVED
+    keep = ~(judged.trivial_error > UNRESOLVED)
     dropped = np.bincount(member[~keep], minlength=members)
     order = np.flatnonzero(keep)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]

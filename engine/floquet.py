@@ -5,21 +5,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.aerodynamics import force_gradient
-from engine.arrays import ComplexArray, FloatArray, ObjectArray
-from engine.harmonic import Orbits, states
-from engine.hybrid import ReducedModel
+from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
+from engine.harmonic import Orbits, pick, states
+from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability
 
 PHASE_PER_STEP = 0.7  # rad of the fastest mode: the exponential series below is then exact to 1e-7
 FEWEST_STEPS = 16
+MOST_STEPS = 2048  # a mode so much faster than the cycle is not followed: the stability is then unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Floquet:
     """Multipliers of a stack of orbits.
 
-    multipliers: (cycles, 2 m) complex, the trivial one first; trivial_error: (cycles,), its distance from 1, which
-    bounds what the others may be trusted to; stability: (cycles,) of Stability.
+    multipliers: (cycles, 2 m) complex, the trivial one first, NaN where they were not computed; trivial_error:
+    (cycles,), its distance from 1, which bounds what the others may be trusted to; stability: (cycles,) of Stability.
     """
 
     multipliers: ComplexArray
@@ -40,7 +41,14 @@ def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
     -------
     Floquet
     """
-    values = np.linalg.eigvals(monodromy(model, orbits)).astype(np.complex128)
+    matrices = np.full((orbits.wind_speed.size, *(2 * model.mass.shape[-1],) * 2), np.nan)
+    steps = _steps(model, orbits)
+    for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
+        here = np.flatnonzero(steps == count)
+        matrices[here] = monodromy(take(model, here), pick(orbits, here), count)
+    values = np.full(matrices.shape[:2], np.nan, dtype=np.complex128)
+    known = np.isfinite(matrices).all(axis=(-1, -2))
+    values[known] = np.linalg.eigvals(matrices[known])
     trivial = np.abs(values - 1.0).argmin(axis=-1)
     order = np.argsort(np.arange(values.shape[-1]) != trivial[:, None], axis=-1, kind="stable")
     values = np.take_along_axis(values, order, axis=-1)
@@ -52,35 +60,31 @@ def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
 def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
     """Judge by the largest modulus of the other multipliers: what the error does not decide is unknown."""
     margin = np.maximum(3.0 * error, 1e-7)
-    result = np.full(largest.shape, Stability.UNKNOWN, dtype=np.object_)
-    result[largest < 1.0 - margin] = Stability.STABLE
-    result[largest > 1.0 + margin] = Stability.UNSTABLE
-    return result
+    verdicts = np.array([Stability.UNKNOWN, Stability.STABLE, Stability.UNSTABLE], dtype=np.object_)
+    return verdicts[1 * (largest < 1.0 - margin) + 2 * (largest > 1.0 + margin)]
 
 
-def monodromy(model: ReducedModel, orbits: Orbits) -> FloatArray:
+def monodromy(model: ReducedModel, orbits: Orbits, steps: int) -> FloatArray:
     """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m).
 
-    Magnus' method of fourth order with two Gauss points a step: the constant part of the equations is exact.
+    Magnus' method of fourth order with two Gauss points a step, steps being a power of two: the constant part of the
+    equations is exact.
     """
-    if orbits.wind_speed.size == 0:
-        size = 2 * model.mass.shape[-1]
-        return np.zeros((0, size, size))
-    steps = _steps(model, orbits)
     width = 2.0 * np.pi / steps
     offset = np.sqrt(3.0) / 6.0
     middle = (np.arange(steps) + 0.5) * width
-    first, second = (_generator(model, orbits, middle + sign * offset * width) for sign in (-1.0, 1.0))
-    commutator = second @ first - first @ second
-    exponent = 0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator
-    return _ordered_product(_exponential(exponent))
+    with np.errstate(over="ignore", invalid="ignore"):
+        first, second = (_generator(model, orbits, middle + sign * offset * width) for sign in (-1.0, 1.0))
+        commutator = second @ first - first @ second
+        exponent = 0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator
+        return _ordered_product(_exponential(exponent))
 
 
-def _steps(model: ReducedModel, orbits: Orbits) -> int:
-    """Return the number of steps, a power of two, that resolves the fastest mode of any member."""
-    rate = np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(model.mass, model.stiffness))).max(axis=-1))
-    needed = 2.0 * np.pi * (rate / orbits.angular_frequency).max() / PHASE_PER_STEP
-    return int(2 ** np.ceil(np.log2(max(needed, FEWEST_STEPS))))
+def _steps(model: ReducedModel, orbits: Orbits) -> IntArray:
+    """Return the number of steps, a power of two, that resolves the fastest mode of each cycle: (cycles,)."""
+    square = np.trace(np.linalg.solve(model.mass, model.stiffness), axis1=-2, axis2=-1)
+    needed = 2.0 * np.pi / PHASE_PER_STEP * np.sqrt(np.abs(square)) / orbits.angular_frequency
+    return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, FEWEST_STEPS, 2 * MOST_STEPS))), dtype=np.intp)
 
 
 def _generator(model: ReducedModel, orbits: Orbits, tau: FloatArray) -> FloatArray:
