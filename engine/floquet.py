@@ -41,11 +41,7 @@ def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
     -------
     Floquet
     """
-    matrices = np.full((orbits.wind_speed.size, *(2 * model.mass.shape[-1],) * 2), np.nan)
-    steps = _steps(model, orbits)
-    for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
-        here = np.flatnonzero(steps == count)
-        matrices[here] = monodromy(take(model, here), pick(orbits, here), count)
+    matrices = monodromy(model, orbits)
     values = np.full(matrices.shape[:2], np.nan, dtype=np.complex128)
     known = np.isfinite(matrices).all(axis=(-1, -2))
     values[known] = np.linalg.eigvals(matrices[known])
@@ -64,11 +60,20 @@ def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
     return verdicts[1 * (largest < 1.0 - margin) + 2 * (largest > 1.0 + margin)]
 
 
-def monodromy(model: ReducedModel, orbits: Orbits, steps: int) -> FloatArray:
-    """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m).
+def monodromy(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed."""
+    matrices = np.full((orbits.wind_speed.size, *(2 * model.mass.shape[-1],) * 2), np.nan)
+    steps = _steps(model, orbits)
+    for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
+        here = np.flatnonzero(steps == count)
+        matrices[here] = _product_over_period(take(model, here), pick(orbits, here), count)
+    return matrices
 
-    Magnus' method of fourth order with two Gauss points a step, steps being a power of two: the constant part of the
-    equations is exact.
+
+def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> FloatArray:
+    """Integrate by Magnus' method of fourth order, two Gauss points a step: the constant part is exact.
+
+    The number of steps is a power of two.
     """
     width = 2.0 * np.pi / steps
     offset = np.sqrt(3.0) / 6.0
