@@ -62,7 +62,8 @@ def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
 
 def monodromy(model: ReducedModel, orbits: Orbits) -> FloatArray:
     """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed."""
-    matrices = np.full((orbits.wind_speed.size, *(2 * model.mass.shape[-1],) * 2), np.nan)
+    size = 2 * model.mass.shape[-1]
+    matrices: FloatArray = np.full((orbits.wind_speed.size, size, size), np.nan)
     steps = _steps(model, orbits)
     for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
         here = np.flatnonzero(steps == count)
