@@ -42,11 +42,12 @@ def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
     Floquet
     """
     matrices = monodromy(model, orbits)
-    values = np.full(matrices.shape[:2], np.nan, dtype=np.complex128)
+    cycles, size, _ = matrices.shape
+    values = np.full((cycles, size), np.nan, dtype=np.complex128)
     known = np.isfinite(matrices).all(axis=(-1, -2))
     values[known] = np.linalg.eigvals(matrices[known])
     trivial = np.abs(values - 1.0).argmin(axis=-1)
-    order = np.argsort(np.arange(values.shape[-1]) != trivial[:, None], axis=-1, kind="stable")
+    order = np.argsort(np.arange(size) != trivial[:, None], axis=-1, kind="stable")
     values = np.take_along_axis(values, order, axis=-1)
     error = np.abs(values[:, 0] - 1.0)
     largest = np.abs(values[:, 1:]).max(axis=-1, initial=0.0)
