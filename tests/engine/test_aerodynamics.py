@@ -126,7 +126,7 @@ def test_relative_wind_load_is_the_integral_of_the_unexpanded_one_to_third_order
 def test_relative_wind_table_is_the_taylor_expansion_of_the_unexpanded_formula(seed: int) -> None:
     rng = np.random.default_rng(seed)
     a = rng.normal(size=(3, 4))
-    y, z, m = a.tolist()
+    y, z, m = ([float(value) for value in row] for row in a)
     coefficients = Aerodynamics((y[1], y[2], y[3]), (z[1], z[2], z[3]), (m[1], m[2], m[3]), (y[0], z[0], m[0]))
     table = relative_wind_table(a)
     # A polynomial of degree 5 fitted through 11^3 points in a cube of 0.06 leaves sixth-order terms only.
@@ -150,8 +150,8 @@ def test_gradient_is_the_derivative_of_the_force(seed: int, analysis: Analysis) 
     line = random_line(rng)
     line = replace(line, ice=replace(line.ice, aerodynamics=replace(line.ice.aerodynamics, at_rest=AT_REST)))
     for model in (hybrid(line, 2, analysis), finite_element(line, (1, 2), analysis)):
-        size = model.load.forms.shape[-1]
-        state, step = 0.1 * rng.normal(size=size), 1e-3
+        size, step = model.load.forms.shape[-1], 1e-3
+        state = 0.1 * rng.normal(size=(size,))
         gradient = force_gradient(model.load, state[None, None])[0, 0]
         shifts = step * np.eye(size)
         points = np.concatenate([state + shifts, state - shifts, state + 2.0 * shifts, state - 2.0 * shifts])

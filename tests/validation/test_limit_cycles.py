@@ -127,3 +127,11 @@ def test_section_10_figure_4_amplitude_falls_as_the_critical_speed_rises(subcond
     assert (np.diff(table, axis=1) < 0.0).all()
     onsets = [run(x, replace(HYBRID, loops=(1,), wind_speeds=())).critical_wind_speeds[0] for x in lines]
     assert (np.diff([row.wind_speed_m_per_s for row in onsets]) > 0.0).all()
+
+
+def test_section_7_3_triple_with_little_torsional_damping_has_two_stable_cycles_at_12() -> None:
+    line = source_line(3, torsional_ratio=0.0308)
+    for winds in ((12.0,), (4.0, 8.0, 12.0)):
+        result = run(line, replace(HYBRID, loops=(2,), wind_speeds=winds))
+        small, large = sorted(amplitudes(row)[1] for row in stable_cycles(result, loops=2, wind_speed=12.0))
+        assert large / small == pytest.approx(2.0, abs=0.2)  # "differ by a factor of two"
