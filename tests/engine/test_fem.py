@@ -7,11 +7,23 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.linalg import eigh
 
 from engine.arrays import FloatArray
 from engine.fem import FIELDS, THETA, U, V, W, interpolation_at
 from engine.profile import coordinates, static_profile
-from engine.spec import Aerodynamics, AirflowSpoiler, Bundle, DetuningPendulum, IceSegment, Line, Spacer, Span, Supports
+from engine.spec import (
+    Aerodynamics,
+    AirflowSpoiler,
+    BlowOut,
+    Bundle,
+    DetuningPendulum,
+    IceSegment,
+    Line,
+    Spacer,
+    Span,
+    Supports,
+)
 from tests.builders import discretized, random_line, source_line
 
 NODES = 21
@@ -221,3 +233,35 @@ def test_mirror_image_of_the_span_gives_the_mirrored_matrices() -> None:
     for a, b in ((one.mass[0], other.mass[0]), (one.stiffness[0], other.stiffness[0])):
         mirrored = (sign[:, None] * b * sign)[np.ix_(order, order)]
         assert a == pytest.approx(mirrored, abs=1e-11 * np.abs(a).max())
+
+
+def eigenvalues(line: Line) -> FloatArray:
+    """Return the lowest twelve squares of natural frequencies of all freedoms."""
+    system = discretized(line).matrices
+    free = np.flatnonzero(~system.fixed[0])
+    pick = np.ix_(free, free)
+    return np.asarray(eigh(system.stiffness[0][pick], system.mass[0][pick], eigvals_only=True)[:12])
+
+
+@pytest.mark.parametrize("place", [(0.3, 0.0), (0.0, -0.5), (-0.2, 0.4)])
+def test_place_of_a_single_conductor_beside_the_reference_curve_does_not_matter(place: tuple[float, float]) -> None:
+    # With eq. (3) V_1, W_1 and Theta of the conductor itself are as good freedoms as V, W and Theta of the curve.
+    line = source_line(1)
+    moved = replace(line, bundle=Bundle((place,)))
+    assert eigenvalues(moved) == pytest.approx(eigenvalues(line), rel=1e-7)
+
+
+def test_blow_out_turns_the_motion_and_tightens_the_cable() -> None:
+    # Without offset of the ice the tilted cable is the still one in a gravity of sqrt(1 + r^2): the same eigenvalues as
+    # a mass larger by that factor has at the same catenary parameter, times the factor.
+    line = source_line(1)
+    base = replace(
+        line,
+        ice=replace(line.ice, eccentricity_y=0.0, eccentricity_z=0.0),
+        supports=Supports(longitudinal_stiffness=1e5),
+        span=Span(125.88, sag=2.5),
+    )
+    blown = replace(base, wind=replace(line.wind, blow_out=BlowOut(25.0, 1.2)))
+    ratio = math.hypot(1.0, 0.5 * 1.2929 * 25.0**2 * 0.0286 * 1.2 / (2.379 * 9.81))
+    heavy = replace(base, conductor=replace(base.conductor, mass=2.379 * ratio, polar_inertia=3.334e-4 * ratio))
+    assert eigenvalues(blown) == pytest.approx(ratio * eigenvalues(heavy), rel=1e-7)
