@@ -10,7 +10,7 @@ from engine.harmonic import Orbits, pick, states
 from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability
 
-PHASE_PER_STEP = 0.7  # rad of the fastest mode: the exponential series below is then exact to 1e-7
+PHASE_PER_STEP = 0.9  # rad of the root of the trace, which bounds the fastest mode: the series is exact to 1e-6
 FEWEST_STEPS = 16
 MOST_STEPS = 2048  # a mode so much faster than the cycle is not followed: the stability is then unknown
 
