@@ -18,6 +18,7 @@ from engine.hybrid import ReducedModel, take
 UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 12
+FINENESS = 4  # times the steps of the Floquet integration for cycles that need more harmonics
 SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static one in disguise
 
 
@@ -168,7 +169,7 @@ def _refined(
     """Balance some cycles again with the most harmonics and judge them anew."""
     harmonics = max(MOST_HARMONICS, orbits.coefficients.shape[-1] // 2)
     finer, solution = balance(model, member[coarse], resized(pick(orbits, coarse), harmonics))
-    again = floquet(take(model, member[coarse]), finer)
+    again = floquet(take(model, member[coarse]), finer, FINENESS)
     orbits = resized(orbits, harmonics)
     orbits.coefficients[coarse] = finer.coefficients
     frequency, multipliers = orbits.angular_frequency.copy(), judged.multipliers.copy()

@@ -28,7 +28,7 @@ class Floquet:
     stability: ObjectArray
 
 
-def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
+def floquet(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> Floquet:
     """Integrate the linearized equations over one period and judge the multipliers.
 
     Parameters
@@ -36,12 +36,14 @@ def floquet(model: ReducedModel, orbits: Orbits) -> Floquet:
     model : ReducedModel
         Leading axis (cycles,).
     orbits : Orbits
+    fineness : int
+        Factor on the number of steps, a power of two.
 
     Returns
     -------
     Floquet
     """
-    matrices = monodromy(model, orbits)
+    matrices = monodromy(model, orbits, fineness)
     cycles, size, _ = matrices.shape
     values = np.full((cycles, size), np.nan, dtype=np.complex128)
     known = np.isfinite(matrices).all(axis=(-1, -2))
@@ -61,11 +63,11 @@ def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
     return verdicts[1 * (largest < 1.0 - margin) + 2 * (largest > 1.0 + margin)]
 
 
-def monodromy(model: ReducedModel, orbits: Orbits) -> FloatArray:
+def monodromy(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> FloatArray:
     """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed."""
     size = 2 * model.mass.shape[-1]
     matrices: FloatArray = np.full((orbits.wind_speed.size, size, size), np.nan)
-    steps = _steps(model, orbits)
+    steps = fineness * _steps(model, orbits)
     for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
         here = np.flatnonzero(steps == count)
         matrices[here] = _product_over_period(take(model, here), pick(orbits, here), count)
