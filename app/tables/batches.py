@@ -1,0 +1,48 @@
+"""Batches and their lines."""
+
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import CheckConstraint, ForeignKey, Index, Text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.tables.base import Base
+
+
+class Batch(Base):
+    """Many lines under one analysis; their states are those of the chunks (jobs with this batch_id) that hold them.
+
+    received_at is null while the lines are still coming in; nobody sees the batch before.
+    """
+
+    __tablename__ = "batches"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[UUID] = mapped_column(primary_key=True)
+    created_at: Mapped[datetime]
+    received_at: Mapped[datetime | None]
+    analysis: Mapped[dict[str, Any]]
+    rejected_lines: Mapped[int] = mapped_column(default=0)
+
+
+class BatchItem(Base):
+    """One line of a batch: its document and the chunk that it belongs to, or what is wrong with it and neither.
+
+    chunk_id has no foreign key: lines are stored while they come in, and their chunks at the end, all at once.
+    """
+
+    __tablename__ = "batch_items"
+    __table_args__ = (
+        CheckConstraint("(faults IS NULL) = (chunk_id IS NOT NULL)", name="faults_or_chunk"),
+        CheckConstraint("(faults IS NULL) = (document IS NOT NULL)", name="faults_or_document"),
+        Index(None, "chunk_id"),
+    )
+
+    batch_id: Mapped[UUID] = mapped_column(ForeignKey("batches.id", ondelete="CASCADE"), primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    chunk_id: Mapped[UUID | None]
+    reference: Mapped[str | None] = mapped_column(Text)
+    asset_id: Mapped[str | None] = mapped_column(Text)
+    document: Mapped[dict[str, Any] | None]
+    faults: Mapped[list[dict[str, str]] | None]
