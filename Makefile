@@ -29,6 +29,7 @@ check: setup
 	$(BIN)/mypy
 
 bench: setup
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m benchmarks
 
 validation: setup

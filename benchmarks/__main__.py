@@ -1,0 +1,78 @@
+"""Measure everything: one table on the screen, in docs/performance.md and in benchmarks/latest.json."""
+
+import argparse
+import importlib.util
+import json
+import platform
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from benchmarks import engine_speed
+
+ROOT = Path(__file__).parents[1]
+Section = Callable[[], Iterator[tuple[str, float]]]
+
+MEANING = {
+    "cycle_ratio": "one limit cycle of the source's lines: direct integration over the engine, all in a stack",
+    "cycle_ratio_alone": "the same, each cycle in a call of its own",
+    "cycle_error": "largest relative difference of the dominant amplitude between both",
+    "cycle_direct_seconds": "direct integration of one cycle [s]: DOP853, rtol 1e-8, until 0.1 % over 50 cycles",
+    "cycle_direct_cycles": "periods that it integrates, mean",
+    "cycle_stack_seconds": "the engine, a cycle of the stack [s]: explicit start, balance, Floquet multipliers",
+    "cycle_alone_seconds": "the engine, a cycle in a call of its own [s]",
+    "branch_ratio": "a branch: AUTO (mesh of 30 intervals) over the engine (41 wind speeds with multipliers)",
+    "branch_auto_seconds": "AUTO's periodic branch from the Hopf point to 6 m/s [s]",
+    "branch_auto_points": "orbits that AUTO computes on it",
+    "branch_difference": "largest relative difference of the dominant amplitude at AUTO's wind speeds",
+    "fleet_lines_per_s_core": "standard line jobs a second and core",
+    "fleet_floor_ratio": "their time over that of their own LAPACK calls, replayed",
+    "fleet_exponent": "exponent of the time over the number of lines",
+    "finite_element_over_hybrid": "cost of the finite element model over the hybrid one",
+    "service_overhead_ratio": "a batch through HTTP, queue, worker and database over the engine alone",
+    "two_worker_speedup": "two workers over one on two cores",
+    "post_p99_ms": "POST /v1/jobs at 50 concurrent clients, 99th percentile [ms]",
+    "status_reads_per_s": "status reads a second",
+}
+
+
+def main() -> None:
+    """Run the sections asked for and write what they found."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--fleet", type=int, default=1000, help="largest number of lines of the fleet")
+    arguments = parser.parse_args()
+    figures: dict[str, float] = {}
+    for section in _sections(arguments.fleet):
+        for name, value in section():
+            figures[name] = value
+            print(f"{name:28} {value:12.5g}  {MEANING.get(name, '')}", flush=True)
+    (ROOT / "benchmarks" / "latest.json").write_text(json.dumps(figures, indent=1) + "\n")
+    _write_page(figures)
+
+
+def _sections(fleet: int) -> Iterator[Section]:
+    yield engine_speed.one_cycle
+    if importlib.util.find_spec("xpplab"):
+        yield engine_speed.branch
+    else:
+        print("branch: left out, the development extra `bench` is not installed")
+    yield lambda: engine_speed.fleet(fleet)
+    yield engine_speed.hybrid_against_finite_element
+    if importlib.util.find_spec("benchmarks.service_speed"):
+        yield importlib.import_module("benchmarks.service_speed").service
+
+
+def _write_page(figures: dict[str, float]) -> None:
+    """Replace the table between the marks of docs/performance.md."""
+    page = ROOT / "docs" / "performance.md"
+    rows = [f"| `{name}` | {value:.4g} | {MEANING.get(name, '')} |" for name, value in figures.items()]
+    where = f"Python {platform.python_version()}, {platform.machine()}, one BLAS thread."
+    table = "\n".join(
+        ["<!-- table -->", where, "", "| figure | value | meaning |", "|---|---|---|", *rows, "<!-- end -->"]
+    )
+    before, rest = page.read_text().split("<!-- table -->", 1)
+    _, after = rest.split("<!-- end -->", 1)
+    page.write_text(before + table + after)
+
+
+if __name__ == "__main__":
+    main()
