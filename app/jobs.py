@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
 from app.db import database_time
-from app.tables import Job, JobEvent, JobEventKind, JobStatus, JobTag
+from app.tables import BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
 
 class CancelOutcome(StrEnum):
@@ -28,7 +28,10 @@ class CancelOutcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class JobFilters:
-    """Which jobs a list holds; None or empty means any, and every tag must match."""
+    """Which jobs a list holds; None or empty means any, and every tag must match.
+
+    Chunks are only in the list of their batch.
+    """
 
     status: JobStatus | None = None
     asset_id: str | None = None
@@ -94,7 +97,10 @@ def page(session: Session, filters: JobFilters, after: tuple[datetime, UUID] | N
 
 
 def cancel(session: Session, job_id: UUID) -> CancelOutcome:
-    """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows."""
+    """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows.
+
+    A chunk that is removed takes its lines out of its batch.
+    """
     # The row is locked, so that a claim or an end of the job cannot slip in between the look and the change.
     job = session.get(Job, job_id, with_for_update=True)
     if job is None:
@@ -108,6 +114,7 @@ def cancel(session: Session, job_id: UUID) -> CancelOutcome:
             job.cancel_requested = True
             record(session, job_id, JobEventKind.CANCEL_REQUESTED, attempt=job.attempt)
         return CancelOutcome.REQUESTED
+    session.execute(delete(BatchItem).where(BatchItem.chunk_id == job_id))
     session.execute(delete(Job).where(Job.id == job_id))
     return CancelOutcome.REMOVED
 
@@ -118,8 +125,9 @@ def record(session: Session, job_id: UUID, kind: JobEventKind, *, attempt: int =
 
 
 def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
-    equal = {Job.status: filters.status, Job.asset_id: filters.asset_id, Job.batch_id: filters.batch_id}
-    conditions = [column == value for column, value in equal.items() if value is not None]
+    equal = {Job.status: filters.status, Job.asset_id: filters.asset_id}
+    conditions = [Job.batch_id.is_(None) if filters.batch_id is None else Job.batch_id == filters.batch_id]
+    conditions += [column == value for column, value in equal.items() if value is not None]
     if filters.created_after is not None:
         conditions.append(Job.created_at > filters.created_after)
     for key, value in filters.tags.items():

@@ -1,5 +1,7 @@
 """Jobs as workers see them: claimed under a lease, kept alive, ended once. The caller commits the transaction.
 
+A chunk of a batch is a job like any other, whose points are lines.
+
 Every change by a worker is guarded by the number of its attempt: once a job was released and claimed anew, whatever
 the earlier worker still says about it finds no row and is dropped, with its results.
 """
@@ -41,6 +43,7 @@ class Claim:
     job_id: UUID
     attempt: int
     document: dict[str, Any]
+    batch_id: UUID | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +70,14 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
             lease_expires_at=now + timedelta(seconds=lease_seconds),
             dispatched_at=func.coalesce(Job.dispatched_at, now),
         )
-        .returning(Job.attempt, Job.document)
+        .returning(Job.attempt, Job.document, Job.batch_id)
         .execution_options(synchronize_session=False)
     )
     taken = session.execute(statement).one_or_none()
     if taken is None:
         return None
     record(session, job_id, JobEventKind.RUNNING, attempt=taken.attempt, detail=owner)
-    return Claim(job_id, taken.attempt, taken.document)
+    return Claim(job_id, taken.attempt, taken.document, taken.batch_id)
 
 
 def heartbeat(session: Session, held: Claim, lease_seconds: float, progress: float, step: str) -> Beat:
@@ -131,11 +134,13 @@ def holds_jobs(session: Session, owner: str) -> bool:
     return session.execute(held.limit(1)).first() is not None
 
 
-def take_undispatched(session: Session, settings: Settings, *, queue_is_empty: bool) -> list[UUID]:
-    """Mark jobs that wait for a message as dispatched, oldest first, and return their ids for sending after the commit.
+def take_undispatched(
+    session: Session, settings: Settings, *, queue_is_empty: bool, chunks: bool = False
+) -> list[UUID]:
+    """Mark jobs, or chunks, that wait for a message as dispatched, and return their ids for sending after the commit.
 
-    These are the jobs never sent (after a moment's grace for the sender that made them), those released, and those
-    whose message must be lost: sent a while ago, still unclaimed, and the queue is empty.
+    The oldest come first. These are the jobs never sent (after a moment's grace for the sender that made them), those
+    released, and those whose message must be lost: sent a while ago, still unclaimed, and the queue is empty.
     """
     now = database_time(session)
     never_sent = and_(
@@ -144,15 +149,17 @@ def take_undispatched(session: Session, settings: Settings, *, queue_is_empty: b
     )
     overdue = Job.dispatched_at <= now - timedelta(seconds=settings.redispatch_seconds)
     wanted = or_(never_sent, overdue if queue_is_empty else false())
-    statement = select(Job.id).where(Job.status == JobStatus.ACCEPTED, wanted).order_by(Job.created_at, Job.id)
-    found = list(session.scalars(statement.limit(_JOBS_A_SWEEP).with_for_update(skip_locked=True)))
+    of_batch = Job.batch_id.is_not(None) if chunks else Job.batch_id.is_(None)
+    statement = select(Job.id).where(Job.status == JobStatus.ACCEPTED, of_batch, wanted)
+    oldest = statement.order_by(Job.created_at, Job.id)
+    found = list(session.scalars(oldest.limit(_JOBS_A_SWEEP).with_for_update(skip_locked=True)))
     _set_dispatched(session, found, now)
     return found
 
 
-def mark_dispatched(session: Session, job_id: UUID) -> None:
-    """Note that the job's message is with the broker."""
-    _set_dispatched(session, [job_id], database_time(session))
+def mark_dispatched(session: Session, job_ids: Sequence[UUID]) -> None:
+    """Note that these jobs' messages are with the broker."""
+    _set_dispatched(session, job_ids, database_time(session))
 
 
 def mark_undispatched(session: Session, job_ids: Sequence[UUID]) -> None:
@@ -187,13 +194,14 @@ def _end(
     changes: dict[str, Any],
     detail: str | None = None,
 ) -> bool:
+    if changes["status"] is not JobStatus.DISMISSED:
+        changes["failed_lines"] = Job.lines - sum(point.failure is None for point in points)  # null but for a chunk
     over = {"finished_at": database_time(session), "lease_owner": None, "lease_expires_at": None, "step": ""}
     statement = update(Job).where(*_guard(held)).values(**over, **changes)
     ended = session.execute(statement.execution_options(synchronize_session=False))
     if not isinstance(ended, CursorResult) or ended.rowcount != 1:
         return False
-    for point in points:
-        results.store(session, held.job_id, point)
+    results.store(session, held.job_id, points)
     record(session, held.job_id, JobEventKind(changes["status"].value), attempt=held.attempt, detail=detail)
     return True
 
@@ -208,7 +216,7 @@ def _release(session: Session, job: Job, settings: Settings, now: datetime) -> N
     else:
         job.status, job.finished_at = JobStatus(kind.value), now
     if failure is not None:
-        job.failure_kind, job.failure_detail = failure.kind, failure.detail
+        job.failure_kind, job.failure_detail, job.failed_lines = failure.kind, failure.detail, job.lines
     detail = failure.detail if failure else None
     record(session, job.id, kind, attempt=job.attempt, detail=detail)
 

@@ -1,7 +1,7 @@
 """The way to the workers: a message carries the id of a job, nothing else. SQL is the truth; messages may be lost."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -20,6 +20,7 @@ from app.settings import Settings
 
 TASK_NAME = "galloping.run_job"
 QUEUE_NAME = "galloping"
+CHUNK_QUEUE_NAME = "galloping-chunks"
 
 _logger = logging.getLogger(__name__)
 
@@ -35,14 +36,21 @@ class Queue:
     application: Celery
     connection: kombu.Connection
 
-    def send(self, job_id: UUID) -> None:
-        """Hand over a message with the id of a job."""
-        self.application.send_task(TASK_NAME, args=[str(job_id)], connection=self.connection, retry=False)
+    def send(self, job_id: UUID, *, chunk: bool = False) -> None:
+        """Hand over a message with the id of a job; chunks of batches wait in a queue of their own."""
+        self.application.send_task(
+            TASK_NAME, args=[str(job_id)], connection=self.connection, queue=_queue_name(chunk), retry=False
+        )
 
-    def is_empty(self) -> bool:
-        """Tell whether no message waits for a worker."""
-        declared: Any = kombu.Queue(QUEUE_NAME, channel=self.connection.default_channel).queue_declare()
+    def is_empty(self, *, chunk: bool = False) -> bool:
+        """Tell whether no message of jobs, or of chunks, waits for a worker."""
+        channel = self.connection.default_channel
+        declared: Any = kombu.Queue(_queue_name(chunk), channel=channel).queue_declare()
         return bool(declared.message_count == 0)
+
+
+def _queue_name(chunk: bool) -> str:
+    return CHUNK_QUEUE_NAME if chunk else QUEUE_NAME
 
 
 def celery_application(settings: Settings) -> Celery:
@@ -81,21 +89,37 @@ def dispatch(settings: Settings, job_id: UUID) -> bool:
 
     True means that the message is with the broker. False does not prove the opposite: a second message is harmless.
     """
+    return _dispatch(settings, [job_id], chunk=False)
+
+
+def dispatch_chunks(settings: Settings, job_ids: Sequence[UUID]) -> bool:
+    """Send the committed chunks of a batch like jobs; what cannot be sent is left to the sweeper."""
+    return _dispatch(settings, job_ids, chunk=True)
+
+
+def _dispatch(settings: Settings, job_ids: Sequence[UUID], *, chunk: bool) -> bool:
+    sent: list[UUID] = []
     try:
-        with open_queue(settings) as queue:
-            queue.send(job_id)
-        _mark_dispatched(settings, job_id)
+        try:
+            with open_queue(settings) as queue:
+                for job_id in job_ids:
+                    queue.send(job_id, chunk=chunk)
+                    sent.append(job_id)
+        finally:
+            _mark_dispatched(settings, sent)
     except (BrokerUnavailable, SQLAlchemyError) as error:
-        _logger.warning("job %s is left to the sweeper: %s", job_id, error)
+        _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids) - len(sent), error)
         return False
     return True
 
 
-def _mark_dispatched(settings: Settings, job_id: UUID) -> None:
+def _mark_dispatched(settings: Settings, job_ids: Sequence[UUID]) -> None:
+    if not job_ids:
+        return
     engine = make_engine(settings)
     try:
         with session_factory(engine).begin() as session:
-            leases.mark_dispatched(session, job_id)
+            leases.mark_dispatched(session, job_ids)
     finally:
         engine.dispose()
 
@@ -110,6 +134,8 @@ def _transport_options(settings: Settings) -> dict[str, object]:
         "max_retries": 1,
         "interval_start": 0.0,
         "interval_step": 0.1,
+        # The queues in the order in which a worker names them: a single job passes all chunks that wait.
+        "queue_order_strategy": "priority",
         # A message comes back only after its process must be dead, and then at once (the default looks every 100 s).
         "visibility_timeout": 2.0 * settings.hard_time_limit_seconds,
         "unacked_restore_interval": 1,

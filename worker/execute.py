@@ -3,6 +3,7 @@
 import logging
 import threading
 import time
+from collections.abc import Iterator
 from types import TracebackType
 from typing import Self
 from uuid import UUID
@@ -12,7 +13,7 @@ from pydantic import ValidationError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import convert, leases
+from app import batches, convert, leases
 from app.convert import Advance, PointResult
 from app.db import make_engine, session_factory
 from app.leases import Beat, Claim, Failure
@@ -42,12 +43,13 @@ def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, o
     """
     with sessions.begin() as session:
         held = leases.claim(session, job_id, owner, settings.lease_seconds)
-    if held is None:
+        steps = _steps(session, held) if held is not None else None
+    if held is None or steps is None:
         _logger.info("job %s is not waiting for a worker", job_id)
         return
     points: list[PointResult] = []
     with Pulse(sessions, held, settings) as pulse:
-        failure = _compute(held, settings, pulse, points)
+        failure = _compute(steps, held, settings, pulse, points)
     with sessions.begin() as session:
         ended = _conclude(session, held, pulse.verdict, failure, points)
     if not ended:
@@ -98,10 +100,19 @@ class Pulse:
             self.verdict = leases.heartbeat(session, self._held, lease, latest.fraction, latest.step)
 
 
-def _compute(held: Claim, settings: Settings, pulse: Pulse, points: list[PointResult]) -> Failure | None:
+def _steps(session: Session, held: Claim) -> Iterator[Advance | PointResult]:
+    """Return the computation of a job or a chunk, which has not begun yet."""
+    if held.batch_id is None:
+        return convert.run(held.document)
+    return convert.run_stack(*batches.lines_of_chunk(session, held.job_id, held.batch_id))
+
+
+def _compute(
+    steps: Iterator[Advance | PointResult], held: Claim, settings: Settings, pulse: Pulse, points: list[PointResult]
+) -> Failure | None:
     """Run the engine and collect the points, until it ends, fails, runs too long, or a heartbeat says stop."""
     try:
-        _collect(held, settings, pulse, points)
+        _collect(steps, settings, pulse, points)
     except (InvalidSpec, ValidationError) as error:
         return Failure(FailureKind.INPUT, str(error))
     except SoftTimeLimitExceeded:
@@ -116,9 +127,11 @@ def _compute(held: Claim, settings: Settings, pulse: Pulse, points: list[PointRe
     return None
 
 
-def _collect(held: Claim, settings: Settings, pulse: Pulse, points: list[PointResult]) -> None:
+def _collect(
+    steps: Iterator[Advance | PointResult], settings: Settings, pulse: Pulse, points: list[PointResult]
+) -> None:
     deadline = time.monotonic() + settings.soft_time_limit_seconds
-    for item in convert.run(held.document):
+    for item in steps:
         if isinstance(item, PointResult):
             points.append(item)
         else:

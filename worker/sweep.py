@@ -8,7 +8,7 @@ from uuid import UUID
 
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases
+from app import batches, leases
 from app.queue import BrokerUnavailable, open_queue
 from app.settings import Settings
 
@@ -24,15 +24,21 @@ def sweep(sessions: sessionmaker[Session], settings: Settings) -> int:
         If the database fails; the next sweep does what this one did not.
     """
     release(sessions, settings)
+    with sessions.begin() as session:
+        batches.discard_abandoned(session)
+    return sum(_send_waiting(sessions, settings, chunks) for chunks in (False, True))
+
+
+def _send_waiting(sessions: sessionmaker[Session], settings: Settings, chunks: bool) -> int:
     taken: list[UUID] = []
     sent = 0
     try:
         with open_queue(settings) as queue:
-            empty = queue.is_empty()
+            empty = queue.is_empty(chunk=chunks)
             with sessions.begin() as session:
-                taken = leases.take_undispatched(session, settings, queue_is_empty=empty)
+                taken = leases.take_undispatched(session, settings, queue_is_empty=empty, chunks=chunks)
             for job_id in taken:
-                queue.send(job_id)
+                queue.send(job_id, chunk=chunks)
                 sent += 1
     except BrokerUnavailable as error:
         _logger.warning("the broker is not to be reached: %s", error)

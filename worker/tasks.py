@@ -6,7 +6,7 @@ from uuid import UUID
 from celery import Celery
 
 from app.processes import end_with_parent
-from app.queue import TASK_NAME, celery_application
+from app.queue import CHUNK_QUEUE_NAME, QUEUE_NAME, TASK_NAME, celery_application
 from app.settings import Settings, get_settings
 from worker.execute import run_job
 
@@ -54,7 +54,8 @@ def _run_pool() -> None:
     end_with_parent()
     application = worker_application(get_settings(), os.environ[OWNER])
     quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat", "--hostname=galloping@%h"]
-    application.worker_main(["--quiet", "worker", "--loglevel=WARNING", *quiet])
+    queues = f"--queues={QUEUE_NAME},{CHUNK_QUEUE_NAME}"
+    application.worker_main(["--quiet", "worker", "--loglevel=WARNING", queues, *quiet])
 
 
 if __name__ == "__main__":

@@ -2,16 +2,22 @@
 
 from app.convert.check import check, read, request_faults, with_further_faults
 from app.convert.run import TABLES, Advance, PointResult, run
+from app.convert.stack import NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
 from engine import ENGINE_VERSION
 
 __all__ = [
     "ENGINE_VERSION",
     "TABLES",
     "Advance",
+    "NumberedLine",
     "PointResult",
     "check",
     "read",
+    "read_analysis",
+    "read_line",
     "request_faults",
     "run",
+    "run_stack",
+    "seconds_a_line",
     "with_further_faults",
 ]

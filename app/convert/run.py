@@ -83,13 +83,13 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
             try:
                 step = next(progress)
             except StopIteration as end:
-                yield _point_result(end.value, number, values)
+                yield point_result(end.value, number, values)
                 return
             yield Advance(step.fraction, step.step)
     except (ArithmeticError, ValueError) as error:  # both also cover numpy's, and what a specification raises
         if request.study is None:
             raise
-        yield _failed_point(error, number, values)
+        yield failed_point(error, number, values)
 
 
 def _specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:
@@ -99,7 +99,8 @@ def _specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple
     return line, analysis
 
 
-def _point_result(result: Result, number: int, values: dict[str, Any]) -> PointResult:
+def point_result(result: Result, number: int, values: dict[str, Any]) -> PointResult:
+    """Return the engine's result of one point as plain values."""
     return PointResult(
         point=number,
         axes=values,
@@ -113,7 +114,8 @@ def _point_result(result: Result, number: int, values: dict[str, Any]) -> PointR
     )
 
 
-def _failed_point(error: Exception, number: int, values: dict[str, Any]) -> PointResult:
+def failed_point(error: Exception, number: int, values: dict[str, Any]) -> PointResult:
+    """Return a point that holds nothing but why it failed."""
     return PointResult(
         point=number,
         axes=values,

@@ -1,6 +1,7 @@
 """A line that uses every field of the contract, and how to change one of its fields."""
 
 import json
+import math
 from typing import Any
 
 from app.examples import example
@@ -73,3 +74,14 @@ def changed(path: str, value: Any, line: dict[str, Any] | None = None) -> dict[s
     else:
         node[last] = value
     return document
+
+
+def close(row: dict[str, Any], expected: dict[str, Any]) -> bool:
+    """Tell whether two rows have the same columns and words, and numbers that differ by rounding only."""
+
+    def same(a: Any, b: Any) -> bool:
+        if isinstance(a, float) and isinstance(b, float):
+            return math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-9)
+        return bool(a == b)
+
+    return row.keys() == expected.keys() and all(same(row[name], expected[name]) for name in row)

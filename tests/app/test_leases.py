@@ -243,7 +243,7 @@ def test_a_message_counts_as_lost_only_if_the_queue_is_empty(
     impatient = settings.model_copy(update={"redispatch_seconds": 1e-9})
     job_id = add_job(sessions)
     with sessions.begin() as session:
-        leases.mark_dispatched(session, job_id)
+        leases.mark_dispatched(session, [job_id])
         assert leases.take_undispatched(session, impatient, queue_is_empty=False) == []
         assert leases.take_undispatched(session, settings, queue_is_empty=True) == []
         assert leases.take_undispatched(session, impatient, queue_is_empty=True) == [job_id]
@@ -253,6 +253,6 @@ def test_unsent_jobs_are_taken_again(sessions: sessionmaker[Session], settings: 
     at_once = settings.model_copy(update={"sweep_seconds": 1e-9})
     job_id = add_job(sessions)
     with sessions.begin() as session:
-        leases.mark_dispatched(session, job_id)
+        leases.mark_dispatched(session, [job_id])
         leases.mark_undispatched(session, [job_id])
         assert leases.take_undispatched(session, at_once, queue_is_empty=False) == [job_id]

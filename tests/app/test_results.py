@@ -21,8 +21,7 @@ def computed() -> list[PointResult]:
 def keep(sessions: sessionmaker[Session], points: list[PointResult]) -> UUID:
     job_id = add_job(sessions)
     with sessions.begin() as session:
-        for point in points:
-            results.store(session, job_id, point)
+        results.store(session, job_id, points)
     return job_id
 
 
@@ -98,7 +97,7 @@ def test_rows_with_other_columns_are_refused(sessions: sessionmaker[Session]) ->
     job_id = add_job(sessions)
     for point, name in ((more, "vertical_hertz"), (less, "vertical_hz")):
         with pytest.raises(ValueError, match=rf"\['{name}'\]"), sessions.begin() as session:
-            results.store(session, job_id, point)
+            results.store(session, job_id, [point])
 
 
 def test_rows_without_a_needed_value_are_refused(sessions: sessionmaker[Session]) -> None:
@@ -106,7 +105,7 @@ def test_rows_without_a_needed_value_are_refused(sessions: sessionmaker[Session]
     point.tables["frequencies"][0]["loops"] = None
     job_id = add_job(sessions)
     with pytest.raises(IntegrityError), sessions.begin() as session:
-        results.store(session, job_id, point)
+        results.store(session, job_id, [point])
 
 
 def test_a_job_without_study_has_no_axes(sessions: sessionmaker[Session]) -> None:

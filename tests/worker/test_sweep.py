@@ -73,9 +73,10 @@ def test_broker_that_fails_midway_leaves_the_rest_unsent(
     folder = tmp_path / "broker" / "messages"
     take = leases.take_undispatched
 
-    def take_and_break(session: Session, settings: Settings, *, queue_is_empty: bool) -> list[object]:
-        taken = take(session, settings, queue_is_empty=queue_is_empty)
-        folder.rename(folder.with_name("gone"))  # the broker goes away between the look and the sending
+    def take_and_break(session: Session, settings: Settings, *, queue_is_empty: bool, chunks: bool) -> list[object]:
+        taken = take(session, settings, queue_is_empty=queue_is_empty, chunks=chunks)
+        if not chunks:
+            folder.rename(folder.with_name("gone"))  # the broker goes away between the look and the sending
         return list(taken)
 
     monkeypatch.setattr(leases, "take_undispatched", take_and_break)

@@ -1,0 +1,268 @@
+"""Batches as their owner sees them: received in parts, counted, listed, cancelled, resubmitted.
+
+The lines of a batch are worked on in chunks, and a chunk is a job. What state a line is in follows from its chunk and
+from its result, and is written nowhere else. The caller commits the transaction.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import ColumnElement, and_, delete, func, insert, select, tuple_, update
+from sqlalchemy.orm import Session
+from uuid_utils.compat import uuid7
+
+from app.convert import NumberedLine
+from app.db import database_time
+from app.jobs import CancelOutcome, input_hash
+from app.tables import Batch, BatchItem, Job, JobEvent, JobEventKind, JobStatus, PointRow
+
+_ABANDONED = timedelta(hours=6)
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Lines of a batch that one message carries: how many there are, and which part of the batch they are."""
+
+    id: UUID
+    part: int
+    lines: int
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How many lines of a batch are in which state, how much of the work is done, and when it began and ended."""
+
+    accepted: int = 0
+    running: int = 0
+    successful: int = 0
+    failed: int = 0
+    dismissed: int = 0
+    progress: float = 0.0
+    started_at: datetime | None = None
+    finished_at: datetime | None = None
+
+    @property
+    def lines(self) -> int:
+        """Return how many lines there are apart from those that were rejected."""
+        return self.accepted + self.running + self.successful + self.failed + self.dismissed
+
+    @property
+    def status(self) -> JobStatus:
+        """Return the state of the whole: a batch that has ended is successful if any line is."""
+        if self.accepted + self.running:
+            begun = self.accepted < self.lines
+            return JobStatus.RUNNING if begun else JobStatus.ACCEPTED
+        if self.dismissed:
+            return JobStatus.DISMISSED
+        return JobStatus.SUCCESSFUL if self.successful else JobStatus.FAILED
+
+
+def begin(session: Session, analysis: dict[str, Any]) -> UUID:
+    """Add a batch that nobody sees until `accept` is called, and return its id."""
+    batch = Batch(id=uuid7(), created_at=database_time(session), analysis=analysis)
+    session.add(batch)
+    session.flush()
+    return batch.id
+
+
+def add_items(session: Session, items: Sequence[dict[str, Any]]) -> None:
+    """Add lines, each a mapping with the columns of `BatchItem`."""
+    if items:
+        session.execute(insert(BatchItem.__table__), items)  # type: ignore[arg-type]  # a table, though typed wider
+
+
+def accept(session: Session, batch_id: UUID, chunks: Sequence[Chunk], rejected_lines: int) -> None:
+    """Make a batch visible whose lines are all stored, with its chunks waiting for workers."""
+    now = database_time(session)
+    received = update(Batch).where(Batch.id == batch_id).values(received_at=now, rejected_lines=rejected_lines)
+    session.execute(received)
+    _add_chunks(session, batch_id, chunks, now)
+
+
+def discard(session: Session, batch_id: UUID) -> None:
+    """Remove a batch that was not accepted, with its lines."""
+    session.execute(delete(Batch).where(Batch.id == batch_id))
+
+
+def discard_abandoned(session: Session) -> int:
+    """Remove batches whose receiver died hours ago, and return how many there were."""
+    abandoned = Batch.created_at < database_time(session) - _ABANDONED
+    statement = delete(Batch).where(Batch.received_at.is_(None), abandoned).returning(Batch.id)
+    return len(session.scalars(statement).all())
+
+
+def get(session: Session, batch_id: UUID) -> Batch | None:
+    """Return a batch that is wholly received, or None if there is none of that id."""
+    batch = session.get(Batch, batch_id)
+    return batch if batch is not None and batch.received_at is not None else None
+
+
+def page(session: Session, after: tuple[datetime, UUID] | None, limit: int) -> list[Batch]:
+    """Return the newest batches, or those that follow `after`, the (created_at, id) of the last."""
+    statement = select(Batch).where(Batch.received_at.is_not(None))
+    if after is not None:
+        statement = statement.where(tuple_(Batch.created_at, Batch.id) < after)
+    return list(session.scalars(statement.order_by(Batch.created_at.desc(), Batch.id.desc()).limit(limit)))
+
+
+def counts(session: Session, batch_ids: Sequence[UUID]) -> dict[UUID, Counts]:
+    """Count the lines of batches by state, from their chunks."""
+    lines, failed = func.sum(func.coalesce(Job.lines, 0)), func.sum(func.coalesce(Job.failed_lines, 0))
+    done = func.sum(func.coalesce(Job.lines, 0) * Job.progress)
+    moments = func.min(Job.started_at), func.max(Job.finished_at)
+    statement = select(Job.batch_id, Job.status, lines, failed, done, *moments).where(Job.batch_id.in_(batch_ids))
+    grouped: dict[UUID | None, list[_Group]] = {batch_id: [] for batch_id in batch_ids}
+    for found in session.execute(statement.group_by(Job.batch_id, Job.status)):
+        grouped[found[0]].append(_Group(*found[1:]))
+    return {batch_id: _counted(grouped[batch_id]) for batch_id in batch_ids}
+
+
+def cancel(session: Session, batch_id: UUID) -> CancelOutcome:
+    """End what is queued at once and ask what is running to stop; remove a batch that has ended, with its results."""
+    if _locked(session, batch_id) is None:
+        return CancelOutcome.MISSING
+    before = counts(session, [batch_id])[batch_id]
+    if not before.accepted + before.running:
+        session.execute(delete(Job).where(Job.batch_id == batch_id))
+        session.execute(delete(Batch).where(Batch.id == batch_id))
+        return CancelOutcome.REMOVED
+    # Locked first, so that no chunk can pass from one state to the other between the two changes.
+    still_open = Job.batch_id == batch_id, Job.status.in_((JobStatus.ACCEPTED, JobStatus.RUNNING))
+    session.execute(select(Job.id).where(*still_open).order_by(Job.id).with_for_update())
+    _dismiss_waiting(session, batch_id)
+    running = _ask_running(session, batch_id)
+    return CancelOutcome.REQUESTED if running else CancelOutcome.DISMISSED
+
+
+def resubmit(session: Session, batch_id: UUID, chunk_lines: int) -> list[UUID]:
+    """Put the lines that failed into new chunks, and return the ids of these; none if nothing has failed.
+
+    Their numbers stay, and what an earlier attempt has stored of the others is not touched.
+    """
+    _locked(session, batch_id)
+    numbers = _failed_numbers(session, batch_id)
+    old = list(session.scalars(select(Job).where(*_has_failures(batch_id))))
+    for job in old:
+        job.lines, job.failed_lines = (job.lines or 0) - (job.failed_lines or 0), 0
+    session.flush()
+    parts = session.scalar(select(func.count()).select_from(Job).where(Job.batch_id == batch_id)) or 0
+    chunks: list[Chunk] = []
+    for first in range(0, len(numbers), chunk_lines):
+        moved = numbers[first : first + chunk_lines]
+        chunks.append(Chunk(uuid7(), parts + len(chunks) + 1, len(moved)))
+        belongs = BatchItem.batch_id == batch_id, BatchItem.number.in_(moved)
+        session.execute(update(BatchItem).where(*belongs).values(chunk_id=chunks[-1].id))
+    _add_chunks(session, batch_id, chunks, database_time(session))
+    return [chunk.id for chunk in chunks]
+
+
+def lines_of_chunk(session: Session, job_id: UUID, batch_id: UUID) -> tuple[dict[str, Any], list[NumberedLine]]:
+    """Return what a worker needs for a chunk: the analysis of the batch, and the lines by number."""
+    analysis = session.scalars(select(Batch.analysis).where(Batch.id == batch_id)).one()
+    statement = select(BatchItem.number, BatchItem.document).where(BatchItem.chunk_id == job_id)
+    rows = session.execute(statement.order_by(BatchItem.number))
+    return analysis, [NumberedLine(number, document or {}) for number, document in rows]
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """The chunks of one batch in one state."""
+
+    status: JobStatus
+    lines: int
+    failed: int
+    done: float
+    started_at: datetime | None
+    finished_at: datetime | None
+
+
+def _counted(groups: Sequence[_Group]) -> Counts:
+    by_status = {group.status: group for group in groups}
+    nothing = _Group(JobStatus.ACCEPTED, 0, 0, 0.0, None, None)
+    ended = [by_status.get(status, nothing) for status in (JobStatus.SUCCESSFUL, JobStatus.FAILED)]
+    waiting, running, dismissed = (
+        by_status.get(status, nothing) for status in (JobStatus.ACCEPTED, JobStatus.RUNNING, JobStatus.DISMISSED)
+    )
+    whole = sum(group.lines for group in groups)
+    done = sum(group.lines for group in (*ended, dismissed)) + running.done
+    still_open = waiting.lines + running.lines > 0
+    return Counts(
+        accepted=waiting.lines,
+        running=running.lines,
+        successful=sum(group.lines - group.failed for group in ended),
+        failed=sum(group.failed for group in ended),
+        dismissed=dismissed.lines,
+        progress=min(1.0, done / whole) if whole else 1.0,
+        started_at=min((group.started_at for group in groups if group.started_at), default=None),
+        finished_at=None if still_open else max((g.finished_at for g in groups if g.finished_at), default=None),
+    )
+
+
+def _locked(session: Session, batch_id: UUID) -> Batch | None:
+    """Return a batch and lock its row, so that two changes of the whole wait for each other."""
+    statement = select(Batch).where(Batch.id == batch_id, Batch.received_at.is_not(None))
+    return session.scalars(statement.with_for_update()).one_or_none()
+
+
+def _has_failures(batch_id: UUID) -> tuple[ColumnElement[bool], ...]:
+    ended = Job.status.in_((JobStatus.SUCCESSFUL, JobStatus.FAILED))
+    return Job.batch_id == batch_id, ended, Job.failed_lines > 0
+
+
+def _failed_numbers(session: Session, batch_id: UUID) -> list[int]:
+    """Return the numbers of the lines whose chunk has ended without a result of theirs."""
+    solved = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number, PointRow.failure.is_(None))
+    statement = (
+        select(BatchItem.number)
+        .join(Job, Job.id == BatchItem.chunk_id)
+        .outerjoin(PointRow, solved)
+        .where(BatchItem.batch_id == batch_id, *_has_failures(batch_id), PointRow.job_id.is_(None))
+    )
+    return list(session.scalars(statement.order_by(BatchItem.number)))
+
+
+def _add_chunks(session: Session, batch_id: UUID, chunks: Sequence[Chunk], now: datetime) -> None:
+    if not chunks:
+        return
+    session.add_all(_as_job(batch_id, chunk, now) for chunk in chunks)
+    session.flush()
+    events = [{"job_id": c.id, "at": now, "kind": JobEventKind.ACCEPTED, "attempt": 0} for c in chunks]
+    session.execute(insert(JobEvent), events)
+
+
+def _as_job(batch_id: UUID, chunk: Chunk, now: datetime) -> Job:
+    document = {"batch_id": str(batch_id), "part": chunk.part}
+    return Job(
+        id=chunk.id,
+        created_at=now,
+        status=JobStatus.ACCEPTED,
+        batch_id=batch_id,
+        document=document,
+        input_hash=input_hash(document),
+        lines=chunk.lines,
+    )
+
+
+def _dismiss_waiting(session: Session, batch_id: UUID) -> None:
+    now = database_time(session)
+    waiting = Job.batch_id == batch_id, Job.status == JobStatus.ACCEPTED
+    statement = update(Job).where(*waiting).values(status=JobStatus.DISMISSED, finished_at=now)
+    _record(session, session.execute(statement.returning(Job.id, Job.attempt)), JobEventKind.DISMISSED, now)
+
+
+def _ask_running(session: Session, batch_id: UUID) -> bool:
+    """Ask the running chunks to stop; tell whether there are any, asked now or before."""
+    now = database_time(session)
+    running = Job.batch_id == batch_id, Job.status == JobStatus.RUNNING
+    statement = update(Job).where(*running, Job.cancel_requested.is_(False)).values(cancel_requested=True)
+    _record(session, session.execute(statement.returning(Job.id, Job.attempt)), JobEventKind.CANCEL_REQUESTED, now)
+    return session.execute(select(Job.id).where(*running).limit(1)).first() is not None
+
+
+def _record(session: Session, found: Any, kind: JobEventKind, now: datetime) -> None:
+    events = [{"job_id": job_id, "at": now, "kind": kind, "attempt": attempt} for job_id, attempt in found]
+    if events:
+        session.execute(insert(JobEvent), events)

@@ -1,0 +1,184 @@
+"""Many lines under one analysis -> the engine in stacks -> plain rows, one point a line."""
+
+import itertools
+import logging
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+
+from app import schemas
+from app.convert.assemble import SoundParts, gather
+from app.convert.check import request_faults, with_further_faults
+from app.convert.run import Advance, PointResult, failed_point, point_result
+from app.faults import BadInput, Fault, faults_of
+from engine import spec
+from engine.outcome import InvalidSpec
+
+_STACK = 32
+_LINE, _ANALYSIS = "/line", "/analysis"
+_NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
+
+# Seconds of one core for a line in a stack, measured with benchmarks.engine_speed's lines: fixed, and per wind speed.
+_HYBRID_SECONDS = (0.001, 0.0006)
+_FINITE_ELEMENT_SECONDS = (0.035, 0.02)
+_FULL_MODES_SECONDS = 0.003
+
+_logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class NumberedLine:
+    """A line document, as `read_line` took it, and its number in the batch."""
+
+    number: int
+    document: Mapping[str, object]
+
+
+def read_analysis(document: object) -> schemas.Analysis:
+    """Return an analysis that is sound by itself.
+
+    Raises
+    ------
+    BadInput
+        With every fault, as JSON pointers below `/analysis`.
+    """
+    try:
+        analysis = schemas.Analysis.model_validate(document)
+    except ValidationError as error:
+        found = faults_of(error.errors(include_url=False, include_input=False))
+        raise BadInput([Fault(_ANALYSIS + fault.pointer, fault.code, fault.detail) for fault in found]) from error
+    _, _, wrong = gather(_NO_PARTS, analysis)
+    if wrong:
+        raise BadInput([Fault(_ANALYSIS, "inconsistent", str(fault)) for fault in wrong])
+    return analysis
+
+
+def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
+    """Return a line that passes its schema and can be asked this analysis.
+
+    Raises
+    ------
+    BadInput
+        With every fault, as JSON pointers from the root of the line.
+    """
+    try:
+        line = schemas.Line.model_validate(document)
+    except ValidationError as error:
+        found = faults_of(error.errors(include_url=False, include_input=False))
+        rooted = [Fault(_LINE + fault.pointer, fault.code, fault.detail) for fault in found]
+        asked = analysis.model_dump(mode="json", by_alias=True)
+        raise BadInput(_unrooted(with_further_faults({"line": document, "analysis": asked}, rooted))) from error
+    faults = request_faults(schemas.JobRequest.model_construct(line=line, analysis=analysis, study=None))
+    if faults:
+        raise BadInput(_unrooted(faults))
+    return line
+
+
+def seconds_a_line(analysis: schemas.Analysis) -> float:
+    """Estimate what a line costs in a stack on one core [s], to cut a batch into messages of equal work."""
+    winds = len(analysis.speeds())
+    fixed, per_wind = _HYBRID_SECONDS
+    cost = len(analysis.loops) * (fixed + per_wind * winds)
+    if "finite_element" in analysis.models:
+        cost += _FULL_MODES_SECONDS
+        if analysis.finite_element_loops:
+            cost += _FINITE_ELEMENT_SECONDS[0] + _FINITE_ELEMENT_SECONDS[1] * winds
+    return cost
+
+
+def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> Iterator[Advance | PointResult]:
+    """Run many lines, side by side where they have equal numbers of elements.
+
+    Parameters
+    ----------
+    analysis : mapping
+        An analysis document as `read_analysis` takes it.
+    lines : sequence of NumberedLine
+
+    Yields
+    ------
+    Advance or PointResult
+        Progress, and one result a line, whose point is the line's number; a line that fails has its failure.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        If the analysis does not pass its schema.
+    """
+    asked = schemas.Analysis.model_validate(analysis)
+    done = 0
+    made: list[_Made] = []
+    for line in lines:
+        try:
+            made.append((line.number, *_specification(line, asked)))
+        except (ArithmeticError, ValueError) as error:
+            yield failed_point(error, line.number, _axes(line.number))
+            done += 1
+    for stack in _stacks(made):
+        yield Advance(done / len(lines), f"lines {done + 1} to {done + len(stack)} of {len(lines)}")
+        yield from _stack_results(stack)
+        done += len(stack)
+    yield Advance(1.0, "done")
+
+
+_Made = tuple[int, spec.Line, spec.Analysis]
+
+
+def _stacks(made: Iterable[_Made]) -> Iterator[list[_Made]]:
+    """Yield lines with equal numbers of elements together, not too many at once."""
+
+    def elements(item: _Made) -> int:
+        return item[1].span.elements
+
+    for _, group in itertools.groupby(sorted(made, key=elements), key=elements):
+        equal = list(group)
+        for first in range(0, len(equal), _STACK):
+            yield equal[first : first + _STACK]
+
+
+def _specification(line: NumberedLine, asked: schemas.Analysis) -> tuple[spec.Line, spec.Analysis]:
+    made, analysis, faults = gather(SoundParts.of(schemas.Line.model_validate(line.document)), asked)
+    if made is None or faults:
+        raise InvalidSpec(*faults)
+    return made, analysis
+
+
+def _stack_results(stack: Sequence[_Made]) -> Iterator[PointResult]:
+    """Run a stack; one that fails is run again line by line, so that a bad line fails alone."""
+    from engine.analysis import analyse_stack  # noqa: PLC0415 - the API and `galloping --help` need no solver
+
+    try:
+        progress = analyse_stack([line for _, line, _ in stack], stack[0][2])
+        while True:
+            try:
+                next(progress)
+            except StopIteration as end:
+                results = end.value
+                break
+    except (ArithmeticError, ValueError, LookupError, TypeError) as error:
+        if len(stack) > 1:
+            for single in stack:
+                yield from _stack_results([single])
+            return
+        yield failed_point(_for_owner(error), stack[0][0], _axes(stack[0][0]))
+        return
+    for (number, _, _), result in zip(stack, results, strict=True):
+        yield point_result(result, number, _axes(number))
+
+
+def _for_owner(error: Exception) -> Exception:
+    """Return a numerical error as it is, and a defect of ours without its inside."""
+    if isinstance(error, ArithmeticError | ValueError):
+        return error
+    _logger.error("a line of a batch failed", exc_info=error)
+    return RuntimeError("the computation stopped on an internal error; the log has the details")
+
+
+def _axes(number: int) -> dict[str, Any]:
+    return {"number": number}
+
+
+def _unrooted(faults: Sequence[Fault]) -> list[Fault]:
+    return [Fault(fault.pointer.removeprefix(_LINE), fault.code, fault.detail) for fault in faults]

@@ -1,0 +1,135 @@
+from collections.abc import Generator, Sequence
+from typing import Any
+
+import pytest
+
+import engine.analysis
+from app import convert, schemas
+from app.convert import NumberedLine, PointResult, read_analysis, read_line, run_stack, seconds_a_line
+from app.examples import example
+from app.faults import BadInput
+from engine import spec
+from engine.result import Progress, Result
+from tests.app.lines import FULL_LINE, SHORT, changed, close
+
+TWIN = example("c11-twin")
+
+
+def results(lines: Sequence[NumberedLine], analysis: dict[str, Any] | None = None) -> dict[int, PointResult]:
+    found = [item for item in run_stack(analysis or SHORT, lines) if isinstance(item, PointResult)]
+    assert len(found) == len(lines)
+    return {point.point: point for point in found}
+
+
+def alone(line: dict[str, Any], analysis: dict[str, Any] | None = None) -> PointResult:
+    (found,) = [i for i in convert.run({"line": line, "analysis": analysis or SHORT}) if isinstance(i, PointResult)]
+    return found
+
+
+def faults(document: object, analysis: dict[str, Any] | None = None) -> list[tuple[str, str]]:
+    with pytest.raises(BadInput) as caught:
+        read_line(document, read_analysis(analysis or {}))
+    return [(fault.pointer, fault.code) for fault in caught.value.faults]
+
+
+def test_every_line_has_the_numbers_that_it_has_alone() -> None:
+    lengths = {number: 80.0 + 3.0 * number for number in range(1, 41)}
+    lines = {n: changed("span.length_m", length, TWIN) for n, length in lengths.items()}
+    lines[40] = FULL_LINE  # of other elements, so that it is in a stack of its own
+    found = results([NumberedLine(n, line) for n, line in lines.items()])
+    for number in (1, 20, 40):
+        expected = alone(lines[number])
+        assert found[number].axes == {"number": number}
+        assert found[number].static == pytest.approx(expected.static, rel=1e-9)
+        for table, rows in expected.tables.items():
+            pairs = zip(found[number].tables[table], rows, strict=True)
+            assert [pair for pair in pairs if not close(*pair)] == []
+    assert found[20].tables["limit_cycles"]
+
+
+def test_a_line_that_is_at_fault_fails_alone() -> None:
+    slack = changed("span.horizontal_tension_n", 11.0, TWIN)
+    found = results([NumberedLine(1, TWIN), NumberedLine(2, slack), NumberedLine(3, {}), NumberedLine(4, TWIN)])
+    assert [found[n].failure is None for n in (1, 2, 3, 4)] == [True, False, False, True]
+    assert "sag less than its length" in (found[2].failure or "")
+    assert found[1].tables == found[4].tables
+
+
+def breaking(on: float, error: Exception) -> Any:
+    real = engine.analysis.analyse_stack
+
+    def analyse_stack(lines: Sequence[spec.Line], analysis: spec.Analysis) -> Generator[Progress, None, list[Result]]:
+        if any(line.span.length == on for line in lines):
+            raise error
+        return (yield from real(lines, analysis))
+
+    return analyse_stack
+
+
+def test_a_stack_that_raises_is_run_line_by_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = [NumberedLine(n, changed("span.length_m", 100.0 + n, TWIN)) for n in range(1, 6)]
+    expected = results(lines)
+    monkeypatch.setattr(engine.analysis, "analyse_stack", breaking(103.0, FloatingPointError("overflow in cosh")))
+    found = results(lines)
+    assert [found[n].failure for n in range(1, 6)] == [None, None, "FloatingPointError: overflow in cosh", None, None]
+    assert found[3].tables["limit_cycles"] == []
+    for number in (1, 2, 4, 5):
+        assert found[number].static == pytest.approx(expected[number].static)
+
+
+def test_a_defect_fails_its_line_without_showing_its_inside(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engine.analysis, "analyse_stack", breaking(125.88, IndexError("secret path")))
+    (point,) = results([NumberedLine(7, TWIN)]).values()
+    assert point.failure == "RuntimeError: the computation stopped on an internal error; the log has the details"
+
+
+def test_progress_rises_to_the_end() -> None:
+    items = list(run_stack(SHORT, [NumberedLine(n, TWIN) for n in range(1, 41)]))
+    fractions = [item.fraction for item in items if isinstance(item, convert.Advance)]
+    assert fractions == [0.0, 0.8, 1.0]
+    assert "lines 33 to 40 of 40" in [item.step for item in items if isinstance(item, convert.Advance)]
+
+
+def test_faults_of_a_line_point_from_its_root() -> None:
+    assert faults(changed("span.length_m", -1.0, TWIN)) == [("/span/length_m", "greater_than_equal")]
+    assert faults({**TWIN, "colour": "red"}) == [("/colour", "unknown_field")]
+    assert faults(changed("span.horizontal_tension_n", 11.0, TWIN)) == [("/span/horizontal_tension_n", "inconsistent")]
+    assert faults([1]) == [("", "not_an_object")]
+
+
+def test_faults_of_the_schema_and_beyond_it_are_told_together() -> None:
+    line = changed(
+        "devices", [{"type": "spacer", "position_m": 900.0, "mass_kg": 1.0, "polar_inertia_kg_m2": 0.1}], TWIN
+    )
+    found = faults({**line, "colour": "red"})
+    assert ("/colour", "unknown_field") in found
+    assert any(pointer.startswith("/devices/0") for pointer, _ in found)
+
+
+def test_what_the_analysis_needs_of_the_line_is_told() -> None:
+    found = faults(TWIN, {"aerodynamic_model": "relative_wind"})
+    assert [code for _, code in found] == ["inconsistent"]
+
+
+def test_faults_of_the_analysis_point_below_analysis() -> None:
+    with pytest.raises(BadInput) as caught:
+        read_analysis({"loops": [], "colour": 1})
+    assert {fault.pointer for fault in caught.value.faults} == {"/analysis/loops", "/analysis/colour"}
+
+
+def test_a_line_comes_back_as_it_was_read() -> None:
+    line = read_line(TWIN, read_analysis({}))
+    assert isinstance(line, schemas.Line)
+    assert line.span.length == 125.88
+
+
+def test_estimated_cost_grows_with_what_is_asked() -> None:
+    asked = [
+        {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0]},
+        {"loops": [1, 2], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 5.0]},
+        {"loops": [1, 2], "models": ["hybrid", "finite_element"], "finite_element_loops": []},
+        {"loops": [1, 2]},
+    ]
+    costs = [seconds_a_line(read_analysis(document)) for document in asked]
+    assert costs == sorted(costs)
+    assert costs[-1] > 10.0 * costs[1]
