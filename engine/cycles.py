@@ -15,7 +15,7 @@ from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, balance, oscillation_size, pick, resized
 from engine.hybrid import ReducedModel, take
 
-UNRESOLVED = 1e-4  # error of the trivial multiplier above which more harmonics are taken
+TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which more effort is taken
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 12
 FINENESS = 4  # times the steps of the Floquet integration for cycles that need more harmonics
@@ -137,21 +137,20 @@ def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
 
 
 def _judged(model: ReducedModel, family: CycleFamily) -> Cycles:
-    """Judge the stability of all cycles, with more harmonics where they were too few."""
-    members = model.mass.shape[0]
+    """Judge the stability of all cycles, with more harmonics and finer steps where those taken were too few."""
     if not len(family):
         return _nothing(model)
     everything = np.arange(len(family))
     member, wind = family.places(everything)
     orbits = family.orbits_of(everything)
     judged = floquet(take(model, member), orbits)
-    coarse = np.flatnonzero(judged.trivial_error > UNRESOLVED)
-    branch = family.branches()
+    largest = np.abs(judged.multipliers).max(axis=-1, initial=1.0)
+    coarse = np.flatnonzero((_tail(model, member, orbits) > TAIL) | (judged.trivial_error > TAIL * largest))
+    kept = np.ones(member.size, dtype=np.bool_)
     if coarse.size:
-        orbits, judged = _refined(model, member, orbits, judged, coarse)
-    keep = ~(judged.trivial_error > UNRESOLVED)
-    dropped = np.bincount(member[~keep], minlength=members)
-    order = np.flatnonzero(keep)
+        orbits, judged, kept[coarse] = _refined(model, member, orbits, judged, coarse)
+    branch = family.branches()
+    order = np.flatnonzero(kept)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]
     return Cycles(
         member[order],
@@ -159,14 +158,22 @@ def _judged(model: ReducedModel, family: CycleFamily) -> Cycles:
         _renumbered(member[order], wind[order], branch[order]),
         pick(orbits, order),
         Floquet(judged.multipliers[order], judged.trivial_error[order], judged.stability[order]),
-        dropped,
+        np.bincount(member[~kept], minlength=model.mass.shape[0]),
     )
+
+
+def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return the share of the last two harmonics in the size of each cycle, 0 where fewer than three were asked for."""
+    if orbits.coefficients.shape[-1] // 2 < 3:
+        return np.zeros(member.size)
+    last = Orbits(orbits.coefficients[..., -5:], orbits.angular_frequency, orbits.wind_speed)
+    return oscillation_size(model, member, last) / oscillation_size(model, member, orbits)
 
 
 def _refined(
     model: ReducedModel, member: IntArray, orbits: Orbits, judged: Floquet, coarse: IntArray
-) -> tuple[Orbits, Floquet]:
-    """Balance some cycles again with the most harmonics and judge them anew."""
+) -> tuple[Orbits, Floquet, BoolArray]:
+    """Balance some cycles again with more harmonics, judge them anew, and tell which of them that resolved."""
     harmonics = max(MOST_HARMONICS, orbits.coefficients.shape[-1] // 2)
     finer, solution = balance(model, member[coarse], resized(pick(orbits, coarse), harmonics))
     again = floquet(take(model, member[coarse]), finer, FINENESS)
@@ -174,13 +181,10 @@ def _refined(
     orbits.coefficients[coarse] = finer.coefficients
     frequency, multipliers = orbits.angular_frequency.copy(), judged.multipliers.copy()
     error, stability = judged.trivial_error.copy(), judged.stability.copy()
-    frequency[coarse], multipliers[coarse], stability[coarse] = (
-        finer.angular_frequency,
-        again.multipliers,
-        again.stability,
-    )
-    error[coarse] = np.where(solution.converged, again.trivial_error, np.inf)
-    return Orbits(orbits.coefficients, frequency, orbits.wind_speed), Floquet(multipliers, error, stability)
+    frequency[coarse], multipliers[coarse] = finer.angular_frequency, again.multipliers
+    error[coarse], stability[coarse] = again.trivial_error, again.stability
+    resolved = solution.converged & (_tail(model, member[coarse], finer) <= TAIL)
+    return Orbits(orbits.coefficients, frequency, orbits.wind_speed), Floquet(multipliers, error, stability), resolved
 
 
 def _renumbered(member: IntArray, wind: IntArray, branch: IntArray) -> IntArray:

@@ -217,4 +217,4 @@ def _linear_part(model: ReducedModel, orbits: Orbits, made: Basis) -> FloatArray
 
 
 def _unpacked(x: FloatArray, m: int, wind_speed: FloatArray) -> Orbits:
-    return Orbits(x[:, :-1].reshape(x.shape[0], m, x.shape[1] // m), x[:, -1], wind_speed)
+    return Orbits(x[:, :-1].reshape(x.shape[0], m, (x.shape[1] - 1) // m), x[:, -1], wind_speed)

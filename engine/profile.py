@@ -48,15 +48,15 @@ def static_profile(lines: Sequence[Line]) -> StaticProfile:
     weight = GRAVITY * np.array([mean_mass(line) for line in lines])
     catenary = np.array([_catenary_parameter(line, p) for line, p in zip(lines, weight, strict=True)])
     drag_ratio = np.array([_mean_drag(line) for line in lines]) / weight
-    tension = catenary * weight * np.hypot(1.0, drag_ratio)
     arc = 2.0 * catenary * np.sinh(0.5 * length / catenary)
-    ends = [_end_stiffness(*item) for item in zip(lines, weight, catenary, tension, strict=True)]
+    resultant = weight * np.hypot(1.0, drag_ratio)
+    ends = [_end_stiffness(*item) for item in zip(lines, resultant, catenary, strict=True)]
     return StaticProfile(
         span_length=length,
         arc_length=arc,
         catenary_parameter=catenary,
         sag=catenary * (np.cosh(0.5 * length / catenary) - 1.0),
-        horizontal_tension=tension,
+        horizontal_tension=catenary * resultant,
         tilt=np.arctan(drag_ratio),
         end_stiffness=np.array(ends).reshape(len(lines), 2),
     )
@@ -133,18 +133,21 @@ def _catenary_of_sag(length: float, sag: float) -> float:
     return float(0.5 * length / u)
 
 
-def _end_stiffness(line: Line, weight: float, catenary: float, tension: float) -> tuple[float, float]:
+def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, float]:
     supports = line.supports
     return tuple(  # type: ignore[return-value]
-        np.inf
-        if end.dead_end
-        else supports.longitudinal_stiffness or _adjacent_stiffness(line, end, weight, catenary, tension)
+        np.inf if end.dead_end else supports.longitudinal_stiffness or _adjacent_stiffness(line, end, weight, catenary)
         for end in (supports.left, supports.right)
     )
 
 
-def _adjacent_stiffness(line: Line, end: Support, weight: float, catenary: float, tension: float) -> float:
-    """Return K_x of eq. (A10): static stiffness of the adjacent span, and of the string that carries half of both."""
+def _adjacent_stiffness(line: Line, end: Support, weight: float, catenary: float) -> float:
+    """Return K_x of eq. (A10): static stiffness of the adjacent span, and of the string that carries half of both.
+
+    weight is the resultant of weight and mean drag per length [N/m], which bends the adjacent span and pulls at the
+    string as it does here.
+    """
+    tension = catenary * weight
     rigidity = line.conductor.axial_rigidity
     adjacent = end.adjacent_span or line.span.length
     arc = 2.0 * catenary * np.sinh(0.5 * adjacent / catenary)

@@ -9,6 +9,8 @@ from engine.aerodynamics import force_gradient
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from engine.hybrid import ReducedModel
 
+NEARLY_IMAGINARY = 1e-6  # real over imaginary part of a pair that the eigenproblem in U puts on the axis
+
 
 @dataclass(frozen=True, slots=True)
 class StateMatrices:
@@ -147,14 +149,25 @@ def _pick(matrices: StateMatrices, members: IntArray) -> StateMatrices:
 def _oscillations(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
     """Return members and wind speeds of all imaginary pairs, polished by Newton's method on the growth rate."""
     member, speed = _singular_speeds(matrices, limit)
+    value, _, _ = _nearest_pair(_pick(matrices, member), speed)
+    # Two real eigenvalues of equal size also sum to zero: such a speed has no pair near the axis, or only by chance.
+    imaginary = np.abs(value.real) < NEARLY_IMAGINARY * np.abs(value.imag)
+    member, speed = member[imaginary], speed[imaginary]
     here = _pick(matrices, member)
-    for _ in range(3):
+    for _ in range(2):
         value, slope, _ = _nearest_pair(here, speed)
         speed = speed - value.real / np.where(slope.real == 0.0, np.inf, slope.real)
-    value, slope, _ = _nearest_pair(here, speed)
-    found = np.abs(value.real) < 1e-8 * np.abs(value.imag)
-    found &= (speed > 0.0) & (speed <= limit)
+    found = (speed > 0.0) & (speed <= limit) & _distinct(member, speed)
     return member[found], speed[found]
+
+
+def _distinct(member: IntArray, speed: FloatArray) -> BoolArray:
+    """Tell which crossings are not repetitions of an earlier one of the same member: (crossings,)."""
+    order = np.lexsort((speed, member))
+    new = np.ones(member.size, dtype=np.bool_)
+    same = (np.diff(member[order]) == 0) & (np.abs(np.diff(speed[order])) <= 1e-9 * speed[order][1:])
+    new[order[1:][same]] = False
+    return new
 
 
 def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:

@@ -22,7 +22,7 @@ from engine.harmonic import (
 )
 from engine.hybrid import ReducedModel, take
 from engine.spec import AerodynamicModel, Analysis, Line
-from tests.builders import finite_element, hybrid, source_line
+from tests.builders import Oscillators, finite_element, hand_made, hybrid, source_line
 
 RELATIVE = Analysis(aerodynamic_model=AerodynamicModel.RELATIVE_WIND)
 
@@ -165,3 +165,13 @@ def test_start_that_is_not_a_number_does_not_converge_and_spoils_no_other() -> N
     )
     _, solution = balance(model, np.zeros(2, dtype=np.intp), both)
     assert solution.converged.tolist() == [False, True]
+
+
+def test_balance_of_a_single_co_ordinate() -> None:
+    # q'' + q = mu (1 - q^2 - q'^2) q' has q = cos t.
+    one = np.ones((1, 1))
+    model = hand_made(Oscillators(one, 0.0 * one, one, {(0, (1,)): 0.1, (0, (0, 0, 1)): -0.1, (0, (1, 1, 1)): -0.1}))
+    start = Orbits(np.array([[[0.0, 0.9, 0.0]]]), np.array([1.05]), np.array([1.0]))
+    orbits, solution = balance(model, np.zeros(1, dtype=np.intp), start)
+    assert solution.converged.all()
+    assert np.hypot(*orbits.coefficients[0, 0, 1:]) == pytest.approx(1.0, rel=1e-10)

@@ -108,3 +108,15 @@ def test_dead_end_and_given_stiffness_override_the_rest() -> None:
     supports = Supports(longitudinal_stiffness=7e4, left=Support(dead_end=True), right=Support(insulator_length=1.0))
     found = static_profile((replace(source_line(1), supports=supports),)).end_stiffness[0]
     assert found.tolist() == [math.inf, 7e4]
+
+
+def test_adjacent_span_blown_out_too_holds_by_its_own_plane() -> None:
+    # (A10) is the stiffness of a cable in the plane of its sag: the blown-out adjacent span
+    # carries p_r = p sqrt(1 + (q/p)^2) as well as H_r, and so must the string.
+    line = replace(source_line(1), span=Span(300.0, sag=9.0), wind=Wind(1.25, blow_out=BlowOut(30.0, 1.2)))
+    profile = static_profile((line,))
+    tension, arc = profile.horizontal_tension[0], profile.arc_length[0]
+    weight = 2.379 * 9.81 * math.hypot(1.0, math.tan(profile.tilt[0]))
+    rigidity = line.conductor.axial_rigidity
+    expected = 12.0 * rigidity * tension**3 / (12.0 * arc * tension**3 + rigidity * weight**2 * 300.0**3)
+    assert profile.end_stiffness[0] == pytest.approx([expected, expected], rel=1e-10)

@@ -157,3 +157,14 @@ def test_limit_cuts_and_members_are_kept_apart() -> None:
     divergent = hybrid(replace(source_line(1), span=replace(source_line(1).span, length=200.0)), 1)
     assert divergent.statically_unstable[0]
     assert critical_wind_speeds(divergent, LIMIT).wind_speed.size == 0
+
+
+def test_neutral_saddles_are_no_crossings() -> None:
+    # One oscillator crosses at U = 4 and one co-ordinate diverges at 5; its growing real
+    # eigenvalue then passes the mirror images of the two decaying ones of an overdamped third: sums that vanish without
+    # an imaginary pair.
+    stiffness, damping = np.diag([4.0, 1.0, 2.2165]), np.diag([0.2, 0.1, 3.0])
+    model = hand_made(Oscillators(np.eye(3), damping, stiffness, {(0, (3,)): 0.05, (1, (1,)): 0.04}))
+    found = critical_wind_speeds(model, 30.0)
+    assert found.wind_speed == pytest.approx([4.0, 5.0], rel=1e-10)
+    assert found.unstable_after.tolist() == [1, 2]
