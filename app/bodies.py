@@ -2,7 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 
 from fastapi import Request, Response
@@ -16,14 +16,24 @@ _LINGER_SECONDS = 2.0
 Refuse = Callable[[Request, Exception], Awaitable[Response]]
 
 
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """How large a body may be, and the fault of one that is larger."""
+
+    most_bytes: int
+    too_large: HTTPException
+
+
 class BodyLimit:
     """ASGI middleware: no application sees more of a body than the limit; one announced as larger it does not see."""
 
-    def __init__(self, app: ASGIApp, most_bytes: int, too_large: HTTPException, refuse: Refuse) -> None:
-        """Wrap an application; `too_large` is raised in it as it reads on, or made an answer by `refuse` before."""
+    def __init__(self, app: ASGIApp, limits: Mapping[str, Limit], refuse: Refuse) -> None:
+        """Wrap an application; `limits` are by path, and the one under "" holds for all others.
+
+        A limit's fault is raised in the application as it reads on, or made an answer by `refuse` before.
+        """
         self.app = app
-        self.most_bytes = most_bytes
-        self.too_large = too_large
+        self.limits = limits
         self.refuse = refuse
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -32,10 +42,11 @@ class BodyLimit:
             await self.app(scope, receive, send)
             return
         announced = dict(scope["headers"]).get(b"content-length", b"0")
-        exchange = _Exchange(receive, send, self.most_bytes, self.too_large)
-        if announced.isdigit() and int(announced[:20]) > self.most_bytes:
+        limit = self.limits.get(scope["path"], self.limits[""])
+        exchange = _Exchange(receive, send, limit.most_bytes, limit.too_large)
+        if announced.isdigit() and int(announced[:20]) > limit.most_bytes:
             exchange.exceeded = True
-            answer = await self.refuse(Request(scope), self.too_large)
+            answer = await self.refuse(Request(scope), limit.too_large)
             await answer(scope, receive, exchange.send_lingering)
         else:
             await self.app(scope, exchange.receive_counting, exchange.send_lingering)

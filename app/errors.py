@@ -13,7 +13,7 @@ from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 
 from app import convert
-from app.bodies import BodyLimit
+from app.bodies import BodyLimit, Limit
 from app.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer, parse_json
 
 MEDIA_TYPE = "application/problem+json"
@@ -31,7 +31,12 @@ class ProblemKind(Enum):
     NOT_READY = ("not-ready", 409, "Not ready", "The job has not ended; its status document tells how far it is.")
     DISMISSED = ("dismissed", 410, "Dismissed", "The job was cancelled and has no results.")
     TOO_LARGE = ("too-large", 413, "Body too large", "The request body is larger than the operator allows.")
-    UNSUPPORTED_MEDIA_TYPE = ("unsupported-media-type", 415, "Unsupported media type", "Bodies are application/json.")
+    UNSUPPORTED_MEDIA_TYPE = (
+        "unsupported-media-type",
+        415,
+        "Unsupported media type",
+        "The body is of another type than taken.",
+    )
     INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is no JSON, or fields of it are wrong.")
     INTERNAL = ("internal", 500, "Internal error", "A defect of the service; the operator's log has the details.")
     UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it depends on; try again later.")
@@ -80,16 +85,20 @@ def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequ
     }
 
 
-def install(app: FastAPI, max_body_bytes: int) -> None:
-    """Let an application answer every fault with a problem, and limit its bodies."""
+def install(app: FastAPI, max_body_bytes: Mapping[str, int]) -> None:
+    """Let an application answer every fault with a problem, and limit its bodies by path, "" being all others."""
     app.add_exception_handler(ProblemError, _on_problem)
     app.add_exception_handler(HTTPException, _on_http)
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(OperationalError, _on_database)
     app.add_exception_handler(Exception, _on_defect)
-    detail = f"The body is larger than {max_body_bytes} bytes."
-    too_large = ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
-    app.add_middleware(BodyLimit, most_bytes=max_body_bytes, too_large=too_large, refuse=_on_problem)
+    limits = {path: Limit(most_bytes, _too_large(most_bytes)) for path, most_bytes in max_body_bytes.items()}
+    app.add_middleware(BodyLimit, limits=limits, refuse=_on_problem)
+
+
+def _too_large(most_bytes: int) -> ProblemError:
+    detail = f"The body is larger than {most_bytes} bytes."
+    return ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
 
 
 class StrictJsonRoute(APIRoute):

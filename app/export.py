@@ -4,10 +4,11 @@ import csv
 import io
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 Row = Mapping[str, Any]
 Format = Literal["json", "csv"]
+Name = TypeVar("Name", bound=str)
 MEDIA_TYPES: Mapping[Format, str] = {"json": "application/json", "csv": "text/csv; charset=utf-8"}
 
 _FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
@@ -16,7 +17,12 @@ _CHARACTERS_A_BLOCK = 65_536
 
 def preferred_format(accept: str) -> Format | None:
     """Choose the format that an Accept header likes best, JSON in doubt; None if it takes neither."""
-    weights: dict[Format, float] = {"json": _weight(accept, "application/json"), "csv": _weight(accept, "text/csv")}
+    return preferred(accept, {"json": "application/json", "csv": "text/csv"})
+
+
+def preferred(accept: str, media_types: Mapping[Name, str]) -> Name | None:
+    """Choose the format whose media type an Accept header likes best, the first in doubt; None if it takes none."""
+    weights = {name: _weight(accept, media_type) for name, media_type in media_types.items()}
     best = max(weights, key=lambda name: weights[name])
     return best if weights[best] > 0.0 else None
 
@@ -50,6 +56,12 @@ def json_text(name: str, rows: Iterable[Row]) -> Iterator[str]:
     yield "{"
     yield from _member(name, rows)
     yield "}"
+
+
+def ndjson_text(rows: Iterable[Row]) -> Iterator[str]:
+    """Yield rows as JSON, one object a line."""
+    for row in rows:
+        yield _dump(row) + "\n"
 
 
 def result_text(

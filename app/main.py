@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from app import errors
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
-from app.routes import documentation, health, jobs, results
+from app.routes import batch_results, batches, documentation, health, jobs, results
 from app.settings import Settings, get_settings
 
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
@@ -56,7 +56,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.settings = settings
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
-    errors.install(app, settings.max_body_bytes)
-    for module in (jobs, results, health):
+    errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
+    for module in (jobs, results, batches, batch_results, health):
         app.include_router(module.router)
     return app

@@ -23,15 +23,17 @@ if TYPE_CHECKING:
 
 Table = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations"]
 
-_ROW_TYPES: Mapping[str, type[FrequencyRow | CriticalWindSpeedRow | LimitCycleRow | BifurcationRow | OrbitRow]] = {
+_Fact = type[FrequencyRow | CriticalWindSpeedRow | LimitCycleRow | BifurcationRow]
+_FACTS: Mapping[str, _Fact] = {
     "frequencies": FrequencyRow,
     "critical_wind_speeds": CriticalWindSpeedRow,
     "limit_cycles": LimitCycleRow,
     "bifurcations": BifurcationRow,
-    "orbits": OrbitRow,
 }
+_ROW_TYPES: Mapping[str, _Fact | type[OrbitRow]] = {**_FACTS, "orbits": OrbitRow}
 _PLACE = frozenset({"job_id", "point", "row_number"})
-_STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m")
+TABLES: tuple[Table, ...] = ("frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations")
+STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m")
 _ROWS_A_FETCH = 1000
 
 
@@ -62,6 +64,11 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"])
             session.execute(_insert(_ROW_TYPES[name]), found)
 
 
+def row_type(table: Table) -> _Fact:
+    """Return the class that stands for a table."""
+    return _FACTS[table]
+
+
 def columns(table: Table) -> list[str]:
     """Return the names of a table's columns in the order of the contract, without the study's axes."""
     return _columns(table)
@@ -75,13 +82,13 @@ def axes(session: Session, job_id: UUID) -> list[str]:
 
 def rows(session: Session, job_id: UUID, table: Table) -> Iterator[dict[str, object]]:
     """Stream the rows of one table in the order of the points; the values of the study's axes come first in each."""
-    row_type = _ROW_TYPES[table]
-    wanted: list[ColumnElement[Any]] = [row_type.__table__.columns[name] for name in columns(table)]
+    found = _ROW_TYPES[table]
+    wanted: list[ColumnElement[Any]] = [found.__table__.columns[name] for name in columns(table)]
     statement = (
         select(PointRow.axes, *wanted)
-        .join(row_type, (row_type.job_id == PointRow.job_id) & (row_type.point == PointRow.point))
+        .join(found, (found.job_id == PointRow.job_id) & (found.point == PointRow.point))
         .where(PointRow.job_id == job_id)
-        .order_by(row_type.point, row_type.row_number)
+        .order_by(found.point, found.row_number)
         .execution_options(yield_per=_ROWS_A_FETCH)
     )
     names = columns(table)
@@ -98,7 +105,7 @@ def points(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
         yield {
             "point": row.point,
             "axes": row.axes,
-            "static": {name: getattr(row, name) for name in _STATIC} if solved else None,
+            "static": {name: getattr(row, name) for name in STATIC} if solved else None,
             "den_hartog": hartog if row.den_hartog_coefficient is not None else None,
             "warnings": row.warnings,
             "engine_version": row.engine_version,
@@ -114,9 +121,9 @@ def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
         yield {"point": row.point, "cycle": row.cycle, **shapes}
 
 
-def _insert(row_type: type[Base]) -> Insert:
+def _insert(kind: type[Base]) -> Insert:
     """Insert into the bare table, which costs a fraction of an insert of objects."""
-    return insert(cast(SqlTable, row_type.__table__))
+    return insert(cast(SqlTable, kind.__table__))
 
 
 def _columns(table: str) -> list[str]:
@@ -135,7 +142,7 @@ def _point_columns(point: "PointResult") -> dict[str, object]:
     return {
         "point": point.point,
         "axes": point.axes,
-        **{name: point.static.get(name) for name in _STATIC},
+        **{name: point.static.get(name) for name in STATIC},
         "den_hartog_coefficient": point.den_hartog.get("coefficient"),
         "den_hartog_unstable": point.den_hartog.get("unstable"),
         "warnings": point.warnings,

@@ -44,6 +44,12 @@ class Settings(BaseSettings):
     broker_url: str = Field(default_factory=_default_broker, description="Celery broker; redis:// or filesystem://")
     cursor_secret: SecretStr | None = Field(default=None, description="Key that signs cursors; else a file in data_dir")
     max_body_bytes: Count = Field(default=20_000_000, description="Largest request body")
+    max_batch_bytes: Count = Field(default=512_000_000, description="Largest NDJSON or CSV batch, decompressed")
+    max_batch_line_bytes: Count = Field(default=1_000_000, description="Longest text line of an NDJSON or CSV batch")
+    max_batch_lines: Count = Field(default=100_000, description="Most lines of a batch")
+    batches_at_once: Count = Field(default=4, description="Batches that one process takes in at once; others wait")
+    chunk_seconds: Seconds = Field(default=1.0, description="Estimated work that one message of a batch carries")
+    most_chunk_lines: Count = Field(default=256, description="Most lines that one message of a batch carries")
 
     lease_seconds: Seconds = Field(default=30.0, description="A worker silent for so long has lost its job")
     heartbeat_seconds: Seconds = Field(default=1.0, description="Between two reports of a worker on its job")

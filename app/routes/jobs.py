@@ -43,6 +43,7 @@ class ListQuery(BaseModel):
     status: JobStatus | None = Field(default=None, description="Only jobs in this state")
     asset_id: Label | None = Field(default=None, description="Only jobs of this asset")
     tag: list[Label] = Field(default=[], max_length=10, description="Only jobs with these tags, each as key:value")
+    batch_id: UUID | None = Field(default=None, description="The chunks of this batch, which no other list holds")
     created_after: AwareDatetime | None = Field(default=None, description="Only jobs made later, with a time zone")
     limit: int = Field(default=50, ge=1, le=_MOST_ON_PAGE, description="Jobs on a page")
     cursor: str | None = Field(default=None, max_length=200, description="Place that a `next` address holds")
@@ -59,7 +60,7 @@ class ListQuery(BaseModel):
         tags = {key: value for key, _, value in pairs}
         if len(tags) != len(pairs) or not all(key and colon and value for key, colon, value in pairs):
             raise query_fault("tag", "a tag is key:value, each key at most once")
-        return JobFilters(self.status, self.asset_id, tags, created_after=self.created_after)
+        return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after)
 
 
 @router.post(

@@ -53,7 +53,7 @@ _TABLE_PROBLEMS = documentation.problems(
 def whole(job_id: UUID, readers: Readers) -> StreamingResponse:
     """Return everything that was found; a failed job answers with the rows that it has and its failure."""
     job = _ended_job(readers, job_id)
-    study, failure = job.document.get("study") is not None, failure_of(job)
+    study, failure = job.batch_id is not None or job.document.get("study") is not None, failure_of(job)
 
     def pieces(session: Session) -> Iterator[str]:
         points = list(results.points(session, job_id))
@@ -82,6 +82,7 @@ def table(
     job = _ended_job(readers, job_id)
     name = _TABLES[table]
     axes = [axis["parameter"] for axis in (job.document.get("study") or {"axes": []})["axes"]]
+    axes = ["number"] if job.batch_id is not None else axes
 
     def pieces(session: Session) -> Iterator[str]:
         rows = results.rows(session, job_id, name)

@@ -5,7 +5,7 @@ from fastapi import Request, Response
 from starlette.exceptions import HTTPException
 from starlette.types import Message, Receive, Scope, Send
 
-from app.bodies import BodyLimit
+from app.bodies import BodyLimit, Limit
 
 PIECE = 100
 PIECES = 50
@@ -47,7 +47,7 @@ async def refuse(_: Request, error: Exception) -> Response:
 def served(limit: int, headers: list[tuple[bytes, bytes]]) -> Exchange:
     exchange = Exchange()
     scope: Scope = {"type": "http", "method": "POST", "path": "/", "headers": headers, "query_string": b""}
-    limited = BodyLimit(reader, limit, HTTPException(413), refuse)
+    limited = BodyLimit(reader, {"": Limit(limit, HTTPException(413))}, refuse)
     asyncio.run(limited(scope, exchange.receive, exchange.send))
     return exchange
 
@@ -82,6 +82,6 @@ def test_a_client_that_leaves_ends_the_lingering() -> None:
 
     exchange = Leaving()
     scope: Scope = {"type": "http", "method": "POST", "path": "/", "headers": [(b"content-length", b"9")]}
-    asyncio.run(BodyLimit(reader, 1, HTTPException(413), refuse)(scope, exchange.receive, exchange.send))
+    asyncio.run(BodyLimit(reader, {"": Limit(1, HTTPException(413))}, refuse)(scope, exchange.receive, exchange.send))
     assert exchange.pieces_read == 1
     assert exchange.answer[0]["status"] == 413

@@ -1,0 +1,71 @@
+"""What the routes of batches share: finding one, its status document and its links."""
+
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy.orm import Session
+
+from app import batch_results, batches
+from app.batches import Counts
+from app.errors import ProblemError, ProblemKind
+from app.routes.common import ENDED, PREFIX
+from app.tables import Batch
+
+_ERRORS_SHOWN = 50
+
+
+def find_batch(session: Session, batch_id: UUID) -> Batch:
+    """Return a batch.
+
+    Raises
+    ------
+    ProblemError
+        404 if there is none of that id.
+    """
+    batch = batches.get(session, batch_id)
+    if batch is None:
+        raise ProblemError(ProblemKind.NOT_FOUND, f"There is no batch {batch_id}.")
+    return batch
+
+
+def batch_address(batch_id: UUID) -> str:
+    """Return the address of a batch's status."""
+    return f"{PREFIX}/batches/{batch_id}"
+
+
+def batch_summary(batch: Batch, counts: Counts) -> dict[str, Any]:
+    """Return the state of a batch for a list."""
+    return {
+        "id": str(batch.id),
+        "status": counts.status.value,
+        "progress": counts.progress,
+        "lines": {
+            "total": counts.lines + batch.rejected_lines,
+            "accepted": counts.accepted,
+            "running": counts.running,
+            "successful": counts.successful,
+            "failed": counts.failed,
+            "dismissed": counts.dismissed,
+            "rejected": batch.rejected_lines,
+        },
+        "created_at": batch.created_at.isoformat(),
+        "started_at": counts.started_at.isoformat() if counts.started_at else None,
+        "finished_at": counts.finished_at.isoformat() if counts.finished_at else None,
+        "links": _links(batch, counts),
+    }
+
+
+def batch_document(session: Session, batch: Batch, counts: Counts) -> dict[str, Any]:
+    """Return the status document of a batch, with the faults of the first lines that were rejected."""
+    shown = list(batch_results.errors(session, batch.id, _ERRORS_SHOWN)) if batch.rejected_lines else []
+    return {**batch_summary(batch, counts), "errors": shown[:_ERRORS_SHOWN]}
+
+
+def _links(batch: Batch, counts: Counts) -> list[dict[str, str]]:
+    address = batch_address(batch.id)
+    links = [{"rel": "self", "href": address}, {"rel": "chunks", "href": f"{PREFIX}/jobs?batch_id={batch.id}"}]
+    if batch.rejected_lines:
+        links.append({"rel": "errors", "href": f"{address}/errors"})
+    if counts.status in ENDED:
+        links.append({"rel": "results", "href": f"{address}/results"})
+    return links

@@ -1,0 +1,117 @@
+"""Examples of the bodies of batches for OpenAPI, and the three forms in which one comes in."""
+
+import json
+from typing import Any
+
+from app.examples import example
+from app.schemas.batch import BatchRequest
+
+_BATCH = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"
+_ADDRESS = f"/v1/batches/{_BATCH}"
+_ANALYSIS = {"loops": [1, 2], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 5.0, 6.0]}
+_LINES = [
+    {"reference": "row-1", "asset_id": "L204-S017", **example("c11-twin")},
+    {"reference": "row-2", "asset_id": "L204-S018", **example("c11-triple")},
+]
+_CSV = (
+    "reference,asset_id,conductor.diameter_m,conductor.axial_rigidity_n,conductor.torsional_rigidity_n_m2,"
+    "conductor.mass_kg_per_m,conductor.polar_inertia_kg_m,bundle.subconductors,bundle.radius_m,bundle.orientation_deg,"
+    "span.length_m,span.horizontal_tension_n,ice.eccentricity_y_m,ice.eccentricity_z_m,ice.aerodynamics.vertical,"
+    "ice.aerodynamics.horizontal,ice.aerodynamics.torsional,damping.vertical_ratio,damping.horizontal_ratio,"
+    "damping.torsional_ratio\n"
+    "row-1,L204-S017,0.0286,28418105.8,101.0,2.379,3.334e-4,2,0.2355,90.0,125.88,30000.0,2.05e-3,-0.63e-3,"
+    '"[-0.1667, -4.0547, 8.3581]","[0.8605, 0.8325, 1.7815]","[-0.7272, 0.2935, 5.9704]",0.000515,0.000515,0.308\n'
+)
+_COUNTS = {
+    "total": 2,
+    "accepted": 2,
+    "running": 0,
+    "successful": 0,
+    "failed": 0,
+    "dismissed": 0,
+    "rejected": 0,
+}
+FAULT = {
+    "number": 3,
+    "reference": "row-3",
+    "pointer": "/span/length_m",
+    "code": "greater_than_equal",
+    "detail": "input should be greater than or equal to 1",
+}
+_SUMMARY: dict[str, Any] = {
+    "id": _BATCH,
+    "status": "accepted",
+    "progress": 0.0,
+    "lines": _COUNTS,
+    "created_at": "2026-11-22T10:00:00+00:00",
+    "started_at": None,
+    "finished_at": None,
+    "links": [{"rel": "self", "href": _ADDRESS}],
+}
+ACCEPTED: dict[str, Any] = {**_SUMMARY, "errors": []}
+FINISHED: dict[str, Any] = {
+    **ACCEPTED,
+    "status": "successful",
+    "progress": 1.0,
+    "lines": {**_COUNTS, "total": 3, "accepted": 0, "successful": 2, "rejected": 1},
+    "started_at": "2026-11-22T10:00:01+00:00",
+    "finished_at": "2026-11-22T10:00:02+00:00",
+    "errors": [FAULT],
+    "links": [{"rel": "self", "href": _ADDRESS}, {"rel": "results", "href": f"{_ADDRESS}/results"}],
+}
+DISMISSED: dict[str, Any] = {**ACCEPTED, "status": "dismissed", "lines": {**_COUNTS, "accepted": 0, "dismissed": 2}}
+STOPPING: dict[str, Any] = {**ACCEPTED, "status": "running", "lines": {**_COUNTS, "accepted": 0, "running": 2}}
+PAGE: dict[str, Any] = {"batches": [_SUMMARY], "next": None}
+ERRORS: dict[str, Any] = {"errors": [FAULT]}
+RESULT: dict[str, Any] = {
+    "number": 1,
+    "reference": "row-1",
+    "asset_id": "L204-S017",
+    "status": "successful",
+    "failure": None,
+    "static": {
+        "horizontal_tension_n": 30000.0,
+        "catenary_parameter_m": 1285.5,
+        "sag_m": 1.54,
+        "longitudinal_stiffness_n_per_m": 128490.0,
+    },
+    "den_hartog": {"coefficient": -0.1667, "unstable": True},
+    "warnings": [],
+    "engine_version": "0.1.0",
+    "frequencies": [],
+    "critical_wind_speeds": [],
+    "limit_cycles": [],
+    "bifurcations": [],
+}
+RESULTS_ANSWER: dict[str, Any] = {
+    "description": "NDJSON with one object a line, or rows of a table",
+    "content": {
+        "application/x-ndjson": {"schema": {"type": "string"}, "example": json.dumps(RESULT) + "\n"},
+        "text/csv": {
+            "schema": {"type": "string"},
+            "example": "number,reference,asset_id,model,loops,vertical_hz,horizontal_hz,torsional_hz,outcome\r\n"
+            "1,row-1,L204-S017,hybrid,1,0.4816,0.446,0.6343,converged\r\n",
+        },
+    },
+}
+
+
+def request_body() -> dict[str, Any]:
+    """Return OpenAPI's entry for the body of a batch, which is read as a stream and so not declared in Python."""
+    ndjson = "".join(json.dumps(item) + "\n" for item in ({"analysis": _ANALYSIS}, *_LINES))
+    schema = BatchRequest.model_json_schema(by_alias=True, ref_template="#/components/schemas/{model}")
+    own = schema.pop("$defs")
+    schema["properties"]["lines"]["items"] = own["BatchLine"]
+    return {
+        "requestBody": {
+            "required": True,
+            "description": "JSON; NDJSON whose first object is the analysis; or CSV whose columns are dotted field "
+            "names such as `span.length_m`, with lists as JSON in a cell or item by item "
+            "(`ice.aerodynamics.vertical.0`), and the analysis in the query. With `Content-Encoding: gzip` if wanted.",
+            "content": {
+                "application/json": {"schema": schema, "example": {"lines": _LINES, "analysis": _ANALYSIS}},
+                "application/x-ndjson": {"schema": {"type": "string"}, "example": ndjson},
+                "text/csv": {"schema": {"type": "string"}, "example": _CSV},
+            },
+        }
+    }

@@ -1,0 +1,113 @@
+"""Results of a batch, streamed as NDJSON or CSV, and the faults of the lines that were rejected."""
+
+from collections.abc import Callable, Iterator
+from typing import Annotated, Literal
+from uuid import UUID
+
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import StreamingResponse
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import batch_results, batches, export
+from app.batch_results import BatchTable
+from app.errors import ProblemError, ProblemKind
+from app.routes import batch_documentation, documentation
+from app.routes.batch_common import batch_address, find_batch
+from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, Readers
+from app.schemas.batch import BatchErrors
+
+router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
+
+BatchFormat = Literal["ndjson", "csv"]
+TableName = Literal["limit-cycles", "critical-wind-speeds", "frequencies", "bifurcations", "summary"]
+
+_MEDIA_TYPES: dict[BatchFormat, str] = {"ndjson": "application/x-ndjson", "csv": "text/csv"}
+_TABLES: dict[TableName, BatchTable] = {
+    "limit-cycles": "limit_cycles",
+    "critical-wind-speeds": "critical_wind_speeds",
+    "frequencies": "frequencies",
+    "bifurcations": "bifurcations",
+    "summary": "summary",
+}
+
+
+@router.get(
+    "/results",
+    response_class=StreamingResponse,
+    responses={
+        200: batch_documentation.RESULTS_ANSWER,
+        **documentation.problems(
+            ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_FOUND, ProblemKind.NOT_ACCEPTABLE, ProblemKind.NOT_READY
+        ),
+    },
+)
+def results(
+    batch_id: UUID,
+    request: Request,
+    readers: Readers,
+    table: Annotated[
+        TableName | None, Query(description="One table of flat rows; CSV is the summary if absent")
+    ] = None,
+    format: Annotated[BatchFormat | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
+    partial: Annotated[bool, Query(description="Also while lines are waiting or running")] = False,
+) -> StreamingResponse:
+    """Return what came of the lines in the order of their numbers: everything, one object a line, or one table.
+
+    Every row has `number`, `reference` and `asset_id`. A line without results has its failure.
+    """
+    form = format or export.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
+    if form is None:
+        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, "Results are application/x-ndjson or text/csv.")
+    _require(readers, batch_id, ended=not partial)
+    name: BatchTable = _TABLES[table or "summary"]
+
+    def pieces(session: Session) -> Iterator[str]:
+        if form == "csv":
+            return export.csv_text(batch_results.columns(name), batch_results.rows(session, batch_id, name))
+        if table is None:
+            return export.ndjson_text(batch_results.documents(session, batch_id))
+        return export.ndjson_text(batch_results.rows(session, batch_id, name))
+
+    return _streamed(readers, pieces, _MEDIA_TYPES[form])
+
+
+@router.get(
+    "/errors",
+    response_class=StreamingResponse,
+    responses={
+        200: {
+            **documentation.body("Every fault", ("application/json", batch_documentation.ERRORS)),
+            "model": BatchErrors,
+        },
+        **documentation.problems(ProblemKind.NOT_FOUND),
+    },
+)
+def errors(batch_id: UUID, readers: Readers) -> StreamingResponse:
+    """Return all faults of the lines that were rejected when the batch came in."""
+    _require(readers, batch_id, ended=False)
+    return _streamed(
+        readers, lambda session: export.json_text("errors", batch_results.errors(session, batch_id)), "application/json"
+    )
+
+
+def _require(readers: sessionmaker[Session], batch_id: UUID, *, ended: bool) -> None:
+    with readers() as session:
+        find_batch(session, batch_id)
+        counts = batches.counts(session, [batch_id])[batch_id]
+    if ended and counts.status not in ENDED:
+        raise ProblemError(
+            ProblemKind.NOT_READY,
+            f"The batch is {counts.status.value}, {counts.progress:.0%} done; ?partial=true takes what there is.",
+            links=[{"rel": "status", "href": batch_address(batch_id)}],
+            headers={"Retry-After": RETRY_SECONDS},
+        )
+
+
+def _streamed(
+    readers: sessionmaker[Session], pieces: Callable[[Session], Iterator[str]], media_type: str
+) -> StreamingResponse:
+    def stream() -> Iterator[str]:
+        with readers() as session:
+            yield from export.in_blocks(pieces(session))
+
+    return StreamingResponse(stream(), media_type=media_type, headers={"Vary": "Accept"})

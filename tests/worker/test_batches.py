@@ -1,0 +1,83 @@
+"""Batches through real brokers and workers that are killed in the middle."""
+
+import time
+from uuid import UUID
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import batch_results, batches, jobs
+from app.examples import example
+from app.intake import Incoming, receive
+from app.jobs import JobFilters
+from app.queue import dispatch, dispatch_chunks
+from app.settings import Settings
+from app.tables import JobStatus, LimitCycleRow, PointRow
+from tests.app.lines import SHORT, changed
+from tests.documents import add_job, look, short_request
+from tests.processes import kill_group, running_worker
+from tests.servers import wait_until
+
+LINES = 300
+ENDED = (JobStatus.SUCCESSFUL, JobStatus.FAILED, JobStatus.DISMISSED)
+
+
+def submit(sessions: sessionmaker[Session], settings: Settings, *, most_chunk_lines: int = 32) -> UUID:
+    lines = (
+        {**changed("span.length_m", 100.0 + 0.1 * n, example("c11-twin")), "reference": f"r{n}"}
+        for n in range(1, LINES + 1)
+    )
+    small = settings.model_copy(update={"most_chunk_lines": most_chunk_lines})
+    receipt = receive(sessions, small, Incoming(SHORT, lines), atomic=False)
+    assert dispatch_chunks(settings, receipt.chunk_ids)
+    return receipt.batch_id
+
+
+def counts(sessions: sessionmaker[Session], batch_id: UUID) -> batches.Counts:
+    with sessions() as session:
+        return batches.counts(session, [batch_id])[batch_id]
+
+
+def test_killed_worker_loses_and_doubles_nothing(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    with running_worker(deployment) as worker:
+        batch_id = submit(deployed, deployment)
+        wait_until(lambda: 0 < counts(deployed, batch_id).successful < LINES, 60.0, "the first lines")
+        kill_group(worker)
+    found = counts(deployed, batch_id)
+    assert found.accepted + found.running > 0
+    with running_worker(deployment):
+        wait_until(lambda: counts(deployed, batch_id).status in ENDED, 90.0, "the end of the batch")
+    assert counts(deployed, batch_id).successful == LINES
+    with deployed() as session:
+        whole = list(batch_results.documents(session, batch_id))
+        stored = session.scalar(select(func.count()).select_from(PointRow))
+        cycles = session.scalar(select(func.count()).select_from(LimitCycleRow))
+        attempts = [job.attempt for job in jobs.page(session, JobFilters(batch_id=batch_id), None, 100)]
+    assert [(line["number"], line["reference"]) for line in whole] == [(n, f"r{n}") for n in range(1, LINES + 1)]
+    assert {line["status"] for line in whole} == {"successful"}
+    assert (stored, cycles) == (LINES, sum(len(line["limit_cycles"]) for line in whole))
+    assert max(attempts) == 2
+
+
+def test_running_batch_stops_when_cancelled(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    with running_worker(deployment):
+        batch_id = submit(deployed, deployment, most_chunk_lines=16)
+        wait_until(lambda: counts(deployed, batch_id).successful > 0, 60.0, "the first lines")
+        with deployed.begin() as session:
+            batches.cancel(session, batch_id)
+        wait_until(lambda: counts(deployed, batch_id).status in ENDED, 30.0, "the end of the batch")
+    found = counts(deployed, batch_id)
+    assert found.status is JobStatus.DISMISSED
+    assert found.successful + found.dismissed == LINES and found.dismissed > 0
+
+
+def test_a_single_job_is_not_stuck_behind_a_batch(deployment: Settings, deployed: sessionmaker[Session]) -> None:
+    batch_id = submit(deployed, deployment, most_chunk_lines=2)
+    single = add_job(deployed, short_request())
+    assert dispatch(deployment, single)
+    with running_worker(deployment):
+        begin = time.monotonic()
+        wait_until(lambda: look(deployed, single).status is JobStatus.SUCCESSFUL, 60.0, "the single job")
+        assert counts(deployed, batch_id).accepted > LINES // 2, time.monotonic() - begin
+        with deployed.begin() as session:
+            batches.cancel(session, batch_id)
