@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import FloatArray, merged
-from engine.cycles import Cycles, energy_starts, explicit_starts, find_cycles, joined
+from engine.cycles import Cycles, explicit_starts, find_cycles
 from engine.family import Starts
 from engine.fem import FIELDS, matrices
 from engine.harmonic import Orbits, resized
@@ -135,10 +135,7 @@ def _finite_element(prepared: _Prepared, modes: FullModes, hybrid: Found, analys
     """Analyse the finite element model of every line, started from the cycles of the hybrid one as well."""
     model = finite_element_model(prepared.made, modes, prepared.shapes, analysis)
     winds = hybrid.winds
-    starts = joined(
-        _lifted(prepared.made, modes, hybrid, model, analysis.harmonics),
-        energy_starts(model, winds, analysis.harmonics),
-    )
+    starts = _lifted(prepared.made, modes, hybrid, model, analysis.harmonics)
     return Found(
         name=Model.FINITE_ELEMENT,
         model=model,

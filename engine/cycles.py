@@ -39,11 +39,9 @@ class Cycles:
     dropped: IntArray
 
 
-def energy_starts(
-    model: ReducedModel, wind_speeds: FloatArray, harmonics: int, points: tuple[IntArray, IntArray] | None = None
-) -> Starts:
-    """Guess cycles of every unstable mode by the balance of energy, at all points or at those (member, wind) named."""
-    member, wind = _grid(model, wind_speeds) if points is None else points
+def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
+    """Guess cycles of every unstable mode at every wind speed by the balance of energy."""
+    member, wind = _grid(model, wind_speeds)
     guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
@@ -55,28 +53,10 @@ def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics:
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
-def joined(*starts: Starts) -> Starts:
-    """Put several sets of starts together."""
-    return Starts(
-        np.concatenate([s.member for s in starts]),
-        np.concatenate([s.wind for s in starts]),
-        joined_orbits(*(s.orbits for s in starts)),
-    )
-
-
-def joined_orbits(*orbits: Orbits) -> Orbits:
-    """Put several stacks of orbits with equal harmonics together."""
-    return Orbits(
-        np.concatenate([o.coefficients for o in orbits]),
-        np.concatenate([o.angular_frequency for o in orbits]),
-        np.concatenate([o.wind_speed for o in orbits]),
-    )
-
-
 def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts, harmonics: int) -> Cycles:
     """Find every cycle that the starts and continuation over the wind speeds reach.
 
-    Where the starts find nothing, the balance of energy of each unstable mode is tried as well.
+    The balance of energy of every unstable mode is tried as well, unless it points to a cycle that is known already.
 
     Parameters
     ----------
@@ -94,8 +74,7 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts, ha
     """
     family = CycleFamily(model)
     family.add(*_solved(model, starts))
-    bare = family.without_cycle(*_grid(model, wind_speeds))
-    family.add(*_solved(model, energy_starts(model, wind_speeds, harmonics, bare)))
+    family.add(*_solved(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))))
     frontier = np.arange(len(family))
     while frontier.size:
         origin, wind = family.loose_ends(frontier, wind_speeds.size)

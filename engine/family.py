@@ -5,12 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, merged
-from engine.harmonic import Orbits
+from engine.harmonic import Orbits, pick
 from engine.hybrid import ReducedModel
 
 SAME = 1e-3  # relative distance below which two solutions are one
 NEAR = 0.02  # relative difference of frequency up to which neighbours may be the same motion
 ALIKE = 3.0  # ratio of sizes, likewise
+GUESSED = 1.05  # ratio of sizes up to which a guess by energy leads to a cycle that is known
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +53,21 @@ class CycleFamily:
         coefficients, frequency, speed = zip(*(self._orbits[i] for i in ids), strict=True)
         return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
 
-    def without_cycle(self, member: IntArray, wind: IntArray) -> tuple[IntArray, IntArray]:
-        """Keep the points (member, wind) at which no cycle is known."""
-        bare = [key not in self._known for key in zip(member.tolist(), wind.tolist(), strict=True)]
-        return member[bare], wind[bare]
+    def unlike_known(self, starts: Starts) -> Starts:
+        """Keep the starts that do not resemble a known cycle of their member and wind speed in frequency and size."""
+        sizes = np.linalg.norm(_signature(self._model, starts), axis=-1).tolist()
+        places = zip(starts.member.tolist(), starts.wind.tolist(), strict=True)
+        frequencies = starts.orbits.angular_frequency.tolist()
+        new = [
+            not any(self._alike(number, *guess) for number, _ in self._known.get(place, []))
+            for place, *guess in zip(places, frequencies, sizes, strict=True)
+        ]
+        index = np.flatnonzero(new)
+        return Starts(starts.member[index], starts.wind[index], pick(starts.orbits, index))
+
+    def _alike(self, number: int, frequency: float, size: float) -> bool:
+        near = abs(self._orbits[number][1] - frequency) <= NEAR * frequency
+        return near and max(size, self._sizes[number]) <= GUESSED * min(size, self._sizes[number])
 
     def add(self, starts: Starts, good: BoolArray, origin: IntArray | None = None) -> None:
         """Record the good ones of these solutions, and links to the cycles that they were carried from."""

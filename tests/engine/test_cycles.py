@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.arrays import FloatArray
-from engine.cycles import Cycles, energy_starts, find_cycles, joined
+from engine.cycles import Cycles, energy_starts, find_cycles
 from engine.harmonic import half_peak_to_peak, residual
 from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability
@@ -60,9 +60,6 @@ def test_two_oscillators_each_have_their_cycle_and_the_right_stability() -> None
 def test_stack_of_members_holds_the_cycles_of_each() -> None:
     lines = (source_line(2), source_line(3))
     models = [hybrid(line, 1) for line in lines]
-    one = take(models[0], np.zeros(1, dtype=np.intp))
-    starts = energy_starts(one, WINDS, 5)
-    assert joined(starts, starts).member.size == 2 * starts.member.size
     twice = found_for(take(models[0], np.zeros(2, dtype=np.intp)), WINDS)
     alone = found_for(models[0], WINDS)
     assert twice.member.tolist() == [0] * alone.member.size + [1] * alone.member.size
