@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from app import errors
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
+from app.queue import Sender, celery_application
 from app.routes import batch_results, batches, documentation, health, jobs, results
 from app.settings import Settings, get_settings
 
@@ -42,6 +43,7 @@ def create_app(settings: Settings | None = None) -> Service:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         yield
+        app.state.sender.close()
         database.dispose()
 
     app = Service(
@@ -56,6 +58,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.settings = settings
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
+    app.state.sender = Sender(celery_application(settings), app.state.writers)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     for module in (jobs, results, batches, batch_results, health):
         app.include_router(module.router)

@@ -13,6 +13,7 @@ from celery import Celery
 from kombu.exceptions import KombuError
 from redis.exceptions import RedisError
 from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session, sessionmaker
 
 from app import leases
 from app.db import make_engine, session_factory
@@ -21,6 +22,8 @@ from app.settings import Settings
 TASK_NAME = "galloping.run_job"
 QUEUE_NAME = "galloping"
 CHUNK_QUEUE_NAME = "galloping-chunks"
+
+_BROKER_FAULTS = (OSError, AMQPError, KombuError, RedisError)
 
 _logger = logging.getLogger(__name__)
 
@@ -38,9 +41,7 @@ class Queue:
 
     def send(self, job_id: UUID, *, chunk: bool = False) -> None:
         """Hand over a message with the id of a job; chunks of batches wait in a queue of their own."""
-        self.application.send_task(
-            TASK_NAME, args=[str(job_id)], connection=self.connection, queue=_queue_name(chunk), retry=False
-        )
+        _send(self.application, job_id, chunk=chunk, connection=self.connection)
 
     def is_empty(self, *, chunk: bool = False) -> bool:
         """Tell whether no message of jobs, or of chunks, waits for a worker."""
@@ -80,7 +81,7 @@ def open_queue(settings: Settings) -> Iterator[Queue]:
     try:
         with closing(celery_application(settings)) as application, application.connection_for_write() as connection:
             yield Queue(application, connection)
-    except (OSError, AMQPError, KombuError, RedisError) as error:
+    except _BROKER_FAULTS as error:
         raise BrokerUnavailable(f"{type(error).__name__}: {error}") from error
 
 
@@ -88,39 +89,59 @@ def dispatch(settings: Settings, job_id: UUID) -> bool:
     """Send a committed job to the workers and mark it as dispatched; on any fault leave it to the sweeper.
 
     True means that the message is with the broker. False does not prove the opposite: a second message is harmless.
+    A process that sends often keeps a `Sender`.
     """
-    return _dispatch(settings, [job_id], chunk=False)
+    return _dispatch_once(settings, [job_id], chunk=False)
 
 
 def dispatch_chunks(settings: Settings, job_ids: Sequence[UUID]) -> bool:
     """Send the committed chunks of a batch like jobs; what cannot be sent is left to the sweeper."""
-    return _dispatch(settings, job_ids, chunk=True)
+    return _dispatch_once(settings, job_ids, chunk=True)
 
 
-def _dispatch(settings: Settings, job_ids: Sequence[UUID], *, chunk: bool) -> bool:
-    sent: list[UUID] = []
-    try:
+@dataclass(frozen=True, slots=True)
+class Sender:
+    """What a process keeps that sends often: connections to broker and database that threads share."""
+
+    application: Celery
+    sessions: sessionmaker[Session]
+
+    def send(self, job_ids: Sequence[UUID], *, chunk: bool = False) -> bool:
+        """Send committed jobs, or chunks, as `dispatch` does."""
+        sent: list[UUID] = []
         try:
-            with open_queue(settings) as queue:
+            try:
                 for job_id in job_ids:
-                    queue.send(job_id, chunk=chunk)
+                    _send(self.application, job_id, chunk=chunk)
                     sent.append(job_id)
-        finally:
-            _mark_dispatched(settings, sent)
-    except (BrokerUnavailable, SQLAlchemyError) as error:
-        _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids) - len(sent), error)
-        return False
-    return True
+            finally:
+                self._mark(sent)
+        except (*_BROKER_FAULTS, SQLAlchemyError) as error:
+            _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids) - len(sent), error)
+            return False
+        return True
+
+    def close(self) -> None:
+        """Close the connections to the broker."""
+        self.application.close()
+
+    def _mark(self, job_ids: Sequence[UUID]) -> None:
+        if job_ids:
+            with self.sessions.begin() as session:
+                leases.mark_dispatched(session, job_ids)
 
 
-def _mark_dispatched(settings: Settings, job_ids: Sequence[UUID]) -> None:
-    if not job_ids:
-        return
+def _send(application: Celery, job_id: UUID, *, chunk: bool, connection: kombu.Connection | None = None) -> None:
+    application.send_task(TASK_NAME, args=[str(job_id)], connection=connection, queue=_queue_name(chunk), retry=False)
+
+
+def _dispatch_once(settings: Settings, job_ids: Sequence[UUID], *, chunk: bool) -> bool:
     engine = make_engine(settings)
+    sender = Sender(celery_application(settings), session_factory(engine))
     try:
-        with session_factory(engine).begin() as session:
-            leases.mark_dispatched(session, job_ids)
+        return sender.send(job_ids, chunk=chunk)
     finally:
+        sender.close()
         engine.dispose()
 
 

@@ -1,11 +1,16 @@
 """Result rows in SQL: stored with the end of a job, read as the flat rows of the contract."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from json import dumps
 from typing import TYPE_CHECKING, Any, Literal, cast
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, Insert, insert, select
+import psycopg
+from psycopg.sql import SQL, Identifier
+from sqlalchemy import JSON, ColumnElement, insert, select
 from sqlalchemy import Table as SqlTable
+from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.orm import Session
 
 from app.tables import (
@@ -51,7 +56,7 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"])
     """
     if not points_found:
         return
-    session.execute(_insert(PointRow), [{"job_id": job_id, **_point_columns(point)} for point in points_found])
+    _insert(session, PointRow, [{"job_id": job_id, **_point_columns(point)} for point in points_found])
     records: dict[str, list[dict[str, object]]] = {}
     for point in points_found:
         for name, rows_of_table in {**point.tables, "orbits": point.orbits}.items():
@@ -61,7 +66,7 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"])
             records.setdefault(name, []).extend(numbered)
     for name, found in records.items():
         if found:
-            session.execute(_insert(_ROW_TYPES[name]), found)
+            _insert(session, _ROW_TYPES[name], found)
 
 
 def row_type(table: Table) -> _Fact:
@@ -121,9 +126,30 @@ def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
         yield {"point": row.point, "cycle": row.cycle, **shapes}
 
 
-def _insert(kind: type[Base]) -> Insert:
-    """Insert into the bare table, which costs a fraction of an insert of objects."""
-    return insert(cast(SqlTable, kind.__table__))
+def _insert(session: Session, kind: type[Base], records: Sequence[Mapping[str, object]]) -> None:
+    """Insert many rows into the bare table: by COPY on PostgreSQL, at a third of the time of an INSERT."""
+    table = cast(SqlTable, kind.__table__)
+    if session.get_bind().dialect.name != "postgresql":
+        session.execute(insert(table), records)
+        return
+    names = list(records[0])
+    as_json = {column.name for column in table.columns if isinstance(column.type, JSON)}
+    copied = SQL("COPY {} ({}) FROM STDIN").format(Identifier(table.name), SQL(", ").join(map(Identifier, names)))
+    cursor: Any = session.connection().connection.cursor()
+    with _as_sqlalchemy_errors(), cursor, cursor.copy(copied) as copy:
+        for record in records:
+            copy.write_row([dumps(record[name]) if name in as_json else record[name] for name in names])
+
+
+@contextmanager
+def _as_sqlalchemy_errors() -> Iterator[None]:
+    """Let callers see one family of errors, whichever way the rows go."""
+    try:
+        yield
+    except psycopg.IntegrityError as error:
+        raise IntegrityError(None, None, error) from error
+    except psycopg.Error as error:
+        raise DBAPIError(None, None, error) from error
 
 
 def _columns(table: str) -> list[str]:

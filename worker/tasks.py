@@ -1,14 +1,17 @@
 """The Celery side of a worker: one thin task, and the process that runs the pool (`python -m worker.tasks`)."""
 
 import os
+from functools import cache
 from uuid import UUID
 
 from celery import Celery
+from sqlalchemy.orm import Session, sessionmaker
 
+from app.db import make_engine, session_factory
 from app.processes import end_with_parent
 from app.queue import CHUNK_QUEUE_NAME, QUEUE_NAME, TASK_NAME, celery_application
 from app.settings import Settings, get_settings
-from worker.execute import run_job
+from worker.execute import execute
 
 OWNER = "GALLOPING_WORKER_OWNER"
 
@@ -18,9 +21,14 @@ def worker_application(settings: Settings, owner: str) -> Celery:
     application = celery_application(settings)
     application.conf.update(_worker_options(settings))
 
+    @cache
+    def sessions() -> sessionmaker[Session]:
+        # Made at the first job of each process, never before the fork: connections must not be shared.
+        return session_factory(make_engine(settings))
+
     @application.task(name=TASK_NAME)
     def run(job_id: str) -> None:
-        run_job(settings, UUID(job_id), owner)
+        execute(sessions(), settings, UUID(job_id), owner)
 
     return application
 

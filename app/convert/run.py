@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from typing import Any, Literal
 
 from app import schemas
@@ -130,16 +131,24 @@ def failed_point(error: Exception, number: int, values: dict[str, Any]) -> Point
 
 
 def _plain(row: Any) -> dict[str, Any]:
-    return {field.name: _value(getattr(row, field.name)) for field in dataclasses.fields(row)}
+    return {name: _value(getattr(row, name)) for name in _names(row.__class__)}
+
+
+@cache
+def _names(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
 
 
 def _value(value: Any) -> Any:
     """Return a JSON value: the word of an enum, None for what is not finite, plain Python for numpy's scalars."""
+    kind = type(value)
+    if kind is float:  # the usual case comes first, since a batch has a hundred thousand of them a second
+        return value if math.isfinite(value) else None
+    if value is None or kind is str or kind is int or kind is bool:
+        return value
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, tuple):
         return [_value(item) for item in value]
     plain = value.item() if hasattr(value, "item") else value
-    if isinstance(plain, float) and not math.isfinite(plain):
-        return None
-    return plain
+    return None if isinstance(plain, float) and not math.isfinite(plain) else plain

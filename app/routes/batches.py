@@ -1,6 +1,6 @@
 """Batches: many lines sent at once, looked at, listed, resubmitted, cancelled."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Annotated, Any
 from urllib.parse import urlencode
@@ -17,10 +17,10 @@ from app.errors import ProblemError, ProblemKind, invalid_document, query_fault
 from app.faults import BadInput, parse_json
 from app.intake import BodyTooLarge, Incoming, Receipt
 from app.jobs import CancelOutcome
-from app.queue import dispatch_chunks
+from app.queue import Sender
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import batch_address, batch_document, batch_summary, find_batch
-from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, Readers, SettingsOf, Writers
+from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, Readers, SenderOf, SettingsOf, Writers
 from app.schemas.batch import BatchDocument, BatchPage
 from app.settings import Settings, cursor_key
 
@@ -65,8 +65,8 @@ def _limiter(request: Request) -> CapacityLimiter:
 )
 async def submit(
     request: Request,
-    settings: SettingsOf,
     writers: Writers,
+    sender: SenderOf,
     limiter: Annotated[CapacityLimiter, Depends(_limiter)],
     atomic: Annotated[bool, Query(description="Take all lines or, if any is at fault, none")] = False,
     analysis: Annotated[str | None, Query(max_length=20_000, description="Analysis of a CSV batch, as JSON")] = None,
@@ -75,9 +75,10 @@ async def submit(
 
     Each line may hold a `reference` beside its own fields; it is given back with the results, as is `asset_id`.
     """
+    settings: Settings = request.app.state.settings
     read = partial(_incoming, request, settings, analysis)
     receipt = await to_thread.run_sync(partial(_receive, writers, settings, read, atomic), limiter=limiter)
-    return await to_thread.run_sync(partial(_accepted, writers, settings, receipt.batch_id, receipt.chunk_ids))
+    return await to_thread.run_sync(partial(_accepted, writers, sender, receipt.batch_id, receipt.chunk_ids))
 
 
 @router.get(
@@ -126,13 +127,13 @@ def list_batches(
 @router.post(
     "/{batch_id}/resubmit", status_code=202, response_model=BatchDocument, responses={202: _ACCEPTED, **_COMMON}
 )
-def resubmit(batch_id: UUID, settings: SettingsOf, writers: Writers) -> JSONResponse:
+def resubmit(batch_id: UUID, settings: SettingsOf, writers: Writers, sender: SenderOf) -> JSONResponse:
     """Run the lines that failed once more, under their numbers; if none has failed nothing changes."""
     with writers.begin() as session:
         batch = find_batch(session, batch_id)
         size = intake.lines_a_chunk(settings, convert.read_analysis(batch.analysis))
         chunk_ids = batches.resubmit(session, batch_id, size)
-    return _accepted(writers, settings, batch_id, chunk_ids)
+    return _accepted(writers, sender, batch_id, chunk_ids)
 
 
 @router.delete(
@@ -223,9 +224,9 @@ def _pieces(request: Request) -> Iterator[bytes]:
 
 
 def _accepted(
-    writers: sessionmaker[Session], settings: Settings, batch_id: UUID, chunk_ids: list[UUID] | tuple[UUID, ...]
+    writers: sessionmaker[Session], sender: Sender, batch_id: UUID, chunk_ids: Sequence[UUID]
 ) -> JSONResponse:
-    dispatch_chunks(settings, chunk_ids)
+    sender.send(chunk_ids, chunk=True)
     with writers() as session:
         batch = find_batch(session, batch_id)
         document = batch_document(session, batch, batches.counts(session, [batch_id])[batch_id])

@@ -8,6 +8,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs
 from app.errors import ProblemError, ProblemKind
+from app.queue import Sender
 from app.settings import Settings
 from app.tables import Job, JobStatus
 
@@ -34,9 +35,15 @@ def _writers(request: Request) -> sessionmaker[Session]:
     return factory
 
 
+def _sender(request: Request) -> Sender:
+    sender: Sender = request.app.state.sender
+    return sender
+
+
 SettingsOf = Annotated[Settings, Depends(_settings)]
 Readers = Annotated[sessionmaker[Session], Depends(_readers)]
 Writers = Annotated[sessionmaker[Session], Depends(_writers)]
+SenderOf = Annotated[Sender, Depends(_sender)]
 
 
 def find_job(session: Session, job_id: UUID) -> Job:

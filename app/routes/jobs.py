@@ -1,23 +1,25 @@
 """Jobs: submitted, looked at, listed, cancelled."""
 
+from datetime import UTC, datetime
 from typing import Annotated
 from urllib.parse import urlencode
 from uuid import UUID
 
 from fastapi import APIRouter, Body, Query, Request, Response
 from fastapi.responses import JSONResponse
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
 from app import convert, jobs, paging, schemas
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
 from app.jobs import CancelOutcome, JobFilters
-from app.queue import dispatch
 from app.routes import documentation
 from app.routes.common import (
     ENDED,
     PREFIX,
     RETRY_SECONDS,
     Readers,
+    SenderOf,
     SettingsOf,
     Writers,
     find_job,
@@ -35,6 +37,23 @@ _MOST_ON_PAGE = 500
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
 
 
+def _in_utc(moment: datetime) -> datetime:
+    """Return a moment in UTC.
+
+    Raises
+    ------
+    PydanticCustomError
+        If it lies outside the years that a date has there.
+    """
+    try:
+        return moment.astimezone(UTC)
+    except OverflowError as error:
+        raise PydanticCustomError("moment", "must lie in the years 1 to 9999 of UTC") from error
+
+
+Moment = Annotated[AwareDatetime, AfterValidator(_in_utc)]
+
+
 class ListQuery(BaseModel):
     """Which jobs a list holds, and where the page begins."""
 
@@ -44,7 +63,7 @@ class ListQuery(BaseModel):
     asset_id: Label | None = Field(default=None, description="Only jobs of this asset")
     tag: list[Label] = Field(default=[], max_length=10, description="Only jobs with these tags, each as key:value")
     batch_id: UUID | None = Field(default=None, description="The chunks of this batch, which no other list holds")
-    created_after: AwareDatetime | None = Field(default=None, description="Only jobs made later, with a time zone")
+    created_after: Moment | None = Field(default=None, description="Only jobs made later, with a time zone")
     limit: int = Field(default=50, ge=1, le=_MOST_ON_PAGE, description="Jobs on a page")
     cursor: str | None = Field(default=None, max_length=200, description="Place that a `next` address holds")
 
@@ -84,8 +103,8 @@ class ListQuery(BaseModel):
 )
 def submit(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
-    settings: SettingsOf,
     writers: Writers,
+    sender: SenderOf,
 ) -> JSONResponse:
     """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already."""
     faults = convert.request_faults(document)
@@ -97,7 +116,7 @@ def submit(
         job = jobs.create(session, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
         session.refresh(job, ["tags"])
         status = job_document(job)
-    dispatch(settings, job.id)
+    sender.send([job.id])
     return JSONResponse(status, 202, headers={"Location": job_address(job.id), "Retry-After": RETRY_SECONDS})
 
 
