@@ -1,5 +1,6 @@
 """Faults of a request: where in the document, a code and a sentence. All of them are gathered before any is told."""
 
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,6 +9,7 @@ from pydantic_core import from_json
 
 MOST_FAULTS = 1000
 _MOST_CHARACTERS = 200
+_MOST_SHOWN = 80
 
 # A tagged union puts the name of its branch into a location; no field has one of these names.
 _UNION_BRANCHES = frozenset({"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range"})
@@ -55,17 +57,38 @@ def json_pointer(tokens: Iterable[object]) -> str:
     return "".join("/" + text.replace("~", "~0").replace("/", "~1") for text in texts)
 
 
-def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0) -> list[Fault]:
-    """Turn pydantic's errors into faults; `skip` leaves out that many tokens at the beginning of each location."""
-    return [_fault(error, error["loc"][skip:]) for error in errors]
+def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0, root: str = "") -> list[Fault]:
+    """Turn pydantic's errors into faults that say what was found, if the errors hold it.
+
+    Parameters
+    ----------
+    errors : iterable of mappings
+    skip : int
+        So many tokens at the beginning of each location are left out.
+    root : str
+        What the pointers begin with.
+    """
+    return [_fault(error, error["loc"][skip:], root) for error in errors]
 
 
-def _fault(error: Mapping[str, Any], location: Sequence[int | str]) -> Fault:
+def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str) -> Fault:
     tokens = [token for token in location if token not in _UNION_BRANCHES]
     if error["type"] == "union_tag_not_found":
         tokens.append("type")
     code, detail = _wording(error)
-    return Fault(json_pointer(tokens), code, detail[: 2 * _MOST_CHARACTERS])
+    return Fault(root + json_pointer(tokens), code, detail[: 2 * _MOST_CHARACTERS] + _found(error))
+
+
+def _found(error: Mapping[str, Any]) -> str:
+    """Return the value at fault as JSON, cut; nothing for what has parts, or where the name is at fault."""
+    value = error.get("ctx", {}).get("tag") if error["type"] == "union_tag_invalid" else error.get("input", ...)
+    if error["type"] in {"extra_forbidden", "missing"} or not isinstance(value, str | int | float | None):
+        return ""
+    if isinstance(value, str):
+        value = value[:_MOST_SHOWN]
+    if isinstance(value, int) and abs(value) >= 10**_MOST_SHOWN:
+        return f", got a whole number of more than {_MOST_SHOWN} digits"
+    return f", got {json.dumps(value, ensure_ascii=False)[:_MOST_SHOWN]}"
 
 
 def _wording(error: Mapping[str, Any]) -> tuple[str, str]:

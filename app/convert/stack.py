@@ -47,8 +47,7 @@ def read_analysis(document: object) -> schemas.Analysis:
     try:
         analysis = schemas.Analysis.model_validate(document)
     except ValidationError as error:
-        found = faults_of(error.errors(include_url=False, include_input=False))
-        raise BadInput([Fault(_ANALYSIS + fault.pointer, fault.code, fault.detail) for fault in found]) from error
+        raise BadInput(faults_of(error.errors(include_url=False), root=_ANALYSIS)) from error
     _, _, wrong = gather(_NO_PARTS, analysis)
     if wrong:
         raise BadInput([Fault(_ANALYSIS, "inconsistent", str(fault)) for fault in wrong])
@@ -66,8 +65,7 @@ def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
     try:
         line = schemas.Line.model_validate(document)
     except ValidationError as error:
-        found = faults_of(error.errors(include_url=False, include_input=False))
-        rooted = [Fault(_LINE + fault.pointer, fault.code, fault.detail) for fault in found]
+        rooted = faults_of(error.errors(include_url=False), root=_LINE)
         asked = analysis.model_dump(mode="json", by_alias=True)
         raise BadInput(_unrooted(with_further_faults({"line": document, "analysis": asked}, rooted))) from error
     faults = request_faults(schemas.JobRequest.model_construct(line=line, analysis=analysis, study=None))

@@ -1,6 +1,12 @@
-import pytest
+import math
+from typing import Any
 
-from app.faults import BadInput, json_pointer, parse_json
+import pytest
+from pydantic import ValidationError
+
+from app import schemas
+from app.faults import BadInput, faults_of, json_pointer, parse_json
+from tests.app.lines import FULL_LINE, changed
 
 
 @pytest.mark.parametrize(
@@ -34,3 +40,35 @@ def test_pointers_escape_and_cut_what_strangers_wrote() -> None:
     assert json_pointer(["line", "a/b~c", 3]) == "/line/a~1b~0c/3"
     assert json_pointer([]) == ""
     assert json_pointer(["x" * 10_000]) == "/" + "x" * 200
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "end"),
+    [
+        ("span.length_m", -1.5, "greater than or equal to 1, got -1.5"),
+        ("span.length_m", "126", 'should be a valid number, got "126"'),
+        ("span.length_m", math.nan, "should be a finite number, got NaN"),
+        ("span.length_m", True, "should be a valid number, got true"),
+        ("span.length_m", None, "should be a valid number, got null"),
+        ("damping.model", "ö" * 100, ', got "' + "ö" * 79),
+        ("devices.0.type", "anchor", 'type must be spacer, detuning_pendulum or airflow_spoiler, got "anchor"'),
+        ("conductor.colour", "red", "unknown field"),
+        ("conductor", [1.0], "must be an object"),
+        ("conductor", {}, "field required"),
+    ],
+)
+def test_a_fault_says_what_was_found(path: str, value: Any, end: str) -> None:
+    assert details(changed(path, value))[0].endswith(end)
+
+
+def test_a_number_too_long_to_be_written_is_not_written() -> None:
+    span = {**FULL_LINE["span"], "elements": 10**4999}
+    assert details({**FULL_LINE, "span": span}) == [
+        "input should be less than or equal to 100, got a whole number of more than 80 digits"
+    ]
+
+
+def details(line: dict[str, Any]) -> list[str]:
+    with pytest.raises(ValidationError) as caught:
+        schemas.Line.model_validate(line)
+    return [fault.detail for fault in faults_of(caught.value.errors(include_url=False), root="/line")]
