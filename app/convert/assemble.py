@@ -7,6 +7,7 @@ others; the neutral part itself causes no fault.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TypedDict, TypeVar
 
 from app import schemas
@@ -116,9 +117,21 @@ def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line
         gathered.faults.extend(_slack_faults(line))
     analysis = gathered.make("analysis", asked, parts.analysis, _NEUTRAL_ANALYSIS)
     comparable = line or _apart_from_positions(values)
-    if comparable is not None:
-        gathered.attempt("", lambda: spec.check_compatible(comparable, analysis))
+    if comparable is not None and asked is not None:
+        _compare(gathered, comparable, asked)
     return line, analysis, gathered.faults
+
+
+def _compare(gathered: Gathered, line: spec.Line, asked: schemas.Analysis) -> None:
+    """Ask of a line each choice of an analysis by itself, so that choices that exclude each other hide nothing."""
+    loops, more_loops = tuple(asked.loops), tuple(asked.finite_element_loops)
+    choices = (
+        replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops),
+        replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(asked.closure)),
+        replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(asked.aerodynamic_model)),
+    )
+    for choice in choices:
+        gathered.attempt("", partial(spec.check_compatible, line, choice))
 
 
 def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:

@@ -1,15 +1,20 @@
 """Studies: fields of the line by dotted JSON path, checked beforehand, set for every point."""
 
+import copy
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from app import schemas
 from app.convert.assemble import SoundParts, gather
+from app.convert.pointers import to_pointer
+from app.convert.sound import PARTS, SoundAxis, sound_parts
 from app.faults import Fault, faults_of, json_pointer
+from app.schemas.analysis import STUDY_POINTS_LIMIT
 
 _UNVARIABLE = frozenset({"name", "asset_id", "tags"})
 
@@ -45,52 +50,109 @@ def varied(line: schemas.Line, values: dict[str, Any]) -> schemas.Line:
     return schemas.Line.model_validate(document)
 
 
-def faults(request: schemas.JobRequest) -> Iterator[Fault]:
-    """Yield what is wrong with the axes of a request whose line is sound, value by value, then point by point.
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """A line document that a study varies: sound parts with their defaults, others as they came, and its own faults.
+
+    `unsound` holds the paths of parts and devices that fail their schema; `known` the pointers of what is wrong without
+    any study, which no value is to be blamed for.
+    """
+
+    document: dict[str, Any]
+    unsound: frozenset[tuple[str, ...]]
+    asked: schemas.Analysis | None
+    known: frozenset[str]
+
+    @classmethod
+    def of(cls, line: Mapping[str, Any], parts: SoundParts, asked: schemas.Analysis | None) -> "Ground":
+        """Take a line document, its sound parts, and what is asked as far as that is sound."""
+        document: dict[str, Any] = {"devices": []}
+        unsound: set[tuple[str, ...]] = set()
+        for name in PARTS:
+            part = getattr(parts, name)
+            document[name] = line.get(name) if part is None else _dumped(part)
+            unsound |= {(name,)} if part is None else set()
+        for number, device in enumerate(parts.devices):
+            document["devices"].append(line["devices"][number] if device is None else _dumped(device))
+            unsound |= {("devices", str(number))} if device is None else set()
+        if not isinstance(line.get("devices", []), list):
+            unsound.add(("devices",))
+        known = {fault.pointer for fault in _document_faults(document, asked)}
+        return cls(document, frozenset(unsound), asked, frozenset(known))
+
+    def is_open(self, path: Sequence[str]) -> bool:
+        """Tell whether a path leads into a part that is not sound, where its defaults are unknown."""
+        return tuple(path[:1]) in self.unsound or tuple(path[:2]) in self.unsound
+
+
+def faults(ground: Ground, axes: Sequence[SoundAxis]) -> Iterator[Fault]:
+    """Yield what is wrong with the axes of a study, value by value, then point by point, beside the line's own faults.
 
     Every combination is tried only if each value is sound by itself.
     """
-    if request.study is None:
+    found = False
+    for axis in axes:
+        for fault in _axis_faults(ground, axis):
+            found = True
+            yield fault
+    if found or len(axes) < 2 or math.prod(len(axis.values) for axis in axes) > STUDY_POINTS_LIMIT:
         return
-    found = list(_axes_faults(request))
-    yield from found
-    if not found and len(request.study.axes) > 1:
-        for values in points(request.study):
-            yield from _point_faults(request, values, "/study/axes")
+    for combination in itertools.product(*(axis.values for axis in axes)):
+        values = {axis.parameter: value for axis, (_, value) in zip(axes, combination, strict=True)}
+        yield from _point_faults(ground, values, "/study/axes")
 
 
-def _axes_faults(request: schemas.JobRequest) -> Iterator[Fault]:
-    axes = request.study.axes if request.study else []
-    document = request.line.model_dump(mode="json", by_alias=True)
-    for i, axis in enumerate(axes):
-        reason = _path_fault(document, axis.parameter.split("."))
-        if reason:
-            yield Fault(json_pointer(["study", "axes", i, "parameter"]), "unknown_parameter", reason)
-            continue
-        for j, value in enumerate(axis.values):
-            yield from _point_faults(request, {axis.parameter: value}, json_pointer(["study", "axes", i, "values", j]))
+def _axis_faults(ground: Ground, axis: SoundAxis) -> Iterator[Fault]:
+    path = axis.parameter.split(".")
+    reason = _path_fault(ground, path)
+    if reason:
+        yield Fault(json_pointer(["study", "axes", axis.number, "parameter"]), "unknown_parameter", reason)
+        return
+    for j, value in axis.values:
+        pointer = json_pointer(["study", "axes", axis.number, "values", j])
+        yield from _point_faults(ground, {axis.parameter: value}, pointer)
 
 
-def _point_faults(request: schemas.JobRequest, values: dict[str, Any], pointer: str) -> Iterator[Fault]:
+def _point_faults(ground: Ground, values: dict[str, Any], pointer: str) -> Iterator[Fault]:
+    """Yield the faults that the line has with these values only."""
     said = ", ".join(f"{name} = {value}" for name, value in values.items())
+    own = {json_pointer(["line", *name.split(".")]) for name in values}
+    document = copy.deepcopy(ground.document)
     try:
-        line = varied(request.line, values)
-    except ValidationError as error:
-        for fault in faults_of(error.errors(include_url=False, include_input=False)):
+        for name, value in values.items():
+            _set(document, name.split("."), value)
+    except LookupError:
+        return  # the field is absent from a part that is at fault already
+    for fault in _document_faults(document, ground.asked):
+        if fault.pointer in own or fault.pointer not in ground.known:
             yield Fault(pointer, fault.code, f"with {said}: {fault}")
-        return
-    _, _, found = gather(SoundParts.of(line), request.analysis)
-    for wrong in found:
-        yield Fault(pointer, "inconsistent", f"with {said}: {wrong.field} {wrong.rule}")
 
 
-def _path_fault(document: Any, path: Sequence[str]) -> str | None:
-    """Say why a path leads to no number or word of a line document; None if it does."""
+def _document_faults(document: Mapping[str, Any], asked: schemas.Analysis | None) -> list[Fault]:
+    """Return the faults of a line document, first those of its schema."""
+    wrong: list[Fault] = []
+    try:
+        parts = SoundParts.of(schemas.Line.model_validate(document))
+    except ValidationError as error:
+        wrong = faults_of(error.errors(include_url=False, include_input=False), root="/line")
+        parts = sound_parts(document)
+    _, _, found = gather(parts, asked)
+    return [*wrong, *(to_pointer(fault, parts, asked) for fault in found)]
+
+
+def _dumped(part: BaseModel) -> Any:
+    return part.model_dump(mode="json", by_alias=True)
+
+
+def _path_fault(ground: Ground, path: Sequence[str]) -> str | None:
+    """Say why a path leads to no number or word of a line document; None if it does, or if nobody can tell yet."""
     if path[0] in _UNVARIABLE or path[-1] == "type":
         return "must lead to a number or a word that the analysis depends on"
     try:
-        value = _at(document, path)
+        value = _at(ground.document, path)
     except LookupError:
+        if ground.is_open(path):
+            return None
         return "leads to no field of this line; list items are named by their number from 0"
     if isinstance(value, bool | dict | list):
         return "must lead to a single number or word"

@@ -80,7 +80,6 @@ def test_one_fault_in_a_line_is_named_by_its_pointer(path: str, value: Any, poin
         ({"wind_speeds_m_per_s": 4.0}, "/analysis/wind_speeds_m_per_s"),
         ({"wind_speeds_m_per_s": {"start": 6.0, "stop": 4.0, "count": 3}}, "/analysis/wind_speeds_m_per_s"),
         ({"wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 10**9}}, "/analysis/wind_speeds_m_per_s/count"),
-        ({"closure": "published", "aerodynamic_model": "relative_wind"}, "/analysis/closure"),
         ({"closure": "published"}, "/analysis/closure"),
         ({"aerodynamic_model": "relative_wind"}, "/line/devices/2/aerodynamics_at_rest"),
         ({"loop": [1]}, "/analysis/loop"),
@@ -145,6 +144,91 @@ def test_a_study_that_fits_is_taken() -> None:
         {"parameter": "damping.model", "values": ["constant_ratio", "constant_coefficient"]},
     ]
     assert convert.check({"line": FULL_LINE, "study": {"axes": axes}}) == []
+
+
+def studied(line: dict[str, Any], *axes: tuple[str, list[Any]]) -> dict[str, Any]:
+    return {"line": line, "study": {"axes": [{"parameter": name, "values": values} for name, values in axes]}}
+
+
+WRONG_AXES = (("span.lenght_m", [1.0]), ("span.length_m", [126.0, -1]))
+WRONG_PLACES = ["/study/axes/0/parameter", "/study/axes/1/values/1"]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "pointer"),
+    [
+        ("colour", "red", "/line/colour"),
+        ("conductor.colour", "red", "/line/conductor/colour"),
+        ("span.colour/~", "red", "/line/span/colour~1~0"),
+        ("devices.1.colour", "red", "/line/devices/1/colour"),
+        ("devices.0.position_m", 300.0, "/line/devices/0/position_m"),
+        ("conductor.diameter_m", -1.0, "/line/conductor/diameter_m"),
+        ("ice.segments.0.to_m", 300.0, "/line/ice/segments/0/to_m"),
+    ],
+)
+def test_a_fault_of_the_line_hides_no_fault_of_the_study(path: str, value: Any, pointer: str) -> None:
+    assert sorted(pointers(studied(changed(path, value), *WRONG_AXES))) == sorted([pointer, *WRONG_PLACES])
+
+
+def test_a_fault_of_one_axis_hides_none_of_another() -> None:
+    document = studied(FULL_LINE, ("span.lenght_m", [math.nan]), ("span.length_m", [math.nan, -1]))
+    wanted = ["/study/axes/0/parameter", "/study/axes/0/values/0", "/study/axes/1/values/0", "/study/axes/1/values/1"]
+    assert sorted(pointers(document)) == wanted
+
+
+def test_a_value_is_not_blamed_for_what_is_wrong_with_the_line_already() -> None:
+    line = changed("conductor.diameter_m", -1.0, changed("devices.0.position_m", 300.0))
+    own = ["/line/conductor/diameter_m", "/line/devices/0/position_m"]
+    assert sorted(pointers(studied(line, ("span.length_m", [125.88, 126.0])))) == own
+    assert sorted(pointers(studied(line, ("devices.0.position_m", [20.0, 299.0])))) == [*own, "/study/axes/0/values/1"]
+    assert sorted(pointers(studied(line, ("conductor.diameter_m", [0.03, -2.0])))) == [*own, "/study/axes/0/values/1"]
+
+
+def test_a_path_into_a_part_at_fault_is_left_open() -> None:
+    line = changed("supports.left", 3, changed("devices.1", {"type": "anchor"}))
+    axes = (("supports.right.insulator_weight_n", [1.0]), ("devices.1.mass_kg", [1.0]))
+    assert sorted(pointers(studied(line, *axes))) == ["/line/devices/1", "/line/supports/left"]
+
+
+def test_an_absent_part_can_be_varied_though_the_line_is_at_fault() -> None:
+    line = {name: part for name, part in FULL_LINE.items() if name != "wind"}
+    document = studied({**line, "colour": "red"}, ("wind.air_density_kg_per_m3", [1.2, -1.0]))
+    assert sorted(pointers(document)) == ["/line/colour", "/study/axes/0/values/1"]
+
+
+@pytest.mark.parametrize(
+    "analysis",
+    [
+        {"closure": "published", "aerodynamic_model": "relative_wind"},
+        {"aerodynamic_model": "relative_wind", "loop": [1]},
+        {"aerodynamic_model": "relative_wind", "harmonics": 99, "loops": [1, 1]},
+    ],
+)
+def test_a_fault_of_the_analysis_hides_none_that_it_has_with_the_line(analysis: dict[str, Any]) -> None:
+    line = {**FULL_LINE, "ice": {**FULL_LINE["ice"], "aerodynamics_at_rest": None}, "wind": {}}
+    found = pointers({"line": line, "analysis": analysis})
+    assert {"/line/ice/aerodynamics_at_rest", "/line/devices/2/aerodynamics_at_rest"} < set(found)
+    assert len(found) == len(set(found))
+
+
+def test_choices_that_exclude_each_other_are_both_held_against_the_line() -> None:
+    faults = convert.check(
+        {"line": FULL_LINE, "analysis": {"closure": "published", "aerodynamic_model": "relative_wind"}}
+    )
+    assert [fault.pointer for fault in faults] == [
+        "/analysis/closure",
+        "/analysis/closure",
+        "/line/devices/2/aerodynamics_at_rest",
+    ]
+    assert "relative wind" in faults[0].detail
+    assert "wind profile" in faults[1].detail
+
+
+def test_loops_at_fault_are_no_excuse_for_others() -> None:
+    line = changed("span.elements", 2)
+    assert pointers({"line": line, "analysis": {"loops": [0], "finite_element_loops": []}}) == ["/analysis/loops/0"]
+    analysis = {"loops": [0], "finite_element_loops": [1, 3]}
+    assert pointers({"line": line, "analysis": analysis}) == ["/analysis/loops/0", "/analysis/loops"]
 
 
 def test_points_that_only_together_do_not_fit_are_named() -> None:
