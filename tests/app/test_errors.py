@@ -179,6 +179,8 @@ def test_a_refused_document_makes_no_job(own_client: httpx.Client) -> None:
         ("status=done", "status"),
         ("created_after=yesterday", "created_after"),
         ("created_after=2026-01-01T00:00:00", "created_after"),
+        ("created_after=0001-01-01T00:00:00%2B23:59", "created_after"),
+        ("created_after=9999-12-31T23:59:59-23:59", "created_after"),
         ("tag=region", "tag"),
         ("tag=region:", "tag"),
         ("tag=a:b&tag=a:c", "tag"),
