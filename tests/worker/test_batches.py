@@ -41,7 +41,7 @@ def counts(sessions: sessionmaker[Session], batch_id: UUID) -> batches.Counts:
 def test_killed_worker_loses_and_doubles_nothing(deployment: Settings, deployed: sessionmaker[Session]) -> None:
     with running_worker(deployment) as worker:
         batch_id = submit(deployed, deployment)
-        wait_until(lambda: 0 < counts(deployed, batch_id).successful < LINES, 60.0, "the first lines")
+        wait_until(lambda: _in_the_middle(counts(deployed, batch_id)), 60.0, "the middle of the batch")
         kill_group(worker)
     found = counts(deployed, batch_id)
     assert found.accepted + found.running > 0
@@ -56,7 +56,11 @@ def test_killed_worker_loses_and_doubles_nothing(deployment: Settings, deployed:
     assert [(line["number"], line["reference"]) for line in whole] == [(n, f"r{n}") for n in range(1, LINES + 1)]
     assert {line["status"] for line in whole} == {"successful"}
     assert (stored, cycles) == (LINES, sum(len(line["limit_cycles"]) for line in whole))
-    assert max(attempts) == 2
+    assert max(attempts) == (2 if found.running else 1)  # the kill may have come between two chunks
+
+
+def _in_the_middle(found: batches.Counts) -> bool:
+    return found.successful > 0 and found.running > 0
 
 
 def test_running_batch_stops_when_cancelled(deployment: Settings, deployed: sessionmaker[Session]) -> None:
