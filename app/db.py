@@ -13,6 +13,7 @@ from app.settings import Settings
 from app.tables import UtcDateTime
 
 _BUSY_SECONDS = 30.0
+_THREADS = 40
 
 
 def make_engine(settings: Settings) -> Engine:
@@ -29,7 +30,9 @@ def make_engine(settings: Settings) -> Engine:
     """
     url = make_url(settings.database_url)
     if url.get_backend_name() != "sqlite":
-        return create_engine(url, pool_pre_ping=True, connect_args={"connect_timeout": 10})
+        # Enough for every thread of the API: what overflows a pool is closed after each use and opened anew.
+        pool = {"pool_size": _THREADS, "max_overflow": 0}
+        return create_engine(url, pool_pre_ping=True, connect_args={"connect_timeout": 10}, **pool)
     if url.database:
         Path(url.database).parent.mkdir(parents=True, exist_ok=True)
     engine = create_engine(url, connect_args={"timeout": _BUSY_SECONDS})
