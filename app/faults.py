@@ -1,8 +1,9 @@
 """Faults of a request: where in the document, a code and a sentence. All of them are gathered before any is told."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 from pydantic_core import from_json
@@ -43,12 +44,46 @@ def parse_json(raw: bytes) -> Any:
     Raises
     ------
     BadInput
-        If it is no JSON, is not UTF-8, or is nested too deeply.
+        If it is no JSON, is not UTF-8, is nested too deeply, or an object holds a name twice.
     """
     try:
-        return from_json(raw)
+        value = from_json(raw)
+        repeated = list(islice(_repeated_names(raw.decode()), MOST_FAULTS))
     except ValueError as error:
         raise BadInput([Fault("", "json_invalid", f"not valid JSON: {error}")]) from error
+    if repeated:
+        raise BadInput(repeated)
+    return value
+
+
+@dataclass(frozen=True, slots=True)
+class _Members:
+    """An object of a JSON text as it stands there."""
+
+    pairs: Sequence[tuple[str, Any]]
+
+
+def _repeated_names(text: str) -> Iterator[Fault]:
+    """Yield a fault for every name that an object has more than once: nobody can tell which value was meant."""
+    unique = True
+
+    def note(pairs: Sequence[tuple[str, Any]]) -> None:
+        nonlocal unique
+        unique = unique and len(dict(pairs)) == len(pairs)
+
+    json.loads(text, object_pairs_hook=note, parse_int=str, parse_float=str)
+    if not unique:
+        yield from _repetitions(json.loads(text, object_pairs_hook=_Members, parse_int=str, parse_float=str), [])
+
+
+def _repetitions(node: Any, path: Sequence[object]) -> Iterator[Fault]:
+    pairs = node.pairs if isinstance(node, _Members) else enumerate(node) if isinstance(node, list) else ()
+    seen: set[object] = set()
+    for name, value in pairs:
+        if name in seen:
+            yield Fault(json_pointer([*path, name]), "repeated_name", "stands more than once in its object")
+        seen.add(name)
+        yield from _repetitions(value, [*path, name])
 
 
 def json_pointer(tokens: Iterable[object]) -> str:

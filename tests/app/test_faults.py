@@ -36,6 +36,14 @@ def test_json_is_taken_with_its_numbers_as_they_are() -> None:
     assert parse_json(b"NaN") != parse_json(b"NaN")
 
 
+def test_names_that_stand_twice_are_named_wherever_they_are() -> None:
+    raw = b'{"a": [{"b": {"c/d": 1, "e": 1e400, "c/d": NaN}}, {"b": 1}], "a": ' + b"9" * 1000 + b', "\\u0061": 0}'
+    with pytest.raises(BadInput) as caught:
+        parse_json(raw)
+    assert [fault.pointer for fault in caught.value.faults] == ["/a/0/b/c~1d", "/a", "/a"]
+    assert {fault.code for fault in caught.value.faults} == {"repeated_name"}
+
+
 def test_pointers_escape_and_cut_what_strangers_wrote() -> None:
     assert json_pointer(["line", "a/b~c", 3]) == "/line/a~1b~0c/3"
     assert json_pointer([]) == ""
