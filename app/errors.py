@@ -11,6 +11,7 @@ from fastapi.responses import JSONResponse
 from fastapi.routing import APIRoute
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
 from app import convert
 from app.bodies import BodyLimit, Limit
@@ -49,6 +50,7 @@ class ProblemKind(Enum):
         self.description = description
 
 
+_METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 _BY_STATUS = {kind.status: kind for kind in ProblemKind}
 
 
@@ -156,7 +158,19 @@ async def _on_problem(request: Request, error: Exception) -> Response:
 async def _on_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     kind = _BY_STATUS.get(error.status_code, ProblemKind.INVALID_PARAMETER)
-    return _respond(request, ProblemError(kind, kind.description, headers=error.headers))
+    headers = {"Allow": _methods(request)} if kind is ProblemKind.METHOD_NOT_ALLOWED else error.headers
+    return _respond(request, ProblemError(kind, kind.description, headers=headers))
+
+
+def _methods(request: Request) -> str:
+    """Return the methods that an address takes; the router itself tells those of the first route there only."""
+
+    def takes(method: str) -> bool:
+        asked = {**request.scope, "method": method}
+        return any(route.matches(asked)[0] is Match.FULL for route in request.app.routes)
+
+    methods = [method for method in _METHODS if takes(method)]
+    return ", ".join(sorted({*methods, "HEAD"} if "GET" in methods else methods))
 
 
 async def _on_validation(request: Request, error: Exception) -> Response:

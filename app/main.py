@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from app import errors
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
+from app.head import HeadAsGet
 from app.queue import Sender, celery_application
 from app.routes import batch_results, batches, documentation, health, jobs, results
 from app.settings import Settings, get_settings
@@ -60,6 +61,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.writers = session_factory(database)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
+    app.add_middleware(HeadAsGet)
     for module in (jobs, results, batches, batch_results, health):
         app.include_router(module.router)
     return app
