@@ -2,6 +2,7 @@
 # ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
 
 import json
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -46,6 +47,9 @@ def main() -> None:
 @app.command()
 def analyse(line: LineFile, analysis: AnalysisFile = None, study: StudyFile = None, output: OutputFile = None) -> None:
     """Analyse a line in this process, without service or database."""
+    from app.processes import ONE_BLAS_THREAD
+
+    os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, which reads it once
     from app import convert
     from app.faults import BadInput
 
@@ -76,7 +80,9 @@ def serve(
     """Run the service with its embedded database, broker and worker; SIGTERM ends it cleanly."""
     from app.serve import serve as run
 
-    raise typer.Exit(run(_settings(data_dir), host, port))
+    with _operator_told():
+        code = run(_settings(data_dir), host, port)
+    raise typer.Exit(code)
 
 
 @app.command()
@@ -92,7 +98,8 @@ def migrate(data_dir: DataDirectory = None) -> None:
     """Bring the database of the settings to the newest schema."""
     from app.serve import migrate as run
 
-    raise typer.Exit(run(_settings(data_dir)))
+    with _operator_told():
+        run(_settings(data_dir))
 
 
 @app.command()
@@ -161,7 +168,7 @@ def _read_json(path: Path) -> Any:
     except OSError as error:
         _end(f"{path} cannot be read: {error.strerror or error}", _BAD_INPUT)
     except BadInput as error:
-        _end(f"{path}: {error.faults[0].detail}", _BAD_INPUT)
+        _end("\n".join(f"{path}: {fault.detail if not fault.pointer else fault}" for fault in error.faults), _BAD_INPUT)
 
 
 def _settings(data_dir: Path | None) -> "Settings":
@@ -172,8 +179,31 @@ def _settings(data_dir: Path | None) -> "Settings":
     try:
         return Settings() if data_dir is None else Settings(data_dir=data_dir)
     except ValidationError as error:
-        faults = (f"GALLOPING_{'_'.join(map(str, e['loc'])).upper()}: {e['msg']}" for e in error.errors())
-        _end("\n".join(faults), _BAD_INPUT)
+        # A default that depends on a wrong value could not be made: that is no fault of its own.
+        faults = [fault for fault in error.errors() if fault["type"] != "default_factory_not_called"]
+        _end(
+            "\n".join(_variable(fault["loc"]) + fault["msg"].removeprefix("Value error, ") for fault in faults),
+            _BAD_INPUT,
+        )
+
+
+def _variable(location: Sequence[int | str]) -> str:
+    return f"GALLOPING_{'_'.join(map(str, location)).upper()}: " if location else ""
+
+
+@contextmanager
+def _operator_told() -> Iterator[None]:
+    """End with one sentence where files or database cannot be used as the settings say."""
+    from alembic.util import CommandError
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except (SQLAlchemyError, CommandError) as error:
+        said = str(getattr(error, "orig", None) or error).splitlines()
+        _end(f"the database of GALLOPING_DATABASE_URL cannot be used: {said[0] if said else error!r}", _BAD_INPUT)
+    except OSError as error:
+        _end(f"{error.filename or 'a file of the service'} cannot be used: {error.strerror or error}", _BAD_INPUT)
 
 
 def _result(points: Sequence["PointResult"], *, study: bool) -> Any:

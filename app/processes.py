@@ -16,12 +16,12 @@ from app.settings import Settings
 _PARENT = "GALLOPING_PARENT_PROCESS"
 _LOOK_SECONDS = 0.3
 # Threads of a BLAS library and forked workers freeze each other; the library reads these once, as numpy loads.
-_ONE_BLAS_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+ONE_BLAS_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def environment(settings: Settings) -> dict[str, str]:
     """Return this process's environment with the settings in it and one BLAS thread."""
-    return {**os.environ, **_ONE_BLAS_THREAD, **settings.environment()}
+    return {**os.environ, **ONE_BLAS_THREAD, **settings.environment()}
 
 
 def start(settings: Settings, module: str, *arguments: str, extra: Mapping[str, str] | None = None) -> "Child":

@@ -1,6 +1,8 @@
 import json
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -124,6 +126,7 @@ def test_what_cannot_be_read_ends_with_2_and_names_the_file(tmp_path: Path) -> N
     assert str(tmp_path) in refused("analyse", str(tmp_path))
     assert str(broken) in refused("analyse", line, "--analysis", str(broken))
     assert "not valid JSON" in refused("analyse", "-", text="[" * 100_000)
+    assert "/span/sag_m: stands more than once" in refused("analyse", "-", text='{"span": {"sag_m": 1, "sag_m": 2}}')
 
 
 def test_what_is_given_twice_is_refused(tmp_path: Path) -> None:
@@ -138,7 +141,60 @@ def test_a_result_that_cannot_be_written_ends_with_2(tmp_path: Path) -> None:
 
 def test_wrong_settings_end_with_2_and_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("GALLOPING_DATABASE_URL", "mysql://x")
-    assert "GALLOPING_DATABASE_URL" in refused("migrate", "--data-dir", str(tmp_path))
+    told = refused("migrate", "--data-dir", str(tmp_path))
+    assert told == "GALLOPING_DATABASE_URL: must begin with sqlite:/// or postgresql://\n"
+
+
+def test_settings_that_contradict_each_other_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GALLOPING_HEARTBEAT_SECONDS", "20")
+    told = refused("migrate", "--data-dir", str(tmp_path))
+    assert told == "heartbeat_seconds must be at most half of lease_seconds\n"
+
+
+@pytest.mark.parametrize("command", ["migrate", "serve"])
+def test_a_directory_that_cannot_be_made_ends_with_2_and_is_named(tmp_path: Path, command: str) -> None:
+    (tmp_path / "file").write_text("in the way")
+    for place in (tmp_path / "file", tmp_path / "file" / "below", Path("/proc/x")):
+        told = refused(command, "--data-dir", str(place))
+        assert told.startswith(str(place))
+        assert len(told.splitlines()) == 1
+
+
+@pytest.mark.parametrize("command", ["migrate", "serve"])
+@pytest.mark.parametrize(
+    "url", ["postgresql://nobody:secret@127.0.0.1:{port}/x", "postgresql://[", "sqlite:////proc/x/y"]
+)
+def test_a_database_that_cannot_be_used_ends_with_2(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, url: str
+) -> None:
+    monkeypatch.setenv("GALLOPING_DATABASE_URL", url.replace("{port}", str(free_port())))
+    told = refused(command, "--data-dir", str(tmp_path))
+    assert len(told.splitlines()) == 1
+    assert "cannot be used" in told
+    assert "secret" not in told
+
+
+def test_a_database_of_a_newer_version_ends_with_2(tmp_path: Path) -> None:
+    assert galloping("migrate", "--data-dir", str(tmp_path)).returncode == 0
+    with closing(sqlite3.connect(tmp_path / "galloping.sqlite3")) as database, database:
+        database.execute("UPDATE alembic_version SET version_num = '9999'")
+    assert "9999" in refused("migrate", "--data-dir", str(tmp_path))
+
+
+def test_analyse_runs_on_one_blas_thread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")
+    program = (
+        "import os, sys\n"
+        "def hook(event, said):\n"
+        "    if event == 'import' and said[0] == 'numpy':\n"
+        "        print(os.environ['OPENBLAS_NUM_THREADS'], file=sys.stderr)\n"
+        "sys.addaudithook(hook)\n"
+        "from app.cli import main\n"
+        "main()\n"
+    )
+    command = [sys.executable, "-c", program, "analyse", written(tmp_path, "request", short_request())]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=120.0, check=True)
+    assert set(ended.stderr.split()) == {"1"}
 
 
 def test_migrate_makes_the_database(tmp_path: Path) -> None:
