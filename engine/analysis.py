@@ -85,8 +85,7 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
     if prepared.modes is not None:
         squares.append(_full_squares(prepared.modes))
         if analysis.finite_element_loops:
-            yield Progress(0.4, "critical wind speeds and limit cycles of the finite element model")
-            found.append(_finite_element(prepared, prepared.modes, hybrid, analysis))
+            found.append((yield from _finite_element(prepared, prepared.modes, hybrid, analysis)))
     yield Progress(0.95, "result rows")
     results = assembled(prepared.made, prepared.shapes, tuple(squares), tuple(found), analysis)
     yield Progress(1.0, "done")
@@ -131,9 +130,14 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     )
 
 
-def _finite_element(prepared: _Prepared, modes: FullModes, hybrid: Found, analysis: Analysis) -> Found:
+def _finite_element(
+    prepared: _Prepared, modes: FullModes, hybrid: Found, analysis: Analysis
+) -> Generator[Progress, None, Found]:
     """Analyse the finite element model of every line, started from the cycles of the hybrid one as well."""
+    yield Progress(0.4, "critical wind speeds of the finite element model")
     model = finite_element_model(prepared.made, modes, prepared.shapes, analysis)
+    crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
+    yield Progress(0.5, "limit cycles of the finite element model")
     winds = hybrid.winds
     starts = _lifted(prepared.made, modes, hybrid, model, analysis.harmonics)
     return Found(
@@ -141,7 +145,7 @@ def _finite_element(prepared: _Prepared, modes: FullModes, hybrid: Found, analys
         model=model,
         line=np.arange(len(prepared.made.lines)),
         loops=np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
-        crossings=critical_wind_speeds(model, analysis.critical_wind_limit),
+        crossings=crossings,
         cycles=find_cycles(model, winds, starts, analysis.harmonics),
         winds=winds,
     )

@@ -12,6 +12,7 @@ from engine.outcome import Stability
 
 PHASE_PER_STEP = 0.9  # rad of the root of the trace, which bounds the fastest mode: the series is exact to 1e-6
 FEWEST_STEPS = 16
+BLOCK_NUMBERS = 1_000_000  # in the matrices of all steps of one block of cycles
 MOST_STEPS = 2048  # a mode so much faster than the cycle is not followed: the stability is then unknown
 
 
@@ -70,7 +71,10 @@ def monodromy(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> FloatAr
     steps = fineness * _steps(model, orbits)
     for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
         here = np.flatnonzero(steps == count)
-        matrices[here] = _product_over_period(take(model, here), pick(orbits, here), count)
+        block = max(1, BLOCK_NUMBERS // (count * size**2))
+        for first in range(0, here.size, block):
+            some = here[first : first + block]
+            matrices[some] = _product_over_period(take(model, some), pick(orbits, some), count)
     return matrices
 
 

@@ -10,6 +10,8 @@ from engine.outcome import Outcome
 
 System = Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]
 
+BLOCK_NUMBERS = 2_000_000  # in the Jacobians of one block
+
 
 @dataclass(frozen=True, slots=True)
 class Options:
@@ -69,7 +71,7 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | 
     for _ in range(options.iterations):
         if active.size == 0:
             break
-        change = _solve(*system(x[active], active))
+        change = _changes(system, x, active)
         size = np.sqrt(np.mean((change / scale[active]) ** 2, axis=-1))
         finite = np.isfinite(size)
         active, change, size = active[finite], change[finite], size[finite]
@@ -80,6 +82,13 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | 
     outcome = np.full(step.shape, Outcome.NO_CONVERGENCE, dtype=np.object_)
     outcome[step <= options.tolerance] = Outcome.CONVERGED
     return Solution(x, outcome, step, iterations)
+
+
+def _changes(system: System, x: FloatArray, active: IntArray) -> FloatArray:
+    """Solve for the steps of the active members, block by block, so that memory stays flat however many there are."""
+    size = max(1, BLOCK_NUMBERS // x.shape[1] ** 2)
+    blocks = [active[first : first + size] for first in range(0, active.size, size)]
+    return np.concatenate([_solve(*system(x[block], block)) for block in blocks])
 
 
 def _solve(residual: FloatArray, jacobian: FloatArray) -> FloatArray:

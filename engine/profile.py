@@ -134,11 +134,15 @@ def _catenary_of_sag(length: float, sag: float) -> float:
 
 
 def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, float]:
-    supports = line.supports
-    return tuple(  # type: ignore[return-value]
-        np.inf if end.dead_end else supports.longitudinal_stiffness or _adjacent_stiffness(line, end, weight, catenary)
-        for end in (supports.left, supports.right)
+    """Return K_x of the left and the right end: a given stiffness wins over a dead end, that over (A10)."""
+    given = line.supports.longitudinal_stiffness
+    if given is not None:
+        return given, given
+    left, right = (
+        np.inf if end.dead_end else _adjacent_stiffness(line, end, weight, catenary)
+        for end in (line.supports.left, line.supports.right)
     )
+    return left, right
 
 
 def _adjacent_stiffness(line: Line, end: Support, weight: float, catenary: float) -> float:

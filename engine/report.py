@@ -50,7 +50,7 @@ def assembled(
         results.append(
             Result(
                 static=_static_state(made, i),
-                den_hartog=_den_hartog(line),
+                den_hartog=_den_hartog(made, i),
                 frequencies=tuple(row for table in frequencies for row in table[i]),
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 limit_cycles=cycles,
@@ -91,8 +91,10 @@ def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...]
     return tuple(motion.row for motion in motions), tuple(orbits)
 
 
-def _den_hartog(line: Line) -> DenHartog:
-    coefficient = line.ice.aerodynamics.vertical[0]
+def _den_hartog(made: Discretization, line: int) -> DenHartog:
+    """Return the smallest a_y1 on the span: with partial ice, one piece below zero is what feeds the motion."""
+    here = made.sections.local_weight[line] > 0.0
+    coefficient = float(made.sections.aerodynamics[line, here, 0, 1].min())
     return DenHartog(coefficient, coefficient < 0.0)
 
 

@@ -21,7 +21,7 @@ class StaticState:
 
 @dataclass(frozen=True, slots=True)
 class DenHartog:
-    """The coefficient a_y1 = dC_L/dalpha + C_D of one sub-conductor; negative means unstable."""
+    """The coefficient a_y1 = dC_L/dalpha + C_D of one sub-conductor, the smallest on the span; negative is unstable."""
 
     coefficient: float
     unstable: bool

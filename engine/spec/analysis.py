@@ -9,6 +9,8 @@ from engine.spec.devices import AirflowSpoiler
 from engine.spec.line import Line
 from engine.spec.rules import positive
 
+MOST_LOOPS_TOGETHER = 6  # the search for critical speeds of the finite element model grows with their sixth power
+
 
 class Model(StrEnum):
     """The three-degree-of-freedom hybrid model, or the finite element model with several modes a direction."""
@@ -62,6 +64,7 @@ class Analysis:
             *_loops_faults("loops", self.loops),
             *_loops_faults("finite_element_loops", self.finite_element_loops or (1,)),
             None if self.models else Fault("models", self.models, "must name a model"),
+            self._size_fault(),
             *(positive(f"wind_speeds.{i}", speed) for i, speed in enumerate(self.wind_speeds)),
             positive("critical_wind_limit", self.critical_wind_limit),
             None if 1 <= self.harmonics <= 20 else Fault("harmonics", self.harmonics, "must be from 1 to 20"),
@@ -69,6 +72,13 @@ class Analysis:
             if relative and self.closure is Closure.PUBLISHED
             else None,
         )
+
+    def _size_fault(self) -> Fault | None:
+        together = set(self.loops) | set(self.finite_element_loops)
+        if Model.FINITE_ELEMENT in self.models and self.finite_element_loops and len(together) > MOST_LOOPS_TOGETHER:
+            rule = f"must not make more than {MOST_LOOPS_TOGETHER} different numbers together with loops"
+            return Fault("finite_element_loops", self.finite_element_loops, rule)
+        return None
 
 
 def _loops_faults(name: str, loops: tuple[int, ...]) -> Iterator[Fault]:

@@ -104,10 +104,14 @@ def test_string_between_unequal_spans_carries_half_of_each() -> None:
     assert found == pytest.approx(by_hand(60.0) + 0.5 * WEIGHT * sum(arcs) / 2.0, rel=1e-12)
 
 
-def test_dead_end_and_given_stiffness_override_the_rest() -> None:
-    supports = Supports(longitudinal_stiffness=7e4, left=Support(dead_end=True), right=Support(insulator_length=1.0))
-    found = static_profile((replace(source_line(1), supports=supports),)).end_stiffness[0]
-    assert found.tolist() == [math.inf, 7e4]
+def test_given_stiffness_wins_at_both_ends_and_a_dead_end_over_its_neighbour() -> None:
+    # The contract: "a given stiffness (per sub-conductor, both ends) wins; else (A10) at each end".
+    ends = {"left": Support(dead_end=True), "right": Support(insulator_length=1.0)}
+    given = static_profile((replace(source_line(1), supports=Supports(7e4, **ends)),)).end_stiffness[0]
+    assert given.tolist() == [7e4, 7e4]
+    left, right = static_profile((replace(source_line(1), supports=Supports(**ends)),)).end_stiffness[0]
+    assert left == math.inf
+    assert right < math.inf
 
 
 def test_adjacent_span_blown_out_too_holds_by_its_own_plane() -> None:
