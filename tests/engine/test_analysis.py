@@ -31,7 +31,7 @@ from engine.spec import (
     Supports,
     Wind,
 )
-from tests.builders import ICE_AT_40, random_line, run, source_line, stable_cycles
+from tests.builders import ICE_AT_40, only, random_line, run, source_line, stable_cycles
 
 SHORT = Analysis(loops=(1, 2), wind_speeds=(5.0,))
 
@@ -271,3 +271,20 @@ def test_line_with_every_part_gets_plausible_rows(model: AerodynamicModel) -> No
     plausible(result, analysis)
     assert result.static.sag_m == pytest.approx(2.0, rel=1e-12)
     assert len(result.frequencies) == 4
+
+
+def test_den_hartog_takes_the_smallest_coefficient_on_the_span() -> None:
+    line = source_line(2)
+    stable = replace(line.ice.aerodynamics, vertical=(1.5, 0.0, 0.0))
+    half = replace(line, ice=replace(line.ice, segments=(IceSegment(0.0, 62.94, aerodynamics=stable),)))
+    whole = replace(line, ice=replace(line.ice, segments=(IceSegment(0.0, 125.88, aerodynamics=stable),)))
+    asked = only(Model.HYBRID, wind_speeds=())
+    assert run(half, asked).den_hartog.coefficient == -0.1667
+    assert run(whole, asked).den_hartog.coefficient == 1.5
+    assert not run(whole, asked).den_hartog.unstable
+
+
+def test_finite_element_model_gives_frequencies_alone() -> None:
+    result = run(source_line(2), replace(Analysis(), finite_element_loops=()))
+    assert {row.model for row in result.frequencies} == {Model.HYBRID, Model.FINITE_ELEMENT}
+    assert {row.model for row in result.limit_cycles} == {Model.HYBRID}

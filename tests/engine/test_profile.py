@@ -106,10 +106,10 @@ def test_string_between_unequal_spans_carries_half_of_each() -> None:
 
 def test_given_stiffness_wins_at_both_ends_and_a_dead_end_over_its_neighbour() -> None:
     # The contract: "a given stiffness (per sub-conductor, both ends) wins; else (A10) at each end".
-    ends = {"left": Support(dead_end=True), "right": Support(insulator_length=1.0)}
-    given = static_profile((replace(source_line(1), supports=Supports(7e4, **ends)),)).end_stiffness[0]
-    assert given.tolist() == [7e4, 7e4]
-    left, right = static_profile((replace(source_line(1), supports=Supports(**ends)),)).end_stiffness[0]
+    ends = Supports(left=Support(dead_end=True), right=Support(insulator_length=1.0))
+    given = replace(ends, longitudinal_stiffness=7e4)
+    assert static_profile((replace(source_line(1), supports=given),)).end_stiffness[0].tolist() == [7e4, 7e4]
+    left, right = static_profile((replace(source_line(1), supports=ends),)).end_stiffness[0]
     assert left == math.inf
     assert right < math.inf
 

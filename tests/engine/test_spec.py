@@ -22,6 +22,7 @@ from engine.spec import (
     Ice,
     IceSegment,
     Line,
+    Model,
     Spacer,
     Span,
     Support,
@@ -209,3 +210,11 @@ def test_outcomes_carry_a_word_and_a_sentence() -> None:
     assert len({outcome.value for outcome in Outcome}) == len(Outcome)
     assert all(outcome.sentence.endswith(".") for outcome in Outcome)
     assert Outcome.STATICALLY_UNSTABLE.value == "statically_unstable"
+
+
+def test_finite_element_loops_are_bounded_where_motions_are_asked_for() -> None:
+    many = (1, 2, 3, 4, 5, 6, 7)
+    with pytest.raises(InvalidSpec, match="finite_element_loops must not make more than 6"):
+        Analysis(finite_element_loops=many)
+    assert Analysis(finite_element_loops=many, models=(Model.HYBRID,)).finite_element_loops == many
+    assert Analysis(loops=many, finite_element_loops=()).loops == many
