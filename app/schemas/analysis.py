@@ -7,12 +7,14 @@ from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic.functional_validators import PlainValidator
 from pydantic_core import PydanticCustomError
 
+from app.examples import example
 from app.schemas.fields import Document, quantity
 from app.schemas.line import Line
 
 STUDY_POINTS_LIMIT = 10_000
 _FASTEST_WIND = 100.0
 _LARGEST = 1e12
+_AXIS = {"parameter": "span.horizontal_tension_n", "values": [24000, 30000, 36000]}
 
 WindSpeed = Annotated[float, Field(ge=0.01, le=_FASTEST_WIND)]
 Loops = Annotated[int, Field(ge=1, le=10)]
@@ -155,7 +157,9 @@ class Axis(Document):
 class Study(Document):
     """One or two fields of the line varied; every combination is a point."""
 
-    axes: list[Axis] = Field(min_length=1, max_length=2, description="The fields that vary; the last one fastest")
+    axes: list[Axis] = Field(
+        min_length=1, max_length=2, description="The fields that vary; the last one fastest", examples=[[_AXIS]]
+    )
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:
@@ -171,6 +175,8 @@ class Study(Document):
 class JobRequest(Document):
     """A line, what is asked of it, and a study over some of its fields."""
 
-    line: Line = Field(description="The span")
-    analysis: Analysis = Field(default=Analysis(), description="What is asked")
-    study: Study | None = Field(default=None, description="Fields of the line to vary; none if absent")
+    line: Line = Field(description="The span", examples=[example("c11-twin")])
+    analysis: Analysis = Field(default=Analysis(), description="What is asked", examples=[{"loops": [1, 2]}])
+    study: Study | None = Field(
+        default=None, description="Fields of the line to vary; none if absent", examples=[{"axes": [_AXIS]}]
+    )

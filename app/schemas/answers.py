@@ -6,7 +6,7 @@ from uuid import UUID
 
 from pydantic import ConfigDict, Field
 
-from app.schemas.fields import Answer
+from app.schemas.fields import Answer, example_of, told
 
 Status = Literal["accepted", "running", "successful", "failed", "dismissed"]
 Model = Literal["hybrid", "finite_element"]
@@ -19,61 +19,63 @@ class Row(Answer):
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    model: Model = Field(description="Model that the row comes from")
-    loops: int = Field(description="Loops per span [1]")
+    model: Model = told("Model that the row comes from", "hybrid")
+    loops: int = told("Loops per span [1]", 1)
 
 
 class Frequency(Row):
     """Natural frequencies without wind, labelled by dominant direction."""
 
-    vertical_hz: Number = Field(description="[Hz]")
-    horizontal_hz: Number = Field(description="[Hz]")
-    torsional_hz: Number = Field(description="[Hz]")
-    outcome: Outcome
+    vertical_hz: Number = told("Dominantly vertical [Hz]", 0.4816)
+    horizontal_hz: Number = told("Dominantly horizontal [Hz]", 0.4460)
+    torsional_hz: Number = told("Dominantly torsional [Hz]", 0.6343)
+    outcome: Outcome = told("How the computation ended", "converged")
 
 
 class CriticalWindSpeed(Row):
     """A wind speed at which the resting span loses or regains stability."""
 
-    wind_speed_m_per_s: float = Field(description="[m/s]")
-    crossing: Literal["onset", "restabilization"]
-    type: Literal["oscillation", "divergence"]
-    direction: Literal["vertical", "horizontal", "torsional"]
-    frequency_hz: float = Field(description="0 for a divergence [Hz]")
-    unstable_pairs_after: int = Field(description="Unstable pairs of eigenvalues above this wind speed [1]")
+    wind_speed_m_per_s: float = told("Wind speed of the crossing [m/s]", 2.403)
+    crossing: Literal["onset", "restabilization"] = told("Whether stability is lost or regained", "onset")
+    type: Literal["oscillation", "divergence"] = told("Whether what grows oscillates", "oscillation")
+    direction: Literal["vertical", "horizontal", "torsional"] = told("Dominant direction of what grows", "vertical")
+    frequency_hz: float = told("0 for a divergence [Hz]", 0.4816)
+    unstable_pairs_after: int = told("Unstable pairs of eigenvalues above this wind speed [1]", 1)
 
 
 class LimitCycle(Row):
     """A motion at one wind speed; amplitudes are half of peak-to-peak."""
 
-    wind_speed_m_per_s: float = Field(description="[m/s]")
-    branch: int | None = Field(description="Family of cycles; null for the equilibrium")
-    kind: Literal["equilibrium", "periodic", "quasi_periodic"]
-    stability: Literal["stable", "unstable", "unknown"]
-    frequency_hz: Number = Field(description="[Hz]")
-    second_frequency_hz: Number = Field(description="Of a quasi-periodic motion [Hz]")
-    observed_at_m: float = Field(description="Where the amplitudes hold, from the left support [m]")
-    vertical_m: Number = Field(description="[m]")
-    horizontal_m: Number = Field(description="[m]")
-    torsional_rad: Number = Field(description="[rad]")
-    vertical_min_m: Number = Field(description="Smaller amplitude of a quasi-periodic motion [m]")
-    horizontal_min_m: Number = Field(description="[m]")
-    torsional_min_rad: Number = Field(description="[rad]")
-    vertical_ratio: Number = Field(description="Over the static sag [1]")
-    horizontal_ratio: Number = Field(description="Over the static sag [1]")
-    reduced_wind_speed: Number = Field(description="Wind speed over frequency and span [1]")
-    outcome: Outcome
+    wind_speed_m_per_s: float = told("Wind speed [m/s]", 4.0)
+    branch: int | None = told("Family of cycles; null for the equilibrium", 0)
+    kind: Literal["equilibrium", "periodic", "quasi_periodic"] = told("Rest, or what kind of motion", "periodic")
+    stability: Literal["stable", "unstable", "unknown"] = told(
+        "Whether the motion lasts; unknown if it was not decided", "stable"
+    )
+    frequency_hz: Number = told("Frequency; null for the equilibrium [Hz]", 0.4816)
+    second_frequency_hz: Number = told("Of a quasi-periodic motion [Hz]", 0.0121)
+    observed_at_m: float = told("Where the amplitudes hold, from the left support [m]", 62.94)
+    vertical_m: Number = told("Vertical amplitude [m]", 0.1568)
+    horizontal_m: Number = told("Horizontal amplitude [m]", 0.0099)
+    torsional_rad: Number = told("Torsional amplitude [rad]", 0.0020)
+    vertical_min_m: Number = told("Smaller vertical amplitude of a quasi-periodic motion [m]", 0.1204)
+    horizontal_min_m: Number = told("Smaller horizontal amplitude of a quasi-periodic motion [m]", 0.0061)
+    torsional_min_rad: Number = told("Smaller torsional amplitude of a quasi-periodic motion [rad]", 0.0013)
+    vertical_ratio: Number = told("Vertical amplitude over the static sag [1]", 0.1018)
+    horizontal_ratio: Number = told("Horizontal amplitude over the static sag [1]", 0.0064)
+    reduced_wind_speed: Number = told("Wind speed over frequency and span [1]", 0.066)
+    outcome: Outcome = told("How the computation ended", "converged")
 
 
 class Bifurcation(Row):
     """A wind speed at which the kind or the number of motions changes."""
 
-    branch: int
-    type: Literal["hopf", "fold", "torus", "period_doubling", "branch_point"]
-    wind_speed_m_per_s: float = Field(description="[m/s]")
-    frequency_hz: float = Field(description="[Hz]")
-    second_frequency_hz: Number = Field(description="[Hz]")
-    uncertainty_m_per_s: float = Field(description="How well the place is known [m/s]")
+    branch: int = told("Family of cycles", 0)
+    type: Literal["hopf", "fold", "torus", "period_doubling", "branch_point"] = told("What happens there", "torus")
+    wind_speed_m_per_s: float = told("Wind speed [m/s]", 6.82)
+    frequency_hz: float = told("Frequency of the motion there [Hz]", 0.4816)
+    second_frequency_hz: Number = told("Second frequency that begins there [Hz]", 0.0121)
+    uncertainty_m_per_s: float = told("How well the place is known [m/s]", 0.01)
 
 
 class StaticState(Answer):
@@ -81,10 +83,12 @@ class StaticState(Answer):
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    horizontal_tension_n: Number = Field(description="[N]")
-    catenary_parameter_m: Number = Field(description="[m]")
-    sag_m: Number = Field(description="[m]")
-    longitudinal_stiffness_n_per_m: Number = Field(description="Null at dead ends [N/m]")
+    horizontal_tension_n: Number = told("Horizontal tension of one iced sub-conductor [N]", 30000.0)
+    catenary_parameter_m: Number = told("Tension over weight per length [m]", 1285.46)
+    sag_m: Number = told("Sag at mid-span [m]", 1.5412)
+    longitudinal_stiffness_n_per_m: Number = told(
+        "Longitudinal stiffness of the supports; null at dead ends [N/m]", 128460.7
+    )
 
 
 class DenHartog(Answer):
@@ -92,15 +96,17 @@ class DenHartog(Answer):
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    coefficient: Number = Field(description="dC_L/dalpha + C_D of one sub-conductor [1/rad]")
-    unstable: bool | None
+    coefficient: Number = told("dC_L/dalpha + C_D of one sub-conductor [1/rad]", -0.1667)
+    unstable: bool | None = told("Whether the coefficient is negative; null if it is unknown", True)
 
 
 class Failure(Answer):
     """Why a job failed: its input or model, or the service."""
 
-    kind: Literal["input", "no_convergence", "time_limit", "worker_lost", "internal"]
-    detail: str | None
+    kind: Literal["input", "no_convergence", "time_limit", "worker_lost", "internal"] = told(
+        "Who is to act: input, no_convergence and time_limit concern the line, the others the service", "time_limit"
+    )
+    detail: str | None = told("Why, in a sentence", "The job ran longer than 3600 s.")
 
 
 class PointFailure(Answer):
@@ -108,71 +114,81 @@ class PointFailure(Answer):
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    failure: str
+    failure: str = told("Why, in a sentence", "InvalidSpec: devices.0.position must lie on the span")
 
 
 class ResultDocument(Answer):
     """Everything that was found; in a study every row begins with the values of the axes."""
 
-    static: StaticState | list[StaticState] | None
-    den_hartog: DenHartog | list[DenHartog] | None
-    frequencies: list[Frequency]
-    critical_wind_speeds: list[CriticalWindSpeed]
-    limit_cycles: list[LimitCycle]
-    bifurcations: list[Bifurcation]
-    warnings: list[str]
-    failures: list[PointFailure] = Field(description="Points that failed")
-    failure: Failure | None = Field(description="Why the job failed; null if it did not")
-    engine_version: str | None
+    static: StaticState | list[StaticState] | None = told("Static state of the span", example_of(StaticState))
+    den_hartog: DenHartog | list[DenHartog] | None = told("Den Hartog's criterion", example_of(DenHartog))
+    frequencies: list[Frequency] = told("Natural frequencies", [example_of(Frequency)])
+    critical_wind_speeds: list[CriticalWindSpeed] = told(
+        "Wind speeds at which the resting span loses or regains stability", [example_of(CriticalWindSpeed)]
+    )
+    limit_cycles: list[LimitCycle] = told(
+        "Motions at every wind speed", [example_of(LimitCycle) | {"kind": "quasi_periodic"}]
+    )
+    bifurcations: list[Bifurcation] = told(
+        "Changes of the motions over the wind speed; always empty yet", [example_of(Bifurcation)]
+    )
+    warnings: list[str] = told("What to bear in mind, in sentences", ["The angle of attack leaves the fitted range."])
+    failures: list[PointFailure] = told("Points that failed", [example_of(PointFailure)])
+    failure: Failure | None = told("Why the job failed; null if it did not", example_of(Failure))
+    engine_version: str | None = told("Version of the computation; null if nothing was computed", "0.1.0")
 
 
 class Link(Answer):
     """Where to go on."""
 
-    rel: str
-    href: str
+    rel: str = told("What lies there", "self")
+    href: str = told("Address", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e")
 
 
 class JobDocument(Answer):
     """State of a job."""
 
-    id: UUID
-    status: Status
-    progress: Annotated[float, Field(ge=0.0, le=1.0)] = Field(description="How much is done, 0 to 1 [1]")
-    step: str = Field(description="What is being done")
-    name: str | None
-    asset_id: str | None
-    tags: dict[str, str]
-    created_at: datetime
-    started_at: datetime | None
-    finished_at: datetime | None
-    attempt: int
-    cancel_requested: bool
-    failure: Failure | None
-    engine_version: str | None
-    links: list[Link]
+    id: UUID = told("Identity of the job", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e")
+    status: Status = told("State; the last three are final", "running")
+    progress: Annotated[float, Field(ge=0.0, le=1.0)] = told("How much is done, 0 to 1 [1]", 0.4)
+    step: str = told("What is being done", "limit cycles, hybrid, 1 loop")
+    name: str | None = told("Name of the line", "C11 twin, 126 m")
+    asset_id: str | None = told("Identity of the line in the owner's records", "L204-S017")
+    tags: dict[str, str] = told("Labels of the line", {"region": "north"})
+    created_at: datetime = told("When the job was accepted", "2026-11-22T10:00:00+00:00")
+    started_at: datetime | None = told("When its last attempt began", "2026-11-22T10:00:01+00:00")
+    finished_at: datetime | None = told("When it ended", "2026-11-22T10:00:05+00:00")
+    attempt: int = told("Attempts so far; another follows if a worker is lost [1]", 1)
+    cancel_requested: bool = told("Whether the running job was asked to stop", False)
+    failure: Failure | None = told("Why it failed; null if it did not", example_of(Failure))
+    engine_version: str | None = told("Version of the computation; null before it", "0.1.0")
+    links: list[Link] = told("Where to go on", [example_of(Link)])
 
 
 class JobPage(Answer):
     """Some jobs, newest first."""
 
-    jobs: list[JobDocument]
-    next: str | None = Field(description="Address of the next page; null on the last")
+    jobs: list[JobDocument] = told("The jobs of the page", [example_of(JobDocument)])
+    next: str | None = told(
+        "Address of the next page; null on the last", "/v1/jobs?limit=50&cursor=AZmjxFt-fBqdLj9KW2x9jg"
+    )
 
 
 class Health(Answer):
     """Whether the service lives or can take work; `checks` says what was looked at."""
 
-    status: Literal["ok", "unavailable"]
-    checks: dict[str, str]
+    status: Literal["ok", "unavailable"] = told("Whether all is well", "ok")
+    checks: dict[str, str] = told(
+        "What was looked at, and how it is", {"database": "ok", "migrations": "ok", "broker": "ok"}
+    )
 
 
 class FaultItem(Answer):
     """One fault of a request."""
 
-    pointer: str = Field(description="JSON pointer of the field; /query/... and /path/... for parameters")
-    code: str
-    detail: str
+    pointer: str = told("JSON pointer of the field; /query/... and /path/... for parameters", "/line/span/length_m")
+    code: str = told("The kind of fault, for programs", "greater_than_equal")
+    detail: str = told("What is wrong, in a sentence", "input should be greater than or equal to 1, got -5.0")
 
 
 class Problem(Answer):
@@ -180,19 +196,21 @@ class Problem(Answer):
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    type: str
-    title: str
-    status: int
-    detail: str
-    instance: str
-    errors: list[FaultItem] = Field(default=[], description="Every fault of the request")
-    links: list[Link] = Field(default=[], description="Where to go on")
+    type: str = told("Address of the page that explains this type", "/problems/invalid-document")
+    title: str = told("The type in words", "Invalid document")
+    status: int = told("Status code of the answer [1]", 422)
+    detail: str = told("What is wrong this time", "The document has 1 fault.")
+    instance: str = told("Address that was asked", "/v1/jobs")
+    errors: list[FaultItem] = Field(
+        default=[], description="Every fault of the request", examples=[[example_of(FaultItem)]]
+    )
+    links: list[Link] = Field(default=[], description="Where to go on", examples=[[example_of(Link)]])
 
 
 class ProblemPage(Answer):
     """What a type of problem means."""
 
-    slug: str
-    status: int
-    title: str
-    description: str
+    slug: str = told("Last part of its address", "not-found")
+    status: int = told("Status code that it comes with [1]", 404)
+    title: str = told("The type in words", "Not found")
+    description: str = told("What it means", "There is nothing at this address, or no longer.")

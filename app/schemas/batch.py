@@ -6,9 +6,10 @@ from uuid import UUID
 
 from pydantic import Field
 
+from app.examples import example
 from app.schemas.analysis import Analysis
 from app.schemas.answers import Link, Status
-from app.schemas.fields import Answer, Document, Label
+from app.schemas.fields import Answer, Document, Label, example_of, told
 from app.schemas.line import Line
 
 Count = Annotated[int, Field(ge=0)]
@@ -25,67 +26,79 @@ class BatchLine(Line):
 class BatchRequest(Document):
     """Many lines under one analysis."""
 
-    lines: list[BatchLine] = Field(min_length=1, max_length=100_000, description="The lines")
-    analysis: Analysis = Field(default=Analysis(), description="What is asked of every line")
+    lines: list[BatchLine] = Field(
+        min_length=1, max_length=100_000, description="The lines", examples=[[example("c11-twin")]]
+    )
+    analysis: Analysis = Field(
+        default=Analysis(), description="What is asked of every line", examples=[{"loops": [1, 2]}]
+    )
 
 
 class LineCounts(Answer):
     """How many lines are in which state."""
 
-    total: Count = Field(description="All lines that came in [1]")
-    accepted: Count = Field(description="Waiting [1]")
-    running: Count = Field(description="In a chunk that is being worked on [1]")
-    successful: Count = Field(description="With results [1]")
-    failed: Count = Field(description="Without; see their failures in the results [1]")
-    dismissed: Count = Field(description="Cancelled before they were worked on [1]")
-    rejected: Count = Field(description="Never taken, since they are at fault; see errors [1]")
+    total: Count = told("All lines that came in [1]", 3)
+    accepted: Count = told("Waiting [1]", 0)
+    running: Count = told("In a chunk that is being worked on [1]", 0)
+    successful: Count = told("With results [1]", 2)
+    failed: Count = told("Without; see their failures in the results [1]", 0)
+    dismissed: Count = told("Cancelled before they were worked on [1]", 0)
+    rejected: Count = told("Never taken, since they are at fault; see errors [1]", 1)
 
 
 class LineFault(Answer):
     """One fault of a line that was rejected."""
 
-    number: int = Field(description="Number of the line, from 1; headers and the analysis do not count [1]")
-    reference: str | None
-    pointer: str = Field(description="JSON pointer from the root of the line")
-    code: str
-    detail: str
+    number: int = told("Number of the line, from 1; headers and the analysis do not count [1]", 3)
+    reference: str | None = told("The caller's reference of the line", "row-3")
+    pointer: str = told("JSON pointer from the root of the line", "/span/length_m")
+    code: str = told("The kind of fault, for programs", "greater_than_equal")
+    detail: str = told("What is wrong, in a sentence", "input should be greater than or equal to 1, got -5.0")
 
 
 class BatchErrors(Answer):
     """Every fault of the lines that were rejected, in the order of their numbers."""
 
-    errors: list[LineFault]
+    errors: list[LineFault] = told("The faults", [example_of(LineFault)])
 
 
 class BatchDocument(Answer):
     """State of a batch."""
 
-    id: UUID
-    status: Status = Field(description="Successful if any line is, once all have ended")
-    progress: Annotated[float, Field(ge=0.0, le=1.0)] = Field(description="How much is done, 0 to 1 [1]")
-    lines: LineCounts
-    created_at: datetime
-    started_at: datetime | None
-    finished_at: datetime | None
-    errors: list[LineFault] = Field(description="Faults of the first rejected lines; a link leads to all of them")
-    links: list[Link]
+    id: UUID = told("Identity of the batch", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f")
+    status: Status = told("State; successful if any line is, once all have ended", "successful")
+    progress: Annotated[float, Field(ge=0.0, le=1.0)] = told("How much is done, 0 to 1 [1]", 1.0)
+    lines: LineCounts = told("How many lines are in which state", example_of(LineCounts))
+    created_at: datetime = told("When the batch was accepted", "2026-11-22T10:00:00+00:00")
+    started_at: datetime | None = told("When work on it began", "2026-11-22T10:00:01+00:00")
+    finished_at: datetime | None = told("When its last line ended", "2026-11-22T10:00:05+00:00")
+    errors: list[LineFault] = told(
+        "Faults of the first rejected lines; a link leads to all of them", [example_of(LineFault)]
+    )
+    links: list[Link] = told(
+        "Where to go on", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
+    )
 
 
 class BatchSummary(Answer):
     """State of a batch in a list."""
 
-    id: UUID
-    status: Status
-    progress: Annotated[float, Field(ge=0.0, le=1.0)]
-    lines: LineCounts
-    created_at: datetime
-    started_at: datetime | None
-    finished_at: datetime | None
-    links: list[Link]
+    id: UUID = told("Identity of the batch", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f")
+    status: Status = told("State; successful if any line is, once all have ended", "successful")
+    progress: Annotated[float, Field(ge=0.0, le=1.0)] = told("How much is done, 0 to 1 [1]", 1.0)
+    lines: LineCounts = told("How many lines are in which state", example_of(LineCounts))
+    created_at: datetime = told("When the batch was accepted", "2026-11-22T10:00:00+00:00")
+    started_at: datetime | None = told("When work on it began", "2026-11-22T10:00:01+00:00")
+    finished_at: datetime | None = told("When its last line ended", "2026-11-22T10:00:05+00:00")
+    links: list[Link] = told(
+        "Where to go on", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
+    )
 
 
 class BatchPage(Answer):
     """Some batches, newest first."""
 
-    batches: list[BatchSummary]
-    next: str | None = Field(description="Address of the next page; null on the last")
+    batches: list[BatchSummary] = told("The batches of the page", [example_of(BatchSummary)])
+    next: str | None = told(
+        "Address of the next page; null on the last", "/v1/batches?limit=20&cursor=AZmjxFt-fBqdLj9KW2x9jg"
+    )

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.schemas.environment import Aerodynamics, AerodynamicsAtRest
+from app.schemas.environment import AT_REST, COEFFICIENTS, Aerodynamics, AerodynamicsAtRest
 from app.schemas.fields import ON_SPAN, Document, quantity
 
 
@@ -35,9 +35,14 @@ class AirflowSpoiler(Document):
     type: Literal["airflow_spoiler"] = Field(description="Kind of device", examples=["airflow_spoiler"])
     start: float = quantity("from_m", "Where the stretch begins", "m", ON_SPAN, 30.0)
     stop: float = quantity("to_m", "Where the stretch ends", "m", ON_SPAN, 60.0)
-    aerodynamics: Aerodynamics = Field(description="Coefficients of one sub-conductor on the stretch")
+    aerodynamics: Aerodynamics = Field(
+        description="Coefficients of one sub-conductor on the stretch", examples=[COEFFICIENTS]
+    )
     at_rest: AerodynamicsAtRest | None = Field(
-        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest on the stretch"
+        default=None,
+        alias="aerodynamics_at_rest",
+        description="Coefficients at rest on the stretch",
+        examples=[AT_REST],
     )
     mass: float = quantity("mass_kg_per_m", "Added mass per length of a sub-conductor", "kg/m", (0.0, 100.0), 0.3, 0.0)
 

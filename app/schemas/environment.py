@@ -5,9 +5,13 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from app.examples import example
 from app.schemas.fields import ICED_MASS, ON_SPAN, Document, quantity
 
 Cubic = Annotated[list[Annotated[float, Field(ge=-1e4, le=1e4)]], Field(min_length=3, max_length=3)]
+
+COEFFICIENTS = example("c11-twin")["ice"]["aerodynamics"]
+AT_REST = {"vertical": 0.0, "horizontal": 1.0, "torsional": 0.0}
 
 _ECCENTRICITY = (-0.2, 0.2)
 _RATIO = (1e-7, 0.99)
@@ -46,9 +50,14 @@ class IceSegment(Document):
 
     start: float = quantity("from_m", "Where the stretch begins", "m", ON_SPAN, 0.0)
     stop: float = quantity("to_m", "Where the stretch ends", "m", ON_SPAN, 62.94)
-    aerodynamics: Aerodynamics | None = Field(default=None, description="Coefficients on the stretch")
+    aerodynamics: Aerodynamics | None = Field(
+        default=None, description="Coefficients on the stretch", examples=[COEFFICIENTS]
+    )
     at_rest: AerodynamicsAtRest | None = Field(
-        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest on the stretch"
+        default=None,
+        alias="aerodynamics_at_rest",
+        description="Coefficients at rest on the stretch",
+        examples=[AT_REST],
     )
     eccentricity_y: float | None = quantity(
         "eccentricity_y_m", "Eccentricity upward on the stretch", "m", _ECCENTRICITY, 1e-3, None
@@ -76,11 +85,19 @@ class Ice(Document):
     eccentricity_z: float = quantity(
         "eccentricity_z_m", "Mass centre of the iced section, downwind", "m", _ECCENTRICITY, -0.63e-3, 0.0
     )
-    aerodynamics: Aerodynamics = Field(description="Coefficients of one iced sub-conductor")
+    aerodynamics: Aerodynamics = Field(description="Coefficients of one iced sub-conductor", examples=[COEFFICIENTS])
     at_rest: AerodynamicsAtRest | None = Field(
-        default=None, alias="aerodynamics_at_rest", description="Coefficients at rest, for the relative-wind model"
+        default=None,
+        alias="aerodynamics_at_rest",
+        description="Coefficients at rest, for the relative-wind model",
+        examples=[AT_REST],
     )
-    segments: list[IceSegment] = Field(default=[], max_length=200, description="Stretches of other ice; none overlap")
+    segments: list[IceSegment] = Field(
+        default=[],
+        max_length=200,
+        description="Stretches of other ice; none overlap",
+        examples=[[{"from_m": 0.0, "to_m": 62.94, "mass_kg_per_m": 2.3}]],
+    )
 
 
 class ProfilePoint(Document):
@@ -101,9 +118,16 @@ class Wind(Document):
     """The wind apart from its speed."""
 
     air_density: float = quantity("air_density_kg_per_m3", "Density of the air", "kg/m3", (0.3, 2.0), 1.2929, 1.2929)
-    blow_out: BlowOut | None = Field(default=None, description="Blow-out by the mean drag; none if null")
+    blow_out: BlowOut | None = Field(
+        default=None,
+        description="Blow-out by the mean drag; none if null",
+        examples=[{"wind_speed_m_per_s": 10.0, "drag_coefficient": 1.0}],
+    )
     profile: list[ProfilePoint] = Field(
-        default=[], max_length=200, description="Wind along the span, linear between the points; uniform if empty"
+        default=[],
+        max_length=200,
+        description="Wind along the span, linear between the points; uniform if empty",
+        examples=[[{"position_m": 0.0, "factor": 0.7}, {"position_m": 125.88, "factor": 1.3}]],
     )
 
 

@@ -29,6 +29,16 @@ class Answer(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+def told(description: str, example: Any) -> Any:
+    """Declare a field of an answer: what it is, with its unit if it is a number, and a usual value."""
+    return Field(description=description, examples=[example])
+
+
+def example_of(model: type[BaseModel]) -> dict[str, Any]:
+    """Return an example of an answer that is made of the examples of its fields."""
+    return {name: field.examples[0] for name, field in model.model_fields.items() if field.examples}
+
+
 def quantity(
     name: str, description: str, unit: str, bounds: tuple[float, float], example: float, default: Any = ...
 ) -> Any:

@@ -5,9 +5,13 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from app.examples import example
 from app.schemas.devices import Device
 from app.schemas.environment import Damping, Ice, Wind
 from app.schemas.fields import ICED_MASS, LENGTH_LIMIT_M, Document, Label, TagKey, quantity
+
+_TWIN = example("c11-twin")
+_SPACER = {"type": "spacer", "position_m": 62.94, "mass_kg": 6.5, "polar_inertia_kg_m2": 0.4}
 
 Position = Annotated[list[Annotated[float, Field(ge=-5.0, le=5.0)]], Field(min_length=2, max_length=2)]
 
@@ -147,8 +151,8 @@ class Supports(Document):
         1.285e5,
         None,
     )
-    left: Support = Field(default=Support(), description="Left end")
-    right: Support = Field(default=Support(), description="Right end")
+    left: Support = Field(default=Support(), description="Left end", examples=[{"dead_end": True}])
+    right: Support = Field(default=Support(), description="Right end", examples=[{"insulator_length_m": 2.0}])
 
 
 class Line(Document):
@@ -159,11 +163,19 @@ class Line(Document):
     tags: Annotated[dict[TagKey, Label], Field(max_length=50)] = Field(
         default={}, description="Labels to find jobs by; a key has no colon", examples=[{"region": "north"}]
     )
-    conductor: Conductor = Field(description="One iced sub-conductor")
-    bundle: Bundle = Field(default=Bundle(subconductors=1), description="Arrangement; one sub-conductor if absent")
-    span: Span = Field(description="Length and tightness")
-    supports: Supports = Field(default=Supports(), description="What holds the ends")
-    ice: Ice = Field(description="Ice")
-    wind: Wind = Field(default=Wind(), description="Wind apart from its speed")
-    damping: Damping = Field(description="Structural damping")
-    devices: list[Device] = Field(default=[], max_length=200, description="Spacers, pendulums and spoilers")
+    conductor: Conductor = Field(description="One iced sub-conductor", examples=[_TWIN["conductor"]])
+    bundle: Bundle = Field(
+        default=Bundle(subconductors=1),
+        description="Arrangement; one sub-conductor if absent",
+        examples=[_TWIN["bundle"]],
+    )
+    span: Span = Field(description="Length and tightness", examples=[_TWIN["span"]])
+    supports: Supports = Field(
+        default=Supports(), description="What holds the ends", examples=[{"left": {"dead_end": True}}]
+    )
+    ice: Ice = Field(description="Ice", examples=[_TWIN["ice"]])
+    wind: Wind = Field(default=Wind(), description="Wind apart from its speed", examples=[_TWIN["wind"]])
+    damping: Damping = Field(description="Structural damping", examples=[_TWIN["damping"]])
+    devices: list[Device] = Field(
+        default=[], max_length=200, description="Spacers, pendulums and spoilers", examples=[[_SPACER]]
+    )

@@ -86,6 +86,18 @@ def test_units_stand_in_the_schema(document: dict[str, Any]) -> None:
     assert length["description"].endswith("[m]")
 
 
+def test_every_field_has_a_description_and_an_example(document: dict[str, Any]) -> None:
+    fields = [
+        (f"{schema}.{name}", field)
+        for schema, content in document["components"]["schemas"].items()
+        for name, field in content.get("properties", {}).items()
+    ]
+    assert len(fields) > 200
+    assert [place for place, field in fields if not field.get("description")] == []
+    # What can have one value only shows it.
+    assert [place for place, field in fields if not field.get("examples") and "const" not in field] == []
+
+
 def test_the_interactive_documentation_is_there(tmp_path: Path) -> None:
     with service.running(service.sqlite_settings(tmp_path)) as client:
         assert client.get("/docs").status_code == 200

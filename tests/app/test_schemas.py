@@ -8,13 +8,21 @@ from pydantic.fields import FieldInfo
 
 from app import schemas
 from app.examples import EXAMPLE_NAMES, example
+from app.schemas import answers, batch
+from app.schemas.fields import Answer
 
 MODELS = [
     model
     for model in (getattr(schemas, name) for name in schemas.__all__)
     if isinstance(model, type) and issubclass(model, BaseModel)
 ]
-FIELDS = [(model, name, field) for model in MODELS for name, field in model.model_fields.items()]
+ANSWERS = [
+    model
+    for module in (answers, batch)
+    for model in vars(module).values()
+    if isinstance(model, type) and issubclass(model, Answer)
+]
+FIELDS = [(model, name, field) for model in (*MODELS, *ANSWERS) for name, field in model.model_fields.items()]
 
 
 def numbers(schema: Any) -> Iterator[dict[str, Any]]:
