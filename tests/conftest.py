@@ -10,6 +10,7 @@ from app.db import make_engine, session_factory
 from app.serve import migrate
 from app.settings import Settings
 from tests import servers
+from tests.documents import hasty_settings
 
 
 @pytest.fixture(scope="session")
@@ -54,15 +55,7 @@ def sessions(settings: Settings) -> Iterator[sessionmaker[Session]]:
 @pytest.fixture(params=["embedded", "production"])
 def deployment(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Settings]:
     """Give settings of a migrated service with short times: SQLite and a folder, or PostgreSQL and Redis."""
-    common = Settings(
-        data_dir=tmp_path,
-        lease_seconds=3.0,
-        heartbeat_seconds=0.1,
-        sweep_seconds=0.3,
-        redispatch_seconds=1.5,
-        shutdown_seconds=1.0,
-        worker_processes=2,
-    )
+    common = hasty_settings(tmp_path)
     if request.param == "embedded":
         migrate(common)
         yield common

@@ -1,5 +1,6 @@
 """Requests and results for tests of jobs."""
 
+from pathlib import Path
 from typing import Any
 from uuid import UUID
 
@@ -9,6 +10,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import jobs
 from app.convert import PointResult
 from app.examples import example
+from app.settings import Settings
 from app.tables import Job, JobEvent, PointRow
 
 
@@ -40,6 +42,19 @@ def point_result(number: int = 0, *, tension: float = 30000.0, failure: str | No
         warnings=[],
         engine_version="9.9.9",
         failure=failure,
+    )
+
+
+def hasty_settings(directory: Path) -> Settings:
+    """Return settings of an embedded service with short times, whose every file lies in a directory."""
+    return Settings(
+        data_dir=directory,
+        lease_seconds=3.0,
+        heartbeat_seconds=0.1,
+        sweep_seconds=0.3,
+        redispatch_seconds=1.5,
+        shutdown_seconds=1.0,
+        worker_processes=2,
     )
 
 

@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.db import make_engine, session_factory
 from app.settings import Settings
-from tests.documents import history, long_request, short_request
+from tests.documents import hasty_settings, history, long_request, short_request
 from tests.processes import Process, group, kill_group, running
 from tests.servers import free_port, wait_until
 
@@ -22,15 +22,7 @@ from tests.servers import free_port, wait_until
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
     """Give settings of an embedded service with short times."""
-    return Settings(
-        data_dir=tmp_path,
-        lease_seconds=3.0,
-        heartbeat_seconds=0.1,
-        sweep_seconds=0.3,
-        redispatch_seconds=1.5,
-        shutdown_seconds=1.0,
-        worker_processes=2,
-    )
+    return hasty_settings(tmp_path)
 
 
 @pytest.fixture
