@@ -15,12 +15,14 @@ Section = Callable[[], Iterator[tuple[str, float]]]
 MEANING = {
     "cycle_ratio": "one limit cycle of the source's lines: direct integration over the engine, all in a stack",
     "cycle_ratio_alone": "the same, each cycle in a call of its own",
-    "cycle_error": "largest relative difference of the dominant amplitude between both",
+    "cycle_error": "largest relative change of the dominant amplitude in 100 periods of direct integration",
+    "cycle_direct_error": "largest relative difference of the settled direct integration, which its slow decay leaves",
     "cycle_direct_seconds": "direct integration of one cycle [s]: DOP853, rtol 1e-8, until 0.1 % over 50 cycles",
     "cycle_direct_cycles": "periods that it integrates, mean",
     "cycle_stack_seconds": "the engine, a cycle of the stack [s]: explicit start, balance, Floquet multipliers",
     "cycle_alone_seconds": "the engine, a cycle in a call of its own [s]",
-    "branch_ratio": "a branch: AUTO (mesh of 30 intervals) over the engine (41 wind speeds with multipliers)",
+    "branch_ratio": "a branch: AUTO (mesh of 30 intervals) over the engine (41 winds), four branches in one stack",
+    "branch_ratio_alone": "the same, each branch in a call of its own",
     "branch_auto_seconds": "AUTO's periodic branch from the Hopf point to 6 m/s [s]",
     "branch_auto_points": "orbits that AUTO computes on it",
     "branch_difference": "largest relative difference of the dominant amplitude at AUTO's wind speeds",
@@ -62,16 +64,20 @@ def _sections(fleet: int) -> Iterator[Section]:
 
 
 def _write_page(figures: dict[str, float]) -> None:
-    """Replace the table between the marks of docs/performance.md."""
-    page = ROOT / "docs" / "performance.md"
-    rows = [f"| `{name}` | {value:.4g} | {MEANING.get(name, '')} |" for name, value in figures.items()]
+    """Replace the tables between the marks of docs/performance.md."""
     where = f"Python {platform.python_version()}, {platform.machine()}, one BLAS thread."
-    table = "\n".join(
-        ["<!-- table -->", where, "", "| figure | value | meaning |", "|---|---|---|", *rows, "<!-- end -->"]
-    )
-    before, rest = page.read_text().split("<!-- table -->", 1)
+    rows = [f"| `{name}` | {value:.4g} | {MEANING.get(name, '')} |" for name, value in figures.items()]
+    _replace("table", [where, "", "| figure | value | meaning |", "|---|---|---|", *rows])
+    shares = engine_speed.profile()
+    rows = [f"| `{place}` | {share:.1%} |" for place, share in shares if share >= 0.01]
+    _replace("profile", ["| where | share of the time |", "|---|---|", *rows])
+
+
+def _replace(mark: str, lines: list[str]) -> None:
+    page = ROOT / "docs" / "performance.md"
+    before, rest = page.read_text().split(f"<!-- {mark} -->", 1)
     _, after = rest.split("<!-- end -->", 1)
-    page.write_text(before + table + after)
+    page.write_text(before + "\n".join([f"<!-- {mark} -->", *lines, "<!-- end -->"]) + after)
 
 
 if __name__ == "__main__":
