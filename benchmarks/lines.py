@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from engine.arrays import FloatArray
-from engine.spec import Aerodynamics, Bundle, Conductor, Damping, Ice, Line, Span, Wind
+from engine.spec import Aerodynamics, Bundle, Coefficients, Conductor, Damping, Ice, Line, Span, Wind
 
 AXIAL_RIGIDITY = 4.78033e10 * 594.48e-6  # theory section 9: E times the iced area
 C11_AT_40_DEG = Aerodynamics((-0.1667, -4.0547, 8.3581), (0.8605, 0.8325, 1.7815), (-0.7272, 0.2935, 5.9704))
@@ -31,16 +30,14 @@ def random_line(generator: np.random.Generator) -> Line:
     def about(value: float, spread: float) -> float:
         return value * float(generator.uniform(1.0 - spread, 1.0 + spread))
 
-    def row(values: FloatArray) -> tuple[float, float, float]:
-        first, second, third = (about(v, 0.2) for v in values.tolist())
-        return first, second, third
+    def row(values: Coefficients) -> Coefficients:
+        first, second, third = values
+        return about(first, 0.2), about(second, 0.2), about(third, 0.2)
 
     subconductors = int(generator.integers(2, 5))
     mass = about(2.379, 0.2)
-    ice = Aerodynamics(
-        *(row(np.array(r)) for r in (C11_AT_40_DEG.vertical, C11_AT_40_DEG.horizontal)),
-        row(np.array(C11_AT_40_DEG.torsional)),
-    )
+    source = C11_AT_40_DEG
+    ice = Aerodynamics(row(source.vertical), row(source.horizontal), row(source.torsional))
     return Line(
         conductor=Conductor(
             about(0.0286, 0.2), about(AXIAL_RIGIDITY, 0.3), about(101.0, 0.4), mass, about(3.334e-4, 0.2)
