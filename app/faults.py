@@ -12,7 +12,8 @@ MOST_FAULTS = 1000
 _MOST_CHARACTERS = 200
 _MOST_SHOWN = 80
 
-# A tagged union puts the name of its branch into a location; no field has one of these names.
+# A tagged union puts the name of its branch into a location, behind the field or the item that it is the type of.
+_SPEEDS, _DEVICES = "wind_speeds_m_per_s", "devices"
 _UNION_BRANCHES = frozenset({"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range"})
 
 
@@ -107,11 +108,16 @@ def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0, root: str =
 
 
 def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str) -> Fault:
-    tokens = [token for token in location if token not in _UNION_BRANCHES]
+    tokens = [token for i, token in enumerate(location) if not _is_branch(location, i)]
     if error["type"] == "union_tag_not_found":
         tokens.append("type")
     code, detail = _wording(error)
     return Fault(root + json_pointer(tokens), code, detail[: 2 * _MOST_CHARACTERS] + _found(error))
+
+
+def _is_branch(location: Sequence[int | str], place: int) -> bool:
+    owners = location[max(0, place - 2) : place]
+    return location[place] in _UNION_BRANCHES and (owners[-1:] == (_SPEEDS,) or owners[:1] == (_DEVICES,))
 
 
 def _found(error: Mapping[str, Any]) -> str:

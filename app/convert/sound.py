@@ -42,8 +42,9 @@ def pruned(document: Mapping[str, Any], faults: Iterable[Fault]) -> Mapping[str,
 def _without(node: Any, paths: Iterable[Sequence[str]]) -> Any:
     """Return a copy that lacks what the paths lead to; only what lies on a path is copied."""
     below: dict[str, list[Sequence[str]]] = defaultdict(list)
-    for first, *rest in paths:
-        below[first].append(rest)
+    for path in paths:
+        if path:
+            below[path[0]].append(path[1:])
     if isinstance(node, list):
         return [_without(item, below[str(i)]) if str(i) in below else item for i, item in enumerate(node)]
     if not isinstance(node, dict):

@@ -242,6 +242,28 @@ def test_points_that_only_together_do_not_fit_are_named() -> None:
     assert "span.length_m = 100.0, devices.0.position_m = 110.0" in faults[0].detail
 
 
+@pytest.mark.parametrize("name", ["list", "range", "spacer", "detuning_pendulum", "airflow_spoiler"])
+def test_a_field_with_the_name_of_a_type_is_named(name: str) -> None:
+    line = changed(f"tags.{name}", 3, changed(f"devices.0.{name}", 1, changed(f"ice.segments.0.{name}", 1)))
+    axis = {"parameter": "span.length_m", "values": [1.0], name: 1}
+    speeds = {"start": 4.0, "stop": 6.0, "count": 3, name: 1}
+    document = {
+        "line": line,
+        "analysis": {"wind_speeds_m_per_s": speeds},
+        "study": {"axes": [axis]},
+        name: 1,
+    }
+    assert set(pointers(document)) >= {
+        f"/line/tags/{name}",
+        f"/line/devices/0/{name}",
+        f"/line/ice/segments/0/{name}",
+        f"/analysis/wind_speeds_m_per_s/{name}",
+        f"/study/axes/0/{name}",
+        f"/{name}",
+    }
+    assert pointers({name: None}) == ["/line", f"/{name}"]
+
+
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=10),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=10), inner, max_size=4),
