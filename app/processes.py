@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from queue import Empty, SimpleQueue
 from types import FrameType
+from typing import IO
 
 from app.settings import Settings
 
@@ -24,8 +25,14 @@ def environment(settings: Settings) -> dict[str, str]:
     return {**os.environ, **ONE_BLAS_THREAD, **settings.environment()}
 
 
-def start(settings: Settings, module: str, *arguments: str, extra: Mapping[str, str] | None = None) -> "Child":
-    """Start a module of ours as a child process, which should call `end_with_parent`.
+def start(
+    settings: Settings,
+    module: str,
+    *arguments: str,
+    extra: Mapping[str, str] | None = None,
+    log: IO[bytes] | None = None,
+) -> "Child":
+    """Start a module of ours as a child process, which should call `end_with_parent`; its output goes to log if given.
 
     Raises
     ------
@@ -33,7 +40,8 @@ def start(settings: Settings, module: str, *arguments: str, extra: Mapping[str, 
         If the process cannot be started.
     """
     variables = {**environment(settings), _PARENT: str(os.getpid()), **(extra or {})}
-    return subprocess.Popen([sys.executable, "-m", module, *arguments], env=variables, stdin=subprocess.DEVNULL)
+    command = [sys.executable, "-m", module, *arguments]
+    return subprocess.Popen(command, env=variables, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
 
 
 Child = subprocess.Popen[bytes]

@@ -113,13 +113,14 @@ def _running() -> Iterator[Running]:
         settings = Settings(data_dir=Path(directory), database_url=database, broker_url=broker)
         migrate(settings)
         port = free_port()
-        api = processes.start(settings, "app.serve", "127.0.0.1", str(port))
-        try:
-            running = Running(settings, port)
-            _wait(lambda: _is_up(running), 30.0)
-            yield running
-        finally:
-            processes.stop([api], signal.SIGTERM, 10.0)
+        with (Path(directory) / "api.log").open("wb") as log:
+            api = processes.start(settings, "app.serve", "127.0.0.1", str(port), log=log)
+            try:
+                running = Running(settings, port)
+                _wait(lambda: _is_up(running), 30.0)
+                yield running
+            finally:
+                processes.stop([api], signal.SIGTERM, 10.0)
 
 
 def _is_up(running: Running) -> bool:
@@ -132,7 +133,8 @@ def _is_up(running: Running) -> bool:
 def _batch_seconds(running: Running, documents: list[dict[str, Any]], workers: int) -> float:
     """Return the time from the first byte of a batch to the last byte of its results [s]."""
     settings = running.settings.model_copy(update={"worker_processes": workers})
-    worker = processes.start(settings, "worker")
+    with (settings.data_dir / "worker.log").open("ab") as log:
+        worker = processes.start(settings, "worker", log=log)
     try:
         with httpx.Client(base_url=running.address, timeout=300.0) as client:
             for _ in range(workers):
