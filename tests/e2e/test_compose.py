@@ -95,13 +95,19 @@ def test_our_processes_have_one_blas_thread_and_no_privileges(services: dict[str
     assert all((ROOT / name).exists() for name in copied)
 
 
-def test_compose_itself_takes_the_file() -> None:
+def compose_command() -> list[str]:
+    """Return the compose of this machine: Docker's plugin, else the program of its own; without both the test skips."""
     docker = shutil.which("docker")
     if docker is not None and code([docker, "compose", "version"], dict(os.environ)) == 0:
-        command = [docker, "compose", "--file", str(ROOT / "docker-compose.yml"), "config", "--quiet"]
-        bare = {name: value for name, value in os.environ.items() if name not in SECRETS}
-        assert code(command, {**bare, **SECRETS}) == 0
-        assert code(command, bare) != 0
+        return [docker, "compose"]
+    return [binary("docker-compose")]
+
+
+def test_compose_itself_takes_the_file() -> None:
+    command = [*compose_command(), "--file", str(ROOT / "docker-compose.yml"), "config", "--quiet"]
+    bare = {name: value for name, value in os.environ.items() if name not in SECRETS}
+    assert code(command, {**bare, **SECRETS}) == 0
+    assert code(command, bare) != 0
 
 
 class Deployment:
