@@ -36,10 +36,11 @@ class CoefficientTable:
 
 @dataclass(frozen=True, slots=True)
 class CoefficientFit:
-    """A cubic fit about the static angle: the coefficients, with their range, and the root mean square residuals."""
+    """A cubic fit about the static angle: coefficients with their range, root mean square residuals, rows used."""
 
     aerodynamics: Aerodynamics
     residual: Coefficients
+    rows: int
 
 
 def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: float) -> CoefficientFit:
@@ -77,7 +78,7 @@ def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: f
     rows = [_triple(column) for column in coefficients[1:].T]
     fitted_range = float(np.abs(alpha).max())
     aerodynamics = Aerodynamics(rows[0], rows[1], rows[2], _triple(coefficients[0]), fitted_range)
-    return CoefficientFit(aerodynamics, _triple(residual))
+    return CoefficientFit(aerodynamics, _triple(residual), alpha.size)
 
 
 def den_hartog_coefficient(table: CoefficientTable) -> FloatArray:

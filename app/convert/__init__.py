@@ -1,6 +1,7 @@
 """The border to the engine: JSON documents in, plain rows out. Units change here and nowhere else."""
 
 from app.convert.check import check, read, request_faults, with_further_faults
+from app.convert.fit import fit
 from app.convert.run import TABLES, Advance, PointResult, run
 from app.convert.stack import NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
 from engine import ENGINE_VERSION
@@ -12,6 +13,7 @@ __all__ = [
     "NumberedLine",
     "PointResult",
     "check",
+    "fit",
     "read",
     "read_analysis",
     "read_line",

@@ -54,6 +54,7 @@ def aerodynamics(part: schemas.Aerodynamics, at_rest: schemas.AerodynamicsAtRest
         horizontal=_three(part.horizontal),
         torsional=_three(part.torsional),
         at_rest=(at_rest.vertical, at_rest.horizontal, at_rest.torsional) if at_rest else None,
+        fitted_range=None if part.fitted_range is None else math.radians(part.fitted_range),
     )
 
 

@@ -23,10 +23,10 @@ def to_pointer(fault: outcome.Fault, line: object, analysis: object) -> Fault:
         path = path[1:]
     root, node = ("analysis", analysis) if path[0] in schemas.Analysis.model_fields else ("line", line)
     value = "" if fault.value is None else f", got {str(fault.value)[:80]}"
-    return Fault(json_pointer([root, *_json_names(node, path)]), "inconsistent", f"{fault.rule}{value}")
+    return Fault(json_pointer([root, *json_names(node, path)]), "inconsistent", f"{fault.rule}{value}")
 
 
-def _json_names(node: object, path: Sequence[str]) -> list[str]:
+def json_names(node: object, path: Sequence[str]) -> list[str]:
     """Turn the engine's names into the contract's by walking the models, whose attributes carry the engine's names."""
     names: list[str] = []
     for token in path:

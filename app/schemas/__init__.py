@@ -1,5 +1,6 @@
 """The JSON that goes in and comes out, as pydantic models: names, units, bounds and examples of the contract."""
 
+from app.schemas.aerodynamics import CoefficientRow, FitRequest
 from app.schemas.analysis import Analysis, Axis, JobRequest, Study, WindSpeedRange
 from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
 from app.schemas.environment import (
@@ -22,10 +23,12 @@ __all__ = [
     "Axis",
     "BlowOut",
     "Bundle",
+    "CoefficientRow",
     "Conductor",
     "Damping",
     "DetuningPendulum",
     "Device",
+    "FitRequest",
     "Ice",
     "IceSegment",
     "JobRequest",

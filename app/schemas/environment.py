@@ -35,6 +35,9 @@ class Aerodynamics(Document):
         examples=[[-0.7272, 0.2935, 5.9704]],
         json_schema_extra={"unit": "1/rad^j"},
     )
+    fitted_range: float | None = quantity(
+        "fitted_range_deg", "Largest angle of attack for which the coefficients hold", "deg", (1e-3, 180.0), 20.0, None
+    )
 
 
 class AerodynamicsAtRest(Document):

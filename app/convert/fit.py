@@ -1,0 +1,44 @@
+"""A table of measured coefficients -> the engine's fit -> coefficients as a line document takes them."""
+
+import math
+from typing import Any
+
+from app import schemas
+from app.convert.pointers import json_names
+from app.faults import BadInput, Fault, json_pointer
+from engine.outcome import InvalidSpec
+
+
+def fit(request: schemas.FitRequest) -> dict[str, Any]:
+    """Fit cubics to a table (theory section 5) and return the answer as plain values.
+
+    Raises
+    ------
+    BadInput
+        If too few rows lie in the range, or all of them on one side of the static angle.
+    """
+    import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
+
+    from engine.fit import CoefficientTable, den_hartog_coefficient, fit_coefficients  # noqa: PLC0415
+
+    degrees = np.array([row.angle for row in request.table])
+    columns = np.array([(row.lift, row.drag, row.moment) for row in request.table])
+    table = CoefficientTable(np.radians(degrees), columns[:, 0], columns[:, 1], columns[:, 2])
+    try:
+        found = fit_coefficients(table, math.radians(request.static_angle), math.radians(request.half_range))
+    except InvalidSpec as error:
+        pointers = [(json_pointer(json_names(request, fault.field.split("."))), fault.rule) for fault in error.faults]
+        raise BadInput([Fault(pointer, "inconsistent", rule) for pointer, rule in pointers]) from error
+    made = found.aerodynamics
+    names = ("vertical", "horizontal", "torsional")
+    slope = made.vertical[0]
+    over_angle = zip(degrees.tolist(), den_hartog_coefficient(table).tolist(), strict=True)
+    return {
+        "aerodynamics": {name: list(getattr(made, name)) for name in names}
+        | {"fitted_range_deg": math.degrees(made.fitted_range or 0.0)},
+        "aerodynamics_at_rest": dict(zip(names, made.at_rest or (), strict=True)),
+        "residual": dict(zip(names, found.residual, strict=True)),
+        "rows_used": found.rows,
+        "den_hartog": {"coefficient": slope, "unstable": slope < 0.0},
+        "den_hartog_over_angle": [{"angle_deg": a, "coefficient": c, "unstable": c < 0.0} for a, c in over_angle],
+    }
