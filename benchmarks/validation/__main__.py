@@ -1,0 +1,51 @@
+"""Write docs/validation.md. `make validation` writes the whole page; names of sections write only those anew."""
+
+import argparse
+from collections.abc import Callable, Iterator, Mapping
+
+from benchmarks.validation import critical_wind_speeds, direct_integration, frequencies, limit_cycles
+from benchmarks.validation.common import ROOT
+
+PAGE = ROOT / "docs" / "validation.md"
+
+HEADER = """# Validation
+
+Every figure on this page is written by `make validation` (benchmarks/validation/, a module for each section). Unless a
+section says otherwise the lines are those of the source's Table 1 with one to four sub-conductors, constant damping
+coefficient, exact closure, ten elements. Theory and section numbers are explained in [conventions](conventions.md)."""
+
+SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
+    "frequencies": frequencies.section,
+    "critical_wind_speeds": critical_wind_speeds.section,
+    "limit_cycles": limit_cycles.section,
+    "direct_integration": direct_integration.section,
+}
+
+
+def main() -> None:
+    """Compute the sections asked for and put them on the page; the others stay as they are."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sections", nargs="*", metavar="SECTION", help=f"all, or some of: {', '.join(SECTIONS)}")
+    wanted = parser.parse_args().sections or list(SECTIONS)
+    if unknown := set(wanted) - set(SECTIONS):
+        parser.error(f"there are no sections {', '.join(sorted(unknown))}")
+    written = _written()
+    for name in wanted:
+        print(name, flush=True)
+        written[name] = "\n".join(SECTIONS[name]())
+    texts = [f"{_mark(name)}\n{written[name]}" for name in SECTIONS if name in written]
+    PAGE.write_text("\n\n".join([HEADER, *texts]) + "\n")
+
+
+def _written() -> dict[str, str]:
+    """Return the sections that the page holds, by name."""
+    pieces = PAGE.read_text().split("\n\n<!-- section ")[1:]
+    return {name: text.rstrip("\n") for name, text in (piece.split(" -->\n", 1) for piece in pieces)}
+
+
+def _mark(name: str) -> str:
+    return f"<!-- section {name} -->"
+
+
+if __name__ == "__main__":
+    main()
