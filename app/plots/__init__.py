@@ -1,0 +1,10 @@
+"""Pictures of results. The only package that knows matplotlib.
+
+Figures are made as objects, without pyplot and its global state.
+"""
+
+from app.plots.amplitudes import amplitude
+from app.plots.common import MEDIA_TYPES, Extension
+from app.plots.orbits import orbit
+
+__all__ = ["MEDIA_TYPES", "Extension", "amplitude", "orbit"]
