@@ -10,10 +10,11 @@ from datetime import datetime, timedelta
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, and_, delete, func, insert, select, tuple_, update
+from sqlalchemy import ColumnElement, Select, and_, delete, func, insert, select, tuple_, update
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
+from app.auth import Caller
 from app.convert import NumberedLine
 from app.db import database_time
 from app.jobs import CancelOutcome, input_hash
@@ -60,9 +61,9 @@ class Counts:
         return JobStatus.SUCCESSFUL if self.successful else JobStatus.FAILED
 
 
-def begin(session: Session, analysis: dict[str, Any]) -> UUID:
+def begin(session: Session, caller: Caller, analysis: dict[str, Any]) -> UUID:
     """Add a batch that nobody sees until `accept` is called, and return its id."""
-    batch = Batch(id=uuid7(), created_at=database_time(session), analysis=analysis)
+    batch = Batch(id=uuid7(), owner=caller.owner, created_at=database_time(session), analysis=analysis)
     session.add(batch)
     session.flush()
     return batch.id
@@ -74,12 +75,12 @@ def add_items(session: Session, items: Sequence[dict[str, Any]]) -> None:
         session.execute(insert(BatchItem.__table__), items)  # type: ignore[arg-type]  # a table, though typed wider
 
 
-def accept(session: Session, batch_id: UUID, chunks: Sequence[Chunk], rejected_lines: int) -> None:
+def accept(session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Chunk], rejected_lines: int) -> None:
     """Make a batch visible whose lines are all stored, with its chunks waiting for workers."""
     now = database_time(session)
     received = update(Batch).where(Batch.id == batch_id).values(received_at=now, rejected_lines=rejected_lines)
     session.execute(received)
-    _add_chunks(session, batch_id, chunks, now)
+    _add_chunks(session, caller, batch_id, chunks, now)
 
 
 def discard(session: Session, batch_id: UUID) -> None:
@@ -94,15 +95,14 @@ def discard_abandoned(session: Session) -> int:
     return len(session.scalars(statement).all())
 
 
-def get(session: Session, batch_id: UUID) -> Batch | None:
-    """Return a batch that is wholly received, or None if there is none of that id."""
-    batch = session.get(Batch, batch_id)
-    return batch if batch is not None and batch.received_at is not None else None
+def get(session: Session, owner: str, batch_id: UUID) -> Batch | None:
+    """Return a batch that is wholly received, or None if the owner has none of that id."""
+    return session.scalars(_of(owner, batch_id)).one_or_none()
 
 
-def page(session: Session, after: tuple[datetime, UUID] | None, limit: int) -> list[Batch]:
-    """Return the newest batches, or those that follow `after`, the (created_at, id) of the last."""
-    statement = select(Batch).where(Batch.received_at.is_not(None))
+def page(session: Session, owner: str, after: tuple[datetime, UUID] | None, limit: int) -> list[Batch]:
+    """Return the owner's newest batches, or those that follow `after`, the (created_at, id) of the last."""
+    statement = select(Batch).where(Batch.owner == owner, Batch.received_at.is_not(None))
     if after is not None:
         statement = statement.where(tuple_(Batch.created_at, Batch.id) < after)
     return list(session.scalars(statement.order_by(Batch.created_at.desc(), Batch.id.desc()).limit(limit)))
@@ -120,9 +120,9 @@ def counts(session: Session, batch_ids: Sequence[UUID]) -> dict[UUID, Counts]:
     return {batch_id: _counted(grouped[batch_id]) for batch_id in batch_ids}
 
 
-def cancel(session: Session, batch_id: UUID) -> CancelOutcome:
+def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
     """End what is queued at once and ask what is running to stop; remove a batch that has ended, with its results."""
-    if _locked(session, batch_id) is None:
+    if _locked(session, caller.owner, batch_id) is None:
         return CancelOutcome.MISSING
     before = counts(session, [batch_id])[batch_id]
     if not before.accepted + before.running:
@@ -137,12 +137,13 @@ def cancel(session: Session, batch_id: UUID) -> CancelOutcome:
     return CancelOutcome.REQUESTED if running else CancelOutcome.DISMISSED
 
 
-def resubmit(session: Session, batch_id: UUID, chunk_lines: int) -> list[UUID]:
+def resubmit(session: Session, caller: Caller, batch_id: UUID, chunk_lines: int) -> list[UUID]:
     """Put the lines that failed into new chunks, and return the ids of these; none if nothing has failed.
 
     Their numbers stay, and what an earlier attempt has stored of the others is not touched.
     """
-    _locked(session, batch_id)
+    if _locked(session, caller.owner, batch_id) is None:
+        return []
     numbers = _failed_numbers(session, batch_id)
     old = list(session.scalars(select(Job).where(*_has_failures(batch_id))))
     for job in old:
@@ -155,7 +156,7 @@ def resubmit(session: Session, batch_id: UUID, chunk_lines: int) -> list[UUID]:
         chunks.append(Chunk(uuid7(), parts + len(chunks) + 1, len(moved)))
         belongs = BatchItem.batch_id == batch_id, BatchItem.number.in_(moved)
         session.execute(update(BatchItem).where(*belongs).values(chunk_id=chunks[-1].id))
-    _add_chunks(session, batch_id, chunks, database_time(session))
+    _add_chunks(session, caller, batch_id, chunks, database_time(session))
     return [chunk.id for chunk in chunks]
 
 
@@ -201,10 +202,13 @@ def _counted(groups: Sequence[_Group]) -> Counts:
     )
 
 
-def _locked(session: Session, batch_id: UUID) -> Batch | None:
+def _of(owner: str, batch_id: UUID) -> Select[Batch]:
+    return select(Batch).where(Batch.id == batch_id, Batch.owner == owner, Batch.received_at.is_not(None))
+
+
+def _locked(session: Session, owner: str, batch_id: UUID) -> Batch | None:
     """Return a batch and lock its row, so that two changes of the whole wait for each other."""
-    statement = select(Batch).where(Batch.id == batch_id, Batch.received_at.is_not(None))
-    return session.scalars(statement.with_for_update()).one_or_none()
+    return session.scalars(_of(owner, batch_id).with_for_update()).one_or_none()
 
 
 def _has_failures(batch_id: UUID) -> tuple[ColumnElement[bool], ...]:
@@ -224,19 +228,20 @@ def _failed_numbers(session: Session, batch_id: UUID) -> list[int]:
     return list(session.scalars(statement.order_by(BatchItem.number)))
 
 
-def _add_chunks(session: Session, batch_id: UUID, chunks: Sequence[Chunk], now: datetime) -> None:
+def _add_chunks(session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Chunk], now: datetime) -> None:
     if not chunks:
         return
-    session.add_all(_as_job(batch_id, chunk, now) for chunk in chunks)
+    session.add_all(_as_job(caller, batch_id, chunk, now) for chunk in chunks)
     session.flush()
     events = [{"job_id": c.id, "at": now, "kind": JobEventKind.ACCEPTED, "attempt": 0} for c in chunks]
     session.execute(insert(JobEvent), events)
 
 
-def _as_job(batch_id: UUID, chunk: Chunk, now: datetime) -> Job:
+def _as_job(caller: Caller, batch_id: UUID, chunk: Chunk, now: datetime) -> Job:
     document = {"batch_id": str(batch_id), "part": chunk.part}
     return Job(
         id=chunk.id,
+        owner=caller.owner,
         created_at=now,
         status=JobStatus.ACCEPTED,
         batch_id=batch_id,

@@ -9,10 +9,11 @@ from enum import StrEnum
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, delete, select, tuple_
+from sqlalchemy import ColumnElement, Select, delete, select, tuple_
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
+from app.auth import Caller
 from app.db import database_time
 from app.tables import BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
@@ -42,6 +43,7 @@ class JobFilters:
 
 def create(
     session: Session,
+    caller: Caller,
     document: Mapping[str, Any],
     *,
     name: str | None = None,
@@ -57,6 +59,7 @@ def create(
     """
     job = Job(
         id=uuid7(),
+        owner=caller.owner,
         created_at=database_time(session),
         status=JobStatus.ACCEPTED,
         name=name,
@@ -83,26 +86,28 @@ def input_hash(document: Mapping[str, Any]) -> str:
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
-def get(session: Session, job_id: UUID) -> Job | None:
-    """Return a job with its tags, or None if there is none of that id."""
-    return session.get(Job, job_id)
+def get(session: Session, owner: str, job_id: UUID) -> Job | None:
+    """Return a job with its tags, or None if the owner has none of that id."""
+    return session.scalars(_of(owner, job_id)).one_or_none()
 
 
-def page(session: Session, filters: JobFilters, after: tuple[datetime, UUID] | None, limit: int) -> list[Job]:
-    """Return the newest jobs that pass the filters, or those that follow `after`, the (created_at, id) of the last."""
-    statement = select(Job).where(*_conditions(filters))
+def page(
+    session: Session, owner: str, filters: JobFilters, after: tuple[datetime, UUID] | None, limit: int
+) -> list[Job]:
+    """Return the owner's newest jobs that pass the filters, or those after the (created_at, id) of another."""
+    statement = select(Job).where(Job.owner == owner, *_conditions(filters))
     if after is not None:
         statement = statement.where(tuple_(Job.created_at, Job.id) < after)
     return list(session.scalars(statement.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit)))
 
 
-def cancel(session: Session, job_id: UUID) -> CancelOutcome:
+def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
     """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows.
 
     A chunk that is removed takes its lines out of its batch.
     """
     # The row is locked, so that a claim or an end of the job cannot slip in between the look and the change.
-    job = session.get(Job, job_id, with_for_update=True)
+    job = session.scalars(_of(caller.owner, job_id).with_for_update()).one_or_none()
     if job is None:
         return CancelOutcome.MISSING
     if job.status is JobStatus.ACCEPTED:
@@ -122,6 +127,10 @@ def cancel(session: Session, job_id: UUID) -> CancelOutcome:
 def record(session: Session, job_id: UUID, kind: JobEventKind, *, attempt: int = 0, detail: str | None = None) -> None:
     """Add what happened to a job to its events, in the transaction in which it happens."""
     session.add(JobEvent(job_id=job_id, at=database_time(session), kind=kind, attempt=attempt, detail=detail))
+
+
+def _of(owner: str, job_id: UUID) -> Select[Job]:
+    return select(Job).where(Job.id == job_id, Job.owner == owner)
 
 
 def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:

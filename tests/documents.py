@@ -8,10 +8,14 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs
+from app.auth import LOCAL, Caller, Scope
 from app.convert import PointResult
 from app.examples import example
 from app.settings import Settings
 from app.tables import Job, JobEvent, PointRow
+
+STRANGER = Caller("stranger", frozenset(Scope))
+"""Somebody else than the caller of a service without keys."""
 
 
 def short_request() -> dict[str, Any]:
@@ -61,13 +65,13 @@ def hasty_settings(directory: Path) -> Settings:
 def add_job(sessions: sessionmaker[Session], document: dict[str, Any] | None = None) -> UUID:
     """Make a committed job and return its id."""
     with sessions.begin() as session:
-        return jobs.create(session, document or {"line": {}}).id
+        return jobs.create(session, LOCAL, document or {"line": {}}).id
 
 
 def look(sessions: sessionmaker[Session], job_id: UUID) -> Job:
     """Return the job as the database has it now."""
     with sessions() as session:
-        job = jobs.get(session, job_id)
+        job = jobs.get(session, LOCAL.owner, job_id)
     assert job is not None
     return job
 

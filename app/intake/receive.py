@@ -16,6 +16,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from uuid_utils.compat import uuid7
 
 from app import batches, convert, schemas
+from app.auth import Caller
 from app.batches import Chunk
 from app.faults import MOST_FAULTS, BadInput, Fault
 from app.intake.bodies import Incoming
@@ -49,7 +50,9 @@ class _Draft:
     faults: list[Fault] = field(default_factory=list)
 
 
-def receive(sessions: sessionmaker[Session], settings: Settings, incoming: Incoming, *, atomic: bool) -> Receipt:
+def receive(
+    sessions: sessionmaker[Session], settings: Settings, caller: Caller, incoming: Incoming, *, atomic: bool
+) -> Receipt:
     """Check and store the lines of a batch, and accept it if any of them can be run; an atomic one only if all can.
 
     Raises
@@ -63,13 +66,13 @@ def receive(sessions: sessionmaker[Session], settings: Settings, incoming: Incom
     """
     analysis = convert.read_analysis(incoming.analysis)
     with sessions.begin() as session:
-        batch_id = batches.begin(session, analysis.model_dump(mode="json", by_alias=True))
+        batch_id = batches.begin(session, caller, analysis.model_dump(mode="json", by_alias=True))
     draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic)
     try:
         _store(sessions, settings, draft, incoming.lines)
         _refuse_hopeless(draft)
         with sessions.begin() as session:
-            batches.accept(session, batch_id, draft.chunks, draft.rejected)
+            batches.accept(session, caller, batch_id, draft.chunks, draft.rejected)
     except BaseException:
         with suppress(SQLAlchemyError), sessions.begin() as session:
             batches.discard(session, batch_id)

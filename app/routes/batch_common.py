@@ -6,6 +6,7 @@ from uuid import UUID
 from sqlalchemy.orm import Session
 
 from app import batch_results, batches
+from app.auth import Caller
 from app.batches import Counts
 from app.errors import ProblemError, ProblemKind
 from app.routes.common import ENDED, PREFIX
@@ -14,15 +15,15 @@ from app.tables import Batch
 _ERRORS_SHOWN = 50
 
 
-def find_batch(session: Session, batch_id: UUID) -> Batch:
-    """Return a batch.
+def find_batch(session: Session, caller: Caller, batch_id: UUID) -> Batch:
+    """Return a batch of the caller's owner.
 
     Raises
     ------
     ProblemError
-        404 if there is none of that id.
+        404 if the owner has none of that id, whoever else may have one.
     """
-    batch = batches.get(session, batch_id)
+    batch = batches.get(session, caller.owner, batch_id)
     if batch is None:
         raise ProblemError(ProblemKind.NOT_FOUND, f"There is no batch {batch_id}.")
     return batch

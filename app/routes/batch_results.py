@@ -6,14 +6,16 @@ from uuid import UUID
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import StreamingResponse
+from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import batch_results, batches, export
+from app.auth import Caller
 from app.batch_results import BatchTable
 from app.errors import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import batch_address, find_batch
-from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, Readers
+from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, CallerOf, Readers
 from app.schemas.batch import BatchErrors
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
@@ -31,6 +33,14 @@ _TABLES: dict[TableName, BatchTable] = {
 }
 
 
+class ResultsQuery(BaseModel):
+    """Which results of a batch, and in which form."""
+
+    table: TableName | None = Field(default=None, description="One table of flat rows; CSV is the summary if absent")
+    format: BatchFormat | None = Field(default=None, description="Wins over the Accept header")
+    partial: bool = Field(default=False, description="Also while lines are waiting or running")
+
+
 @router.get(
     "/results",
     response_class=StreamingResponse,
@@ -44,27 +54,24 @@ _TABLES: dict[TableName, BatchTable] = {
 def results(
     batch_id: UUID,
     request: Request,
+    caller: CallerOf,
     readers: Readers,
-    table: Annotated[
-        TableName | None, Query(description="One table of flat rows; CSV is the summary if absent")
-    ] = None,
-    format: Annotated[BatchFormat | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
-    partial: Annotated[bool, Query(description="Also while lines are waiting or running")] = False,
+    asked: Annotated[ResultsQuery, Query()],
 ) -> StreamingResponse:
     """Return what came of the lines in the order of their numbers: everything, one object a line, or one table.
 
     Every row has `number`, `reference` and `asset_id`. A line without results has its failure.
     """
-    form = format or export.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
+    form = asked.format or export.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
     if form is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, "Results are application/x-ndjson or text/csv.")
-    _require(readers, batch_id, ended=not partial)
-    name: BatchTable = _TABLES[table or "summary"]
+    _require(readers, caller, batch_id, ended=not asked.partial)
+    name: BatchTable = _TABLES[asked.table or "summary"]
 
     def pieces(session: Session) -> Iterator[str]:
         if form == "csv":
             return export.csv_text(batch_results.columns(name), batch_results.rows(session, batch_id, name))
-        if table is None:
+        if asked.table is None:
             return export.ndjson_text(batch_results.documents(session, batch_id))
         return export.ndjson_text(batch_results.rows(session, batch_id, name))
 
@@ -82,17 +89,17 @@ def results(
         **documentation.problems(ProblemKind.NOT_FOUND),
     },
 )
-def errors(batch_id: UUID, readers: Readers) -> StreamingResponse:
+def errors(batch_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
     """Return all faults of the lines that were rejected when the batch came in."""
-    _require(readers, batch_id, ended=False)
+    _require(readers, caller, batch_id, ended=False)
     return _streamed(
         readers, lambda session: export.json_text("errors", batch_results.errors(session, batch_id)), "application/json"
     )
 
 
-def _require(readers: sessionmaker[Session], batch_id: UUID, *, ended: bool) -> None:
+def _require(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, ended: bool) -> None:
     with readers() as session:
-        find_batch(session, batch_id)
+        find_batch(session, caller, batch_id)
         counts = batches.counts(session, [batch_id])[batch_id]
     if ended and counts.status not in ENDED:
         raise ProblemError(

@@ -10,9 +10,11 @@ import anyio
 from anyio import CapacityLimiter, from_thread, to_thread
 from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.responses import JSONResponse
+from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import batches, convert, intake, paging
+from app.auth import Caller
 from app.errors import ProblemError, ProblemKind, invalid_document, query_fault
 from app.faults import BadInput, parse_json
 from app.intake import BodyTooLarge, Incoming, Receipt
@@ -20,7 +22,7 @@ from app.jobs import CancelOutcome
 from app.queue import Sender
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import batch_address, batch_document, batch_summary, find_batch
-from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, Readers, SenderOf, SettingsOf, Writers
+from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
 from app.schemas.batch import BatchDocument, BatchPage
 from app.settings import Settings, cursor_key
 
@@ -48,6 +50,13 @@ def _limiter(request: Request) -> CapacityLimiter:
     return limiter
 
 
+class IntakeQuery(BaseModel):
+    """How a batch is taken in."""
+
+    atomic: bool = Field(default=False, description="Take all lines or, if any is at fault, none")
+    analysis: str | None = Field(default=None, max_length=20_000, description="Analysis of a CSV batch, as JSON")
+
+
 @router.post(
     "",
     status_code=202,
@@ -65,20 +74,20 @@ def _limiter(request: Request) -> CapacityLimiter:
 )
 async def submit(
     request: Request,
+    caller: CallerOf,
     writers: Writers,
     sender: SenderOf,
     limiter: Annotated[CapacityLimiter, Depends(_limiter)],
-    atomic: Annotated[bool, Query(description="Take all lines or, if any is at fault, none")] = False,
-    analysis: Annotated[str | None, Query(max_length=20_000, description="Analysis of a CSV batch, as JSON")] = None,
+    how: Annotated[IntakeQuery, Query()],
 ) -> JSONResponse:
     """Accept many lines under one analysis. Lines at fault are kept with their faults, the others run.
 
     Each line may hold a `reference` beside its own fields; it is given back with the results, as is `asset_id`.
     """
     settings: Settings = request.app.state.settings
-    read = partial(_incoming, request, settings, analysis)
-    receipt = await to_thread.run_sync(partial(_receive, writers, settings, read, atomic), limiter=limiter)
-    return await to_thread.run_sync(partial(_accepted, writers, sender, receipt.batch_id, receipt.chunk_ids))
+    read = partial(_incoming, request, settings, how.analysis)
+    receipt = await to_thread.run_sync(partial(_receive, writers, settings, caller, read, how.atomic), limiter=limiter)
+    return await to_thread.run_sync(partial(_accepted, writers, sender, caller, receipt.batch_id, receipt.chunk_ids))
 
 
 @router.get(
@@ -86,10 +95,10 @@ async def submit(
     response_model=BatchDocument,
     responses={200: documentation.body("Status", ("application/json", batch_documentation.FINISHED)), **_COMMON},
 )
-def status(batch_id: UUID, readers: Readers) -> JSONResponse:
+def status(batch_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
     """Tell how far a batch is: its lines by state, and what is wrong with the first that were rejected."""
     with readers() as session:
-        batch = find_batch(session, batch_id)
+        batch = find_batch(session, caller, batch_id)
         counts = batches.counts(session, [batch_id])[batch_id]
         headers = {} if counts.status in ENDED else {"Retry-After": RETRY_SECONDS}
         return JSONResponse(batch_document(session, batch, counts), headers=headers)
@@ -105,6 +114,7 @@ def status(batch_id: UUID, readers: Readers) -> JSONResponse:
 )
 def list_batches(
     settings: SettingsOf,
+    caller: CallerOf,
     readers: Readers,
     limit: Annotated[int, Query(ge=1, le=100, description="Batches on a page")] = 20,
     cursor: Annotated[str | None, Query(max_length=200, description="Place that a `next` address holds")] = None,
@@ -113,7 +123,7 @@ def list_batches(
     key = cursor_key(settings)
     after = _place(key, cursor) if cursor else None
     with readers() as session:
-        found = batches.page(session, after, limit + 1)
+        found = batches.page(session, caller.owner, after, limit + 1)
         shown = found[:limit]
         counts = batches.counts(session, [batch.id for batch in shown])
     following = None
@@ -127,13 +137,15 @@ def list_batches(
 @router.post(
     "/{batch_id}/resubmit", status_code=202, response_model=BatchDocument, responses={202: _ACCEPTED, **_COMMON}
 )
-def resubmit(batch_id: UUID, settings: SettingsOf, writers: Writers, sender: SenderOf) -> JSONResponse:
+def resubmit(
+    batch_id: UUID, settings: SettingsOf, caller: CallerOf, writers: Writers, sender: SenderOf
+) -> JSONResponse:
     """Run the lines that failed once more, under their numbers; if none has failed nothing changes."""
     with writers.begin() as session:
-        batch = find_batch(session, batch_id)
+        batch = find_batch(session, caller, batch_id)
         size = intake.lines_a_chunk(settings, convert.read_analysis(batch.analysis))
-        chunk_ids = batches.resubmit(session, batch_id, size)
-    return _accepted(writers, sender, batch_id, chunk_ids)
+        chunk_ids = batches.resubmit(session, caller, batch_id, size)
+    return _accepted(writers, sender, caller, batch_id, chunk_ids)
 
 
 @router.delete(
@@ -152,11 +164,11 @@ def resubmit(batch_id: UUID, settings: SettingsOf, writers: Writers, sender: Sen
         **_COMMON,
     },
 )
-def cancel(batch_id: UUID, writers: Writers) -> Response:
+def cancel(batch_id: UUID, caller: CallerOf, writers: Writers) -> Response:
     """Cancel what has not ended of a batch, or remove one that has ended."""
     with writers.begin() as session:
-        batch = find_batch(session, batch_id)
-        outcome = batches.cancel(session, batch_id)
+        batch = find_batch(session, caller, batch_id)
+        outcome = batches.cancel(session, caller, batch_id)
         if outcome is CancelOutcome.REMOVED:
             return Response(status_code=204)
         document = batch_document(session, batch, batches.counts(session, [batch_id])[batch_id])
@@ -165,9 +177,11 @@ def cancel(batch_id: UUID, writers: Writers) -> Response:
     return JSONResponse(document)
 
 
-def _receive(writers: sessionmaker[Session], settings: Settings, read: partial[Incoming], atomic: bool) -> Receipt:
+def _receive(
+    writers: sessionmaker[Session], settings: Settings, caller: Caller, read: partial[Incoming], atomic: bool
+) -> Receipt:
     try:
-        return intake.receive(writers, settings, read(), atomic=atomic)
+        return intake.receive(writers, settings, caller, read(), atomic=atomic)
     except BodyTooLarge as error:
         raise ProblemError(ProblemKind.TOO_LARGE, str(error), headers={"Connection": "close"}) from error
     except BadInput as error:
@@ -224,11 +238,11 @@ def _pieces(request: Request) -> Iterator[bytes]:
 
 
 def _accepted(
-    writers: sessionmaker[Session], sender: Sender, batch_id: UUID, chunk_ids: Sequence[UUID]
+    writers: sessionmaker[Session], sender: Sender, caller: Caller, batch_id: UUID, chunk_ids: Sequence[UUID]
 ) -> JSONResponse:
     sender.send(chunk_ids, chunk=True)
     with writers() as session:
-        batch = find_batch(session, batch_id)
+        batch = find_batch(session, caller, batch_id)
         document = batch_document(session, batch, batches.counts(session, [batch_id])[batch_id])
     return JSONResponse(document, 202, headers={"Location": batch_address(batch_id), "Retry-After": RETRY_SECONDS})
 

@@ -7,6 +7,7 @@ from fastapi import Depends, Request
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs
+from app.auth import LOCAL, Caller
 from app.errors import ProblemError, ProblemKind
 from app.queue import Sender
 from app.settings import Settings
@@ -40,21 +41,27 @@ def _sender(request: Request) -> Sender:
     return sender
 
 
+async def _caller(request: Request) -> Caller:
+    caller: Caller = getattr(request.state, "caller", LOCAL)
+    return caller
+
+
 SettingsOf = Annotated[Settings, Depends(_settings)]
 Readers = Annotated[sessionmaker[Session], Depends(_readers)]
 Writers = Annotated[sessionmaker[Session], Depends(_writers)]
 SenderOf = Annotated[Sender, Depends(_sender)]
+CallerOf = Annotated[Caller, Depends(_caller)]
 
 
-def find_job(session: Session, job_id: UUID) -> Job:
-    """Return a job.
+def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
+    """Return a job of the caller's owner.
 
     Raises
     ------
     ProblemError
-        404 if there is none of that id.
+        404 if the owner has none of that id, whoever else may have one.
     """
-    job = jobs.get(session, job_id)
+    job = jobs.get(session, caller.owner, job_id)
     if job is None:
         raise ProblemError(ProblemKind.NOT_FOUND, f"There is no job {job_id}.")
     return job

@@ -18,6 +18,7 @@ from app.routes.common import (
     ENDED,
     PREFIX,
     RETRY_SECONDS,
+    CallerOf,
     Readers,
     SenderOf,
     SettingsOf,
@@ -103,6 +104,7 @@ class ListQuery(BaseModel):
 )
 def submit(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
+    caller: CallerOf,
     writers: Writers,
     sender: SenderOf,
 ) -> JSONResponse:
@@ -113,7 +115,7 @@ def submit(
     line = document.line
     with writers.begin() as session:
         kept = document.model_dump(mode="json", by_alias=True, exclude={"study"} if document.study is None else None)
-        job = jobs.create(session, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
+        job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
         session.refresh(job, ["tags"])
         status = job_document(job)
     sender.send([job.id])
@@ -125,10 +127,10 @@ def submit(
     response_model=JobDocument,
     responses={200: documentation.body("Status", ("application/json", documentation.FINISHED_JOB)), **_COMMON},
 )
-def status(job_id: UUID, readers: Readers) -> JSONResponse:
+def status(job_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
     """Tell how far a job is."""
     with readers() as session:
-        job = find_job(session, job_id)
+        job = find_job(session, caller, job_id)
         headers = {} if job.status in ENDED else {"Retry-After": RETRY_SECONDS}
         return JSONResponse(job_document(job), headers=headers)
 
@@ -145,13 +147,14 @@ def list_jobs(
     request: Request,
     filters: Annotated[ListQuery, Query()],
     settings: SettingsOf,
+    caller: CallerOf,
     readers: Readers,
 ) -> JSONResponse:
     """List jobs, newest first, a page at a time; `next` is the address of the following page."""
     key = cursor_key(settings)
     after = _place(key, filters.cursor) if filters.cursor else None
     with readers() as session:
-        found = jobs.page(session, filters.as_filters(), after, filters.limit + 1)
+        found = jobs.page(session, caller.owner, filters.as_filters(), after, filters.limit + 1)
         documents = [job_document(job) for job in found[: filters.limit]]
     following = None
     if len(found) > filters.limit:
@@ -176,14 +179,14 @@ def list_jobs(
         **_COMMON,
     },
 )
-def cancel(job_id: UUID, writers: Writers) -> Response:
+def cancel(job_id: UUID, caller: CallerOf, writers: Writers) -> Response:
     """Cancel a job, or remove one that has ended."""
     with writers.begin() as session:
-        outcome = jobs.cancel(session, job_id)
+        outcome = jobs.cancel(session, caller, job_id)
         if outcome is CancelOutcome.REMOVED:
             return Response(status_code=204)
         session.flush()
-        document = job_document(find_job(session, job_id))
+        document = job_document(find_job(session, caller, job_id))
     if outcome is CancelOutcome.REQUESTED:
         return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
     return JSONResponse(document)

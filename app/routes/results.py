@@ -9,11 +9,12 @@ from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import convert, export, results
+from app.auth import Caller
 from app.errors import ProblemError, ProblemKind
 from app.export import Format
 from app.results import Table
 from app.routes import documentation
-from app.routes.common import PREFIX, RETRY_SECONDS, Readers, failure_of, find_job, job_address
+from app.routes.common import PREFIX, RETRY_SECONDS, CallerOf, Readers, failure_of, find_job, job_address
 from app.schemas.answers import ResultDocument
 from app.tables import Job, JobStatus
 
@@ -50,9 +51,9 @@ _TABLE_PROBLEMS = documentation.problems(
         **_PROBLEMS,
     },
 )
-def whole(job_id: UUID, readers: Readers) -> StreamingResponse:
+def whole(job_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
     """Return everything that was found; a failed job answers with the rows that it has and its failure."""
-    job = _ended_job(readers, job_id)
+    job = _ended_job(readers, caller, job_id)
     study, failure = job.batch_id is not None or job.document.get("study") is not None, failure_of(job)
 
     def pieces(session: Session) -> Iterator[str]:
@@ -72,6 +73,7 @@ def table(
     job_id: UUID,
     table: Literal["frequencies", "critical-wind-speeds", "limit-cycles"],
     request: Request,
+    caller: CallerOf,
     readers: Readers,
     format: Annotated[Format | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
 ) -> StreamingResponse:
@@ -79,7 +81,7 @@ def table(
     chosen = format or export.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, "Tables are application/json or text/csv.")
-    job = _ended_job(readers, job_id)
+    job = _ended_job(readers, caller, job_id)
     name = _TABLES[table]
     axes = [axis["parameter"] for axis in (job.document.get("study") or {"axes": []})["axes"]]
     axes = ["number"] if job.batch_id is not None else axes
@@ -102,13 +104,14 @@ def plot(
     job_id: UUID,
     picture: Picture,
     extension: PictureFormat,
+    caller: CallerOf,
     readers: Readers,
     point: Annotated[int, Query(ge=0, description="Point of a study")] = 0,
 ) -> Response:
     """Draw the amplitudes over wind speed, or the orbits where they are observed."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
-    job = _ended_job(readers, job_id)
+    job = _ended_job(readers, caller, job_id)
     with readers() as session:
         found = _point_rows(session, job_id, point)
     title = job.name or str(job.id)
@@ -116,9 +119,9 @@ def plot(
     return Response(draw(title, found, extension), media_type=plots.MEDIA_TYPES[extension])
 
 
-def _ended_job(readers: sessionmaker[Session], job_id: UUID) -> Job:
+def _ended_job(readers: sessionmaker[Session], caller: Caller, job_id: UUID) -> Job:
     with readers() as session:
-        job = find_job(session, job_id)
+        job = find_job(session, caller, job_id)
     if job.status is JobStatus.DISMISSED:
         raise ProblemError(ProblemKind.DISMISSED, "The job was cancelled and has no results.")
     if job.status in {JobStatus.ACCEPTED, JobStatus.RUNNING}:

@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import CheckConstraint, ForeignKey, Index, Text
+from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.tables.base import Base
@@ -17,13 +17,14 @@ class Batch(Base):
     """
 
     __tablename__ = "batches"
-    __table_args__ = (Index(None, "created_at", "id"),)
+    __table_args__ = (Index(None, "owner", "created_at", "id"),)
 
     id: Mapped[UUID] = mapped_column(primary_key=True)
     created_at: Mapped[datetime]
     received_at: Mapped[datetime | None]
     analysis: Mapped[dict[str, Any]]
     rejected_lines: Mapped[int] = mapped_column(default=0)
+    owner: Mapped[str] = mapped_column(String(64))
 
 
 class BatchItem(Base):

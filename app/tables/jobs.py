@@ -20,10 +20,10 @@ class Job(Base):
     __table_args__ = (
         CheckConstraint("(status = 'failed') = (failure_kind IS NOT NULL)", name="failed_with_kind"),
         CheckConstraint("(status = 'running') = (lease_expires_at IS NOT NULL)", name="running_with_lease"),
-        Index(None, "created_at", "id"),
+        Index(None, "owner", "created_at", "id"),
         Index(None, "status", "dispatched_at"),
         Index(None, "status", "lease_expires_at"),
-        Index(None, "asset_id", "created_at"),
+        Index(None, "owner", "asset_id", "created_at"),
         Index(None, "batch_id", "created_at"),
     )
 
@@ -49,6 +49,7 @@ class Job(Base):
     engine_version: Mapped[str | None] = mapped_column(String(64))
     lines: Mapped[int | None]
     failed_lines: Mapped[int | None]
+    owner: Mapped[str] = mapped_column(String(64))
 
     tags: Mapped[list["JobTag"]] = relationship(order_by="JobTag.key", lazy="selectin", passive_deletes=True)
     events: Mapped[list["JobEvent"]] = relationship(order_by="JobEvent.id", lazy="select", passive_deletes=True)

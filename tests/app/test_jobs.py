@@ -6,9 +6,10 @@ from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs, leases
+from app.auth import LOCAL
 from app.jobs import CancelOutcome, JobFilters
 from app.tables import Job, JobEvent, JobStatus, JobTag, PointRow
-from tests.documents import add_job, history, look, point_result
+from tests.documents import STRANGER, add_job, history, look, point_result
 
 DOCUMENT = {"line": {"b": 1.5, "a": "é"}, "analysis": {"loops": [1]}}
 
@@ -19,14 +20,14 @@ def ids(found: list[Job]) -> list[UUID]:
 
 def cancel(sessions: sessionmaker[Session], job_id: UUID) -> CancelOutcome:
     with sessions.begin() as session:
-        return jobs.cancel(session, job_id)
+        return jobs.cancel(session, LOCAL, job_id)
 
 
 def test_created_job_is_kept_whole(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
-        made = jobs.create(session, DOCUMENT, name="C11", asset_id="L1", tags={"region": "north", "ice": "D"})
+        made = jobs.create(session, LOCAL, DOCUMENT, name="C11", asset_id="L1", tags={"region": "north", "ice": "D"})
     with sessions() as session:
-        job = jobs.get(session, made.id)
+        job = jobs.get(session, LOCAL.owner, made.id)
         assert job is not None
         assert (job.status, job.attempt, job.progress, job.dispatched_at) == (JobStatus.ACCEPTED, 0, 0.0, None)
         assert (job.name, job.asset_id, job.document) == ("C11", "L1", DOCUMENT)
@@ -38,7 +39,7 @@ def test_created_job_is_kept_whole(sessions: sessionmaker[Session]) -> None:
 
 def test_job_tags_and_event_are_one_transaction(sessions: sessionmaker[Session]) -> None:
     with pytest.raises(RuntimeError), sessions.begin() as session:
-        jobs.create(session, DOCUMENT, tags={"a": "b"})
+        jobs.create(session, LOCAL, DOCUMENT, tags={"a": "b"})
         raise RuntimeError
     with sessions() as session:
         counts = [session.scalar(select(func.count()).select_from(table)) for table in (Job, JobTag, JobEvent)]
@@ -66,7 +67,7 @@ def test_pages_hold_every_job_once_newest_first(sessions: sessionmaker[Session])
     seen: list[UUID] = []
     after = None
     with sessions() as session:
-        while found := jobs.page(session, JobFilters(), after, 2):
+        while found := jobs.page(session, LOCAL.owner, JobFilters(), after, 2):
             seen += ids(found)
             after = (found[-1].created_at, found[-1].id)
     assert seen == made[::-1]
@@ -74,13 +75,13 @@ def test_pages_hold_every_job_once_newest_first(sessions: sessionmaker[Session])
 
 def test_filters(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
-        north = jobs.create(session, DOCUMENT, asset_id="L1", tags={"region": "north", "ice": "C"})
-        south = jobs.create(session, DOCUMENT, asset_id="L2", tags={"region": "south", "ice": "C"})
+        north = jobs.create(session, LOCAL, DOCUMENT, asset_id="L1", tags={"region": "north", "ice": "C"})
+        south = jobs.create(session, LOCAL, DOCUMENT, asset_id="L2", tags={"region": "south", "ice": "C"})
     cancel(sessions, south.id)
 
     def found(filters: JobFilters) -> list[UUID]:
         with sessions() as session:
-            return ids(jobs.page(session, filters, None, 10))
+            return ids(jobs.page(session, LOCAL.owner, filters, None, 10))
 
     assert found(JobFilters(status=JobStatus.DISMISSED)) == [south.id]
     assert found(JobFilters(asset_id="L1")) == [north.id]
@@ -112,7 +113,7 @@ def test_cancel_asks_a_running_job_once(sessions: sessionmaker[Session]) -> None
 
 def test_cancel_removes_a_finished_job_with_all_its_rows(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
-        job_id = jobs.create(session, DOCUMENT, tags={"a": "b"}).id
+        job_id = jobs.create(session, LOCAL, DOCUMENT, tags={"a": "b"}).id
         held = leases.claim(session, job_id, "here", 60.0)
         assert held is not None
         leases.finish(session, held, [point_result()])
@@ -123,3 +124,15 @@ def test_cancel_removes_a_finished_job_with_all_its_rows(sessions: sessionmaker[
         ]
     assert counts == [0, 0, 0, 0]
     assert cancel(sessions, job_id) is CancelOutcome.MISSING
+
+
+def test_jobs_of_another_owner_are_not_there(sessions: sessionmaker[Session]) -> None:
+    job_id = add_job(sessions)
+    with sessions.begin() as session:
+        theirs = jobs.create(session, STRANGER, DOCUMENT)
+    with sessions.begin() as session:
+        assert jobs.get(session, STRANGER.owner, job_id) is None
+        assert jobs.cancel(session, STRANGER, job_id) is CancelOutcome.MISSING
+        assert ids(jobs.page(session, STRANGER.owner, JobFilters(), None, 10)) == [theirs.id]
+        assert ids(jobs.page(session, LOCAL.owner, JobFilters(), None, 10)) == [job_id]
+    assert look(sessions, job_id).status is JobStatus.ACCEPTED

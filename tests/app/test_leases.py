@@ -7,6 +7,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs, leases, results
+from app.auth import LOCAL
 from app.leases import Beat, Claim, Failure
 from app.settings import Settings
 from app.tables import FailureKind, JobStatus
@@ -60,7 +61,7 @@ def test_running_ended_and_missing_jobs_are_not_to_be_claimed(sessions: sessionm
     running, ended = add_job(sessions), add_job(sessions)
     take(sessions, running)
     with sessions.begin() as session:
-        jobs.cancel(session, ended)
+        jobs.cancel(session, LOCAL, ended)
         claims = [leases.claim(session, job_id, "other", LONG) for job_id in (running, ended, uuid4())]
     assert claims == [None, None, None]
 
@@ -131,7 +132,7 @@ def test_heartbeat_tells_of_a_cancel(sessions: sessionmaker[Session]) -> None:
     job_id = add_job(sessions)
     held = take(sessions, job_id)
     with sessions.begin() as session:
-        jobs.cancel(session, job_id)
+        jobs.cancel(session, LOCAL, job_id)
         assert leases.heartbeat(session, held, LONG, 0.5, "") is Beat.CANCEL
         assert leases.dismiss(session, held)
     assert look(sessions, job_id).status is JobStatus.DISMISSED
@@ -176,7 +177,7 @@ def test_lost_job_with_a_cancel_is_dismissed(sessions: sessionmaker[Session], se
     job_id = add_job(sessions)
     take(sessions, job_id, OVER)
     with sessions.begin() as session:
-        jobs.cancel(session, job_id)
+        jobs.cancel(session, LOCAL, job_id)
     give_back(sessions, settings)
     assert look(sessions, job_id).status is JobStatus.DISMISSED
 

@@ -81,7 +81,7 @@ def test_several_at_once_migrate_once(settings: Settings, engine: Engine) -> Non
     errors = [process.communicate(timeout=60)[1].decode() for process in commands]
     assert [(process.returncode, error) for process, error in zip(commands, errors, strict=True)] == [(0, "")] * 4
     with engine.connect() as connection:
-        assert connection.execute(text("SELECT version_num FROM alembic_version")).scalars().all() == ["0002"]
+        assert connection.execute(text("SELECT version_num FROM alembic_version")).scalars().all() == ["0003"]
 
 
 def test_alembic_command_works_for_those_who_write_migrations(tmp_path: Path) -> None:

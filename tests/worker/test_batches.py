@@ -7,6 +7,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import batch_results, batches, jobs
+from app.auth import LOCAL
 from app.examples import example
 from app.intake import Incoming, receive
 from app.jobs import JobFilters
@@ -28,7 +29,7 @@ def submit(sessions: sessionmaker[Session], settings: Settings, *, most_chunk_li
         for n in range(1, LINES + 1)
     )
     small = settings.model_copy(update={"most_chunk_lines": most_chunk_lines})
-    receipt = receive(sessions, small, Incoming(SHORT, lines), atomic=False)
+    receipt = receive(sessions, small, LOCAL, Incoming(SHORT, lines), atomic=False)
     assert dispatch_chunks(settings, receipt.chunk_ids)
     return receipt.batch_id
 
@@ -52,7 +53,7 @@ def test_killed_worker_loses_and_doubles_nothing(deployment: Settings, deployed:
         whole = list(batch_results.documents(session, batch_id))
         stored = session.scalar(select(func.count()).select_from(PointRow))
         cycles = session.scalar(select(func.count()).select_from(LimitCycleRow))
-        attempts = [job.attempt for job in jobs.page(session, JobFilters(batch_id=batch_id), None, 100)]
+        attempts = [job.attempt for job in jobs.page(session, LOCAL.owner, JobFilters(batch_id=batch_id), None, 100)]
     assert [(line["number"], line["reference"]) for line in whole] == [(n, f"r{n}") for n in range(1, LINES + 1)]
     assert {line["status"] for line in whole} == {"successful"}
     assert (stored, cycles) == (LINES, sum(len(line["limit_cycles"]) for line in whole))
@@ -68,7 +69,7 @@ def test_running_batch_stops_when_cancelled(deployment: Settings, deployed: sess
         batch_id = submit(deployed, deployment, most_chunk_lines=16)
         wait_until(lambda: counts(deployed, batch_id).successful > 0, 60.0, "the first lines")
         with deployed.begin() as session:
-            batches.cancel(session, batch_id)
+            batches.cancel(session, LOCAL, batch_id)
         wait_until(lambda: counts(deployed, batch_id).status in ENDED, 30.0, "the end of the batch")
     found = counts(deployed, batch_id)
     assert found.status is JobStatus.DISMISSED
@@ -84,4 +85,4 @@ def test_a_single_job_is_not_stuck_behind_a_batch(deployment: Settings, deployed
         wait_until(lambda: look(deployed, single).status is JobStatus.SUCCESSFUL, 60.0, "the single job")
         assert counts(deployed, batch_id).accepted > LINES // 2, time.monotonic() - begin
         with deployed.begin() as session:
-            batches.cancel(session, batch_id)
+            batches.cancel(session, LOCAL, batch_id)

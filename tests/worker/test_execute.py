@@ -8,6 +8,7 @@ from sqlalchemy import update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import convert, jobs, leases, results
+from app.auth import LOCAL
 from app.convert import Advance, PointResult
 from app.settings import Settings
 from app.tables import FailureKind, Job, JobStatus
@@ -32,7 +33,7 @@ def stopped_while_running(
         future = pool.submit(execute, sessions, settings, job_id, "here")
         wait_until(lambda: look(sessions, job_id).progress > 0.0, seconds, "progress")
         with sessions.begin() as session:
-            jobs.cancel(session, job_id)
+            jobs.cancel(session, LOCAL, job_id)
         future.result(seconds)
 
 

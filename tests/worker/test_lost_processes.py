@@ -10,6 +10,7 @@ import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs, results
+from app.auth import LOCAL
 from app.queue import dispatch, open_queue
 from app.settings import Settings
 from app.tables import FailureKind, JobStatus
@@ -205,7 +206,7 @@ def test_duplicates_are_harmless_and_a_running_job_can_be_cancelled(
         assert wait_for_end(deployed, job_id) is JobStatus.SUCCESSFUL
         wait_for_progress(deployed, stopped)
         with deployed.begin() as session:
-            jobs.cancel(session, stopped)
+            jobs.cancel(session, LOCAL, stopped)
         assert wait_for_end(deployed, stopped) is JobStatus.DISMISSED
         with open_queue(deployment) as queue:
             wait_until(queue.is_empty, what="an empty queue")

@@ -8,6 +8,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import batches
+from app.auth import LOCAL
 from app.convert import read_analysis
 from app.examples import example
 from app.faults import BadInput
@@ -24,7 +25,7 @@ def take(
     sessions: sessionmaker[Session], settings: Settings, lines: list[Any], *, atomic: bool = False, **changes: Any
 ) -> Receipt:
     changed_settings = settings.model_copy(update=changes)
-    return receive(sessions, changed_settings, Incoming(SHORT, iter(lines)), atomic=atomic)
+    return receive(sessions, changed_settings, LOCAL, Incoming(SHORT, iter(lines)), atomic=atomic)
 
 
 def items(sessions: sessionmaker[Session], receipt: Receipt) -> list[BatchItem]:
@@ -48,7 +49,7 @@ def test_lines_keep_numbers_references_and_defaults(sessions: sessionmaker[Sessi
     assert first.document is not None and first.document["wind"]["air_density_kg_per_m3"] == 1.2929
     assert "reference" not in first.document
     with sessions() as session:
-        batch = batches.get(session, receipt.batch_id)
+        batch = batches.get(session, LOCAL.owner, receipt.batch_id)
     assert batch is not None and batch.analysis["closure"] == "exact"
 
 
@@ -90,7 +91,7 @@ def test_a_batch_that_is_refused_leaves_nothing(
 
 def test_faults_of_the_analysis_refuse_the_whole(sessions: sessionmaker[Session], settings: Settings) -> None:
     with pytest.raises(BadInput, match="/analysis/loops"):
-        receive(sessions, settings, Incoming({"loops": []}, iter([TWIN])), atomic=False)
+        receive(sessions, settings, LOCAL, Incoming({"loops": []}, iter([TWIN])), atomic=False)
     assert count(sessions, Batch) == 0
 
 
@@ -100,7 +101,7 @@ def test_a_sender_that_breaks_off_leaves_nothing(sessions: sessionmaker[Session]
         raise ConnectionError
 
     with pytest.raises(ConnectionError):
-        receive(sessions, settings, Incoming(SHORT, broken()), atomic=False)
+        receive(sessions, settings, LOCAL, Incoming(SHORT, broken()), atomic=False)
     assert [count(sessions, table) for table in (Batch, BatchItem, Job)] == [0, 0, 0]
 
 
@@ -127,7 +128,7 @@ def _peak(sessions: sessionmaker[Session], settings: Settings, text: bytes, line
 
     tracemalloc.start()
     try:
-        receive(sessions, settings, read_ndjson(body(), 100_000), atomic=False)
+        receive(sessions, settings, LOCAL, read_ndjson(body(), 100_000), atomic=False)
         return tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

@@ -1,0 +1,26 @@
+"""Who asks, and what they may do."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from uuid import UUID
+
+
+class Scope(StrEnum):
+    """What a key lets its bearer do with what belongs to its owner."""
+
+    READ = "read"
+    SUBMIT = "submit"
+    CANCEL = "cancel"
+
+
+@dataclass(frozen=True, slots=True)
+class Caller:
+    """Who asks: the owner of everything that they see or make, their scopes, and their key if there are any."""
+
+    owner: str
+    scopes: frozenset[Scope]
+    key_id: UUID | None = None
+
+
+LOCAL = Caller("local", frozenset(Scope))
+"""The caller of a service without keys, which is open to its own machine only."""
