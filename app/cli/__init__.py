@@ -1,0 +1,19 @@
+"""The command line: `galloping` with its commands, each in the module of its kind."""
+
+import typer
+
+from app.cli import lines, service
+
+app = typer.Typer(
+    help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for command in (lines.analyse, service.serve, service.worker, service.migrate, service.submit, lines.example):
+    app.command()(command)
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

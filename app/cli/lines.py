@@ -1,0 +1,75 @@
+"""Commands that need no service: `galloping analyse` and `example`."""
+# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+
+import json
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from app.cli.common import (
+    BAD_INPUT,
+    FAILED,
+    AnalysisFile,
+    LineFile,
+    OutputFile,
+    StudyFile,
+    end,
+    progress_bar,
+    read_request,
+    refuse,
+    write,
+)
+from app.examples import EXAMPLE_NAMES
+
+if TYPE_CHECKING:
+    from app.convert import PointResult
+
+
+def analyse(line: LineFile, analysis: AnalysisFile = None, study: StudyFile = None, output: OutputFile = None) -> None:
+    """Analyse a line in this process, without service or database."""
+    from app.processes import ONE_BLAS_THREAD
+
+    os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, which reads it once
+    from app import convert
+    from app.faults import BadInput
+
+    document = read_request(line, analysis, study)
+    try:
+        request = convert.read(document)
+    except BadInput as error:
+        refuse(error.faults)
+    points: list[PointResult] = []
+    try:
+        with progress_bar() as show:
+            for item in convert.run(request.model_dump(mode="json", by_alias=True)):
+                if isinstance(item, convert.Advance):
+                    show(item.fraction, item.step)
+                else:
+                    points.append(item)
+    except (ArithmeticError, ValueError) as error:
+        end(f"the computation failed: {error}", FAILED)
+    write(_result(points, study=request.study is not None), output)
+
+
+def example(
+    name: Annotated[str, typer.Argument(metavar="|".join(EXAMPLE_NAMES), help="Which of the source's lines.")],
+) -> None:
+    """Print one of the source's lines, ready to run."""
+    from app import examples
+
+    if name not in EXAMPLE_NAMES:
+        end(f"there is no example {name!r}; there are {', '.join(EXAMPLE_NAMES)}", BAD_INPUT)
+    write(examples.example(name), None)
+
+
+def _result(points: Sequence["PointResult"], *, study: bool) -> Any:
+    from dataclasses import asdict
+
+    from app import convert, export
+
+    tables: dict[str, list[dict[str, object]]] = {
+        name: [{**point.axes, **row} for point in points for row in point.tables[name]] for name in convert.TABLES
+    }
+    return json.loads("".join(export.result_text([asdict(point) for point in points], tables, study=study)))

@@ -1,0 +1,81 @@
+"""Commands that run the service, and the one that sends it a line: `serve`, `worker`, `migrate`, `submit`."""
+# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+
+from typing import Annotated
+
+import typer
+
+from app.cli.common import (
+    FAILED,
+    AnalysisFile,
+    DataDirectory,
+    LineFile,
+    OutputFile,
+    StudyFile,
+    end,
+    operator_told,
+    progress_bar,
+    read_request,
+    read_settings,
+    refuse,
+    write,
+)
+
+
+def serve(
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8000,
+    data_dir: DataDirectory = None,
+) -> None:
+    """Run the service with its embedded database, broker and worker; SIGTERM ends it cleanly."""
+    from app.serve import serve as run
+
+    with operator_told():
+        code = run(read_settings(data_dir), host, port)
+    raise typer.Exit(code)
+
+
+def worker(data_dir: DataDirectory = None) -> None:
+    """Run a worker that takes jobs from the broker of the settings."""
+    from app.serve import worker as run
+
+    run(read_settings(data_dir))
+
+
+def migrate(data_dir: DataDirectory = None) -> None:
+    """Bring the database of the settings to the newest schema."""
+    from app.serve import migrate as run
+
+    with operator_told():
+        run(read_settings(data_dir))
+
+
+def submit(
+    line: LineFile,
+    analysis: AnalysisFile = None,
+    study: StudyFile = None,
+    url: Annotated[str, typer.Option(envvar="GALLOPING_URL", help="Address of the service.")] = "http://127.0.0.1:8000",
+    wait: Annotated[bool, typer.Option("--wait", help="Wait for the end and print the result.")] = False,
+    output: OutputFile = None,
+) -> None:
+    """Send a line to a service; print the job's status, or with --wait its result."""
+    from app import client
+
+    document = read_request(line, analysis, study)
+    try:
+        with client.connect(url) as service:
+            job = client.submit(service, document)
+            if not wait:
+                write(job, output)
+                return
+            with progress_bar() as show:
+                job = client.follow(service, job, show)
+            if job["status"] == "dismissed":
+                end("the job was cancelled", FAILED)
+            write(client.results(service, job), output)
+    except client.Refused as error:
+        refuse(error.faults)
+    except client.ServiceError as error:
+        end(str(error), FAILED)
+    if job["status"] == "failed":
+        end(f"the job failed: {job['failure']['detail']}", FAILED)
