@@ -1,15 +1,16 @@
 """What came of the lines of a batch, streamed in the order of their numbers, a bounded number in memory at a time."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from typing import Any, Literal
 from uuid import UUID
 
-from sqlalchemy import Row, and_, func, select
+import orjson
+from sqlalchemy import Row, and_, select
 from sqlalchemy.orm import Session
 
-from app import results
-from app.results import STATIC, TABLES
-from app.tables import BatchItem, CriticalWindSpeedRow, FailureKind, Job, JobStatus, LimitCycleRow, PointRow
+from app import convert
+from app.results import PEAKS, STATIC, tables_of, unpacked
+from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
 
 BatchTable = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations", "summary"]
 
@@ -17,39 +18,32 @@ _LINES_A_FETCH = 200
 _LABELS = ("number", "reference", "asset_id")
 _OPEN = (JobStatus.ACCEPTED, JobStatus.RUNNING, JobStatus.DISMISSED)
 _HARTOG = ("den_hartog_coefficient", "den_hartog_unstable")
-_PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m")
 
 
 def columns(table: BatchTable) -> list[str]:
     """Return the names of a table's columns in order."""
     if table == "summary":
-        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *_PEAKS, "engine_version"]
-    return [*_LABELS, *results.columns(table)]
+        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *PEAKS, "engine_version"]
+    return [*_LABELS, *convert.columns(table)]
 
 
 def rows(session: Session, batch_id: UUID, table: BatchTable) -> Iterator[dict[str, Any]]:
     """Yield the rows of a table; the summary has one for every line, the others those of the lines that have any."""
-    if table == "summary":
-        for page in _pages(session, batch_id):
-            yield from _summaries(session, page)
-        return
-    for page in _pages(session, batch_id):
-        labels = {item.number: _labels(item) for item in page}
-        for number, row in _rows_of(session, page, table):
-            yield {**labels[number], **row}
+    for item in _lines(session, batch_id, unpacking=table != "summary"):
+        if table == "summary":
+            yield _summary(item)
+        elif _is_solved(item):
+            labels = _labels(item)
+            for row in tables_of(item.tables)[table]:
+                yield {**labels, **row}
 
 
-def documents(session: Session, batch_id: UUID) -> Iterator[dict[str, Any]]:
-    """Yield one object a line with everything that was found of it, or why there is nothing."""
-    for page in _pages(session, batch_id):
-        found: dict[int, dict[str, list[dict[str, Any]]]] = {
-            item.number: {name: [] for name in TABLES} for item in page
-        }
-        for name in TABLES:
-            for number, row in _rows_of(session, page, name):
-                found[number][name].append(row)
-        for item in page:
-            yield {**_labels(item), **_state(item), **_point(item), **found[item.number]}
+def documents(session: Session, batch_id: UUID) -> Iterator[str]:
+    """Yield one JSON object a line with everything that was found of it, or why there is nothing."""
+    for item in _lines(session, batch_id, unpacking=True):
+        # The packed tables are a JSON object already: it is joined to the other members as it stands.
+        head = orjson.dumps({**_labels(item), **_state(item), **_point(item)})
+        yield (head[:-1] + b"," + unpacked(item.tables if _is_solved(item) else None)[1:]).decode()
 
 
 def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterator[dict[str, Any]]:
@@ -62,13 +56,14 @@ def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterato
             yield {"number": number, "reference": reference, **fault}
 
 
-def _pages(session: Session, batch_id: UUID) -> Iterator[Sequence[Row[Any]]]:
-    """Yield the lines with the state of their chunk and their point, some at a time."""
+def _lines(session: Session, batch_id: UUID, *, unpacking: bool) -> Iterator[Row[Any]]:
+    """Yield the lines with the state of their chunk and their point, some in memory at a time."""
     of_line = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number)
-    point = [getattr(PointRow, name) for name in (*STATIC, *_HARTOG, "warnings", "engine_version", "failure")]
+    names = (*STATIC, *_HARTOG, *PEAKS, "warnings", "engine_version", "failure", *(("tables",) if unpacking else ()))
     statement = (
         select(BatchItem.number, BatchItem.reference, BatchItem.asset_id, BatchItem.chunk_id, BatchItem.faults)
-        .add_columns(Job.status, Job.failure_kind, Job.failure_detail, PointRow.point, *point)
+        .add_columns(Job.status, Job.failure_kind, Job.failure_detail, PointRow.point)
+        .add_columns(*(getattr(PointRow, name) for name in names))
         .outerjoin(Job, Job.id == BatchItem.chunk_id)
         .outerjoin(PointRow, of_line)
         .where(BatchItem.batch_id == batch_id)
@@ -77,53 +72,22 @@ def _pages(session: Session, batch_id: UUID) -> Iterator[Sequence[Row[Any]]]:
     )
     last = 0
     while page := session.execute(statement.where(BatchItem.number > last)).all():
-        yield page
+        yield from page
         last = page[-1].number
 
 
-def _rows_of(session: Session, page: Sequence[Row[Any]], table: results.Table) -> Iterator[tuple[int, dict[str, Any]]]:
-    row_type = results.row_type(table)
-    names = results.columns(table)
-    wanted = [row_type.__table__.columns[name] for name in names]
-    statement = (
-        select(row_type.job_id, row_type.point, *wanted)
-        .where(row_type.job_id.in_(_chunks(page)), row_type.point.between(page[0].number, page[-1].number))
-        .order_by(row_type.point, row_type.row_number)
-    )
-    solved = {item.number for item in page if item.point is not None and item.failure is None}
-    owners = {item.number: item.chunk_id for item in page}
-    for job_id, number, *values in session.execute(statement):
-        if number in solved and owners[number] == job_id:
-            yield number, dict(zip(names, values, strict=True))
+def _summary(item: Row[Any]) -> dict[str, Any]:
+    state = _state(item)
+    return {
+        **_labels(item),
+        "status": state["status"],
+        "failure": state["failure"]["detail"] if state["failure"] else None,
+        **{name: getattr(item, name) for name in (*STATIC, *_HARTOG, *PEAKS, "engine_version")},
+    }
 
 
-def _summaries(session: Session, page: Sequence[Row[Any]]) -> Iterator[dict[str, Any]]:
-    lowest = _peaks(session, page, func.min(CriticalWindSpeedRow.wind_speed_m_per_s), CriticalWindSpeedRow)
-    largest = _peaks(session, page, func.max(LimitCycleRow.vertical_m), LimitCycleRow)
-    for item in page:
-        peaks = (lowest.get((item.chunk_id, item.number)), largest.get((item.chunk_id, item.number)))
-        state = _state(item)
-        yield {
-            **_labels(item),
-            "status": state["status"],
-            "failure": state["failure"]["detail"] if state["failure"] else None,
-            **{name: getattr(item, name) for name in (*STATIC, *_HARTOG)},
-            **dict(zip(_PEAKS, peaks, strict=True)),
-            "engine_version": item.engine_version,
-        }
-
-
-def _peaks(
-    session: Session, page: Sequence[Row[Any]], peak: Any, row_type: type[CriticalWindSpeedRow] | type[LimitCycleRow]
-) -> Mapping[tuple[UUID, int], float | None]:
-    between = row_type.point.between(page[0].number, page[-1].number)
-    statement = select(row_type.job_id, row_type.point, peak).where(row_type.job_id.in_(_chunks(page)), between)
-    found = session.execute(statement.group_by(row_type.job_id, row_type.point))
-    return {(job_id, number): value for job_id, number, value in found}
-
-
-def _chunks(page: Sequence[Row[Any]]) -> list[UUID]:
-    return list({item.chunk_id for item in page if item.chunk_id is not None})
+def _is_solved(item: Row[Any]) -> bool:
+    return item.point is not None and item.failure is None
 
 
 def _labels(item: Row[Any]) -> dict[str, Any]:
@@ -135,7 +99,7 @@ def _state(item: Row[Any]) -> dict[str, Any]:
     if item.chunk_id is None:
         sentence = "; ".join(f"{fault['pointer'] or '/'}: {fault['detail']}" for fault in item.faults)
         return {"status": "rejected", "failure": {"kind": FailureKind.INPUT.value, "detail": sentence}}
-    if item.point is not None and item.failure is None:
+    if _is_solved(item):
         return {"status": JobStatus.SUCCESSFUL.value, "failure": None}
     if item.status in _OPEN:
         return {"status": item.status.value, "failure": None}
@@ -147,7 +111,7 @@ def _state(item: Row[Any]) -> dict[str, Any]:
 
 
 def _point(item: Row[Any]) -> dict[str, Any]:
-    solved = item.point is not None and item.failure is None
+    solved = _is_solved(item)
     hartog = {"coefficient": item.den_hartog_coefficient, "unstable": item.den_hartog_unstable}
     return {
         "static": {name: getattr(item, name) for name in STATIC} if solved else None,

@@ -2,9 +2,10 @@
 
 import csv
 import io
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Literal, TypeVar
+
+import orjson
 
 Row = Mapping[str, Any]
 Format = Literal["json", "csv"]
@@ -110,7 +111,7 @@ def _member(name: str, rows: Iterable[Row]) -> Iterator[str]:
 
 
 def _dump(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return orjson.dumps(value).decode()
 
 
 def _drain(buffer: io.StringIO) -> str:

@@ -1,82 +1,54 @@
-"""Result rows in SQL: stored with the end of a job, read as the flat rows of the contract."""
+"""Results in SQL: one row a point, stored with the end of a job, unpacked into the flat rows of the contract."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from json import dumps
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, cast
 from uuid import UUID
 
+import orjson
 import psycopg
+import zstandard
 from psycopg.sql import SQL, Identifier
-from sqlalchemy import JSON, ColumnElement, insert, select
+from sqlalchemy import JSON, insert, select
 from sqlalchemy import Table as SqlTable
 from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.orm import Session
 
-from app.tables import (
-    Base,
-    BifurcationRow,
-    CriticalWindSpeedRow,
-    FrequencyRow,
-    LimitCycleRow,
-    OrbitRow,
-    PointRow,
-)
+from app.convert import TABLES, Table
+from app.tables import PointRow
 
 if TYPE_CHECKING:
     from app.convert import PointResult
 
-Table = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations"]
-
-_Fact = type[FrequencyRow | CriticalWindSpeedRow | LimitCycleRow | BifurcationRow]
-_FACTS: Mapping[str, _Fact] = {
-    "frequencies": FrequencyRow,
-    "critical_wind_speeds": CriticalWindSpeedRow,
-    "limit_cycles": LimitCycleRow,
-    "bifurcations": BifurcationRow,
-}
-_ROW_TYPES: Mapping[str, _Fact | type[OrbitRow]] = {**_FACTS, "orbits": OrbitRow}
-_PLACE = frozenset({"job_id", "point", "row_number"})
-TABLES: tuple[Table, ...] = ("frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations")
 STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m")
-_ROWS_A_FETCH = 1000
+PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m")
+NO_TABLES = orjson.dumps({name: [] for name in TABLES})
+_POINTS_A_FETCH = 100
+_LEVEL = 1  # higher levels take longer and save nothing on rows of numbers
 
 
 def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"]) -> None:
-    """Add everything that was found at these points of a job, with one statement a table.
+    """Add everything that was found at these points of a job, in one statement.
 
     Raises
     ------
-    KeyError
-        If a point has a table that there is not.
-    ValueError
-        If a row has a column that there is not, or lacks one.
     sqlalchemy.exc.SQLAlchemyError
-        If a value is missing, or a point is stored already.
+        If a point is stored already.
     """
-    if not points_found:
-        return
-    _insert(session, PointRow, [{"job_id": job_id, **_point_columns(point)} for point in points_found])
-    records: dict[str, list[dict[str, object]]] = {}
-    for point in points_found:
-        for name, rows_of_table in {**point.tables, "orbits": point.orbits}.items():
-            _refuse_other_columns(name, rows_of_table)
-            place: dict[str, object] = {"job_id": job_id, "point": point.point}
-            numbered = ({**place, "row_number": number, **row} for number, row in enumerate(rows_of_table))
-            records.setdefault(name, []).extend(numbered)
-    for name, found in records.items():
-        if found:
-            _insert(session, _ROW_TYPES[name], found)
+    if points_found:
+        compressor = zstandard.ZstdCompressor(level=_LEVEL)
+        _insert(session, [{"job_id": job_id, **_as_columns(point, compressor)} for point in points_found])
 
 
-def row_type(table: Table) -> _Fact:
-    """Return the class that stands for a table."""
-    return _FACTS[table]
+def unpacked(packed: bytes | None) -> bytes:
+    """Return the JSON text of a packed column; that of tables without rows for a point that failed."""
+    return NO_TABLES if packed is None else zstandard.decompress(packed)
 
 
-def columns(table: Table) -> list[str]:
-    """Return the names of a table's columns in the order of the contract, without the study's axes."""
-    return _columns(table)
+def tables_of(packed: bytes | None) -> dict[Table, list[dict[str, Any]]]:
+    """Return the rows that a packed column holds, by the name of their table."""
+    found: dict[Table, list[dict[str, Any]]] = orjson.loads(unpacked(packed))
+    return found
 
 
 def axes(session: Session, job_id: UUID) -> list[str]:
@@ -85,50 +57,63 @@ def axes(session: Session, job_id: UUID) -> list[str]:
     return list(found or ())
 
 
-def rows(session: Session, job_id: UUID, table: Table) -> Iterator[dict[str, object]]:
+def rows(session: Session, job_id: UUID, table: Table) -> Iterator[dict[str, Any]]:
     """Stream the rows of one table in the order of the points; the values of the study's axes come first in each."""
-    found = _ROW_TYPES[table]
-    wanted: list[ColumnElement[Any]] = [found.__table__.columns[name] for name in columns(table)]
-    statement = (
-        select(PointRow.axes, *wanted)
-        .join(found, (found.job_id == PointRow.job_id) & (found.point == PointRow.point))
-        .where(PointRow.job_id == job_id)
-        .order_by(found.point, found.row_number)
-        .execution_options(yield_per=_ROWS_A_FETCH)
-    )
-    names = columns(table)
-    for point_axes, *values in session.execute(statement):
-        yield {**point_axes, **dict(zip(names, values, strict=True))}
+    statement = select(PointRow.axes, PointRow.tables).where(PointRow.job_id == job_id).order_by(PointRow.point)
+    for point_axes, packed in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):
+        for row in tables_of(packed).get(table, ()):
+            yield {**point_axes, **row}
 
 
-def points(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
+def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
     """Stream the points: number, axes, static state, Den Hartog's coefficient, warnings, engine version, failure."""
-    statement = select(PointRow).where(PointRow.job_id == job_id).order_by(PointRow.point)
-    for row in session.scalars(statement.execution_options(yield_per=_ROWS_A_FETCH)):
+    static = [getattr(PointRow, name) for name in STATIC]
+    hartog = PointRow.den_hartog_coefficient, PointRow.den_hartog_unstable
+    said = PointRow.warnings, PointRow.engine_version, PointRow.failure
+    statement = select(PointRow.point, PointRow.axes, *static, *hartog, *said).where(PointRow.job_id == job_id)
+    for row in session.execute(statement.order_by(PointRow.point).execution_options(yield_per=_POINTS_A_FETCH)):
         solved = row.horizontal_tension_n is not None
-        hartog = {"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable}
+        found = {"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable}
         yield {
             "point": row.point,
             "axes": row.axes,
             "static": {name: getattr(row, name) for name in STATIC} if solved else None,
-            "den_hartog": hartog if row.den_hartog_coefficient is not None else None,
+            "den_hartog": found if row.den_hartog_coefficient is not None else None,
             "warnings": row.warnings,
             "engine_version": row.engine_version,
             "failure": row.failure,
         }
 
 
-def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, object]]:
+def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
     """Stream the orbits: point, cycle (number of the row among the point's limit cycles), and Fourier coefficients."""
-    statement = select(OrbitRow).where(OrbitRow.job_id == job_id).order_by(OrbitRow.point, OrbitRow.row_number)
-    for row in session.scalars(statement.execution_options(yield_per=_ROWS_A_FETCH)):
-        shapes = {"vertical": row.vertical, "horizontal": row.horizontal, "torsional": row.torsional}
-        yield {"point": row.point, "cycle": row.cycle, **shapes}
+    packed = PointRow.job_id == job_id, PointRow.orbits.is_not(None)
+    statement = select(PointRow.point, PointRow.orbits).where(*packed).order_by(PointRow.point)
+    for point, found in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):
+        for orbit in orjson.loads(unpacked(found)):
+            yield {"point": point, **orbit}
 
 
-def _insert(session: Session, kind: type[Base], records: Sequence[Mapping[str, object]]) -> None:
-    """Insert many rows into the bare table: by COPY on PostgreSQL, at a third of the time of an INSERT."""
-    table = cast(SqlTable, kind.__table__)
+def _as_columns(point: "PointResult", compressor: zstandard.ZstdCompressor) -> dict[str, Any]:
+    failed = point.failure is not None
+    return {
+        "point": point.point,
+        "axes": point.axes,
+        **{name: point.static.get(name) for name in STATIC},
+        "den_hartog_coefficient": point.den_hartog.get("coefficient"),
+        "den_hartog_unstable": point.den_hartog.get("unstable"),
+        "warnings": point.warnings,
+        "engine_version": point.engine_version,
+        "failure": point.failure,
+        **{name: point.peaks.get(name) for name in PEAKS},
+        "tables": None if failed else compressor.compress(point.tables_json),
+        "orbits": None if failed else compressor.compress(point.orbits_json),
+    }
+
+
+def _insert(session: Session, records: Sequence[Mapping[str, Any]]) -> None:
+    """Insert many rows: by COPY on PostgreSQL, at a third of the time of an INSERT."""
+    table = cast(SqlTable, PointRow.__table__)
     if session.get_bind().dialect.name != "postgresql":
         session.execute(insert(table), records)
         return
@@ -138,7 +123,7 @@ def _insert(session: Session, kind: type[Base], records: Sequence[Mapping[str, o
     cursor: Any = session.connection().connection.cursor()
     with _as_sqlalchemy_errors(), cursor, cursor.copy(copied) as copy:
         for record in records:
-            copy.write_row([dumps(record[name]) if name in as_json else record[name] for name in names])
+            copy.write_row([orjson.dumps(record[n]).decode() if n in as_json else record[n] for n in names])
 
 
 @contextmanager
@@ -150,28 +135,3 @@ def _as_sqlalchemy_errors() -> Iterator[None]:
         raise IntegrityError(None, None, error) from error
     except psycopg.Error as error:
         raise DBAPIError(None, None, error) from error
-
-
-def _columns(table: str) -> list[str]:
-    return [column.name for column in _ROW_TYPES[table].__table__.columns if column.name not in _PLACE]
-
-
-def _refuse_other_columns(table: str, rows_of_table: Sequence[Mapping[str, object]]) -> None:
-    """Compare names, since an insert of many rows drops what it does not know without a word."""
-    known = set(_columns(table))
-    for row in rows_of_table:
-        if row.keys() != known:
-            raise ValueError(f"{table} has other columns than a row that was found: {sorted(known ^ row.keys())}")
-
-
-def _point_columns(point: "PointResult") -> dict[str, object]:
-    return {
-        "point": point.point,
-        "axes": point.axes,
-        **{name: point.static.get(name) for name in STATIC},
-        "den_hartog_coefficient": point.den_hartog.get("coefficient"),
-        "den_hartog_unstable": point.den_hartog.get("unstable"),
-        "warnings": point.warnings,
-        "engine_version": point.engine_version,
-        "failure": point.failure,
-    }

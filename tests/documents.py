@@ -1,5 +1,6 @@
 """Requests and results for tests of jobs."""
 
+import json
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -9,7 +10,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs
 from app.auth import LOCAL, Caller, Scope
-from app.convert import PointResult
+from app.convert import TABLES, PointResult
 from app.examples import example
 from app.settings import Settings
 from app.tables import Job, JobEvent, PointRow
@@ -36,13 +37,15 @@ def long_request(points: int) -> dict[str, Any]:
 def point_result(number: int = 0, *, tension: float = 30000.0, failure: str | None = None) -> PointResult:
     """Return a point with one frequency row, which carries the tension, or a failed one without rows."""
     row = {"model": "hybrid", "loops": 1, "vertical_hz": 0.48, "horizontal_hz": 0.45, "torsional_hz": None}
+    found = [] if failure else [{**row, "outcome": "converged"}]
     return PointResult(
         point=number,
         axes={"span.horizontal_tension_n": tension},
         static={} if failure else {"horizontal_tension_n": tension, "catenary_parameter_m": 1285.5, "sag_m": 1.54},
         den_hartog={} if failure else {"coefficient": -3.2, "unstable": True},
-        tables={"frequencies": [] if failure else [{**row, "outcome": "converged"}]},
-        orbits=[],
+        peaks={},
+        tables_json=json.dumps({name: found if name == "frequencies" else [] for name in TABLES}).encode(),
+        orbits_json=b"[]",
         warnings=[],
         engine_version="9.9.9",
         failure=failure,

@@ -2,7 +2,7 @@
 
 from app.convert.check import check, read, request_faults, with_further_faults
 from app.convert.fit import fit
-from app.convert.run import TABLES, Advance, PointResult, run
+from app.convert.run import TABLES, Advance, PointResult, Table, columns, run
 from app.convert.stack import NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
 from engine import ENGINE_VERSION
 
@@ -12,7 +12,9 @@ __all__ = [
     "Advance",
     "NumberedLine",
     "PointResult",
+    "Table",
     "check",
+    "columns",
     "fit",
     "read",
     "read_analysis",

@@ -1,22 +1,29 @@
 """A validated request -> the engine -> plain rows, one point of the study after another."""
 
-import dataclasses
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from enum import Enum
-from functools import cache
+from dataclasses import asdict, dataclass, fields
+from functools import cached_property
 from typing import Any, Literal
+
+import orjson
 
 from app import schemas
 from app.convert import study
 from app.convert.assemble import SoundParts, gather
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
-from engine.result import Result
+from engine.result import BifurcationRow, CriticalWindSpeedRow, FrequencyRow, LimitCycleRow, Result
 
 Table = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations"]
-TABLES: tuple[Table, ...] = ("frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations")
+_ROW_TYPES: Mapping[Table, type[Any]] = {
+    "frequencies": FrequencyRow,
+    "critical_wind_speeds": CriticalWindSpeedRow,
+    "limit_cycles": LimitCycleRow,
+    "bifurcations": BifurcationRow,
+}
+TABLES: tuple[Table, ...] = tuple(_ROW_TYPES)
+_NO_ROWS = orjson.dumps({name: [] for name in TABLES})
 
 
 @dataclass(frozen=True)
@@ -29,17 +36,39 @@ class Advance:
 
 @dataclass(frozen=True)
 class PointResult:
-    """Everything found at one point of a study, as plain values; failure is the sentence why there is nothing."""
+    """Everything found at one point of a study, as plain values; failure is the sentence why there is nothing.
+
+    tables_json is a JSON object that holds the rows of every table, orbits_json a JSON list: the texts are what is
+    stored and sent, so that the hundreds of values of a line are turned over once.
+    """
 
     point: int
     axes: dict[str, object]
     static: dict[str, Any]
     den_hartog: dict[str, Any]
-    tables: dict[str, list[dict[str, object]]]
-    orbits: list[dict[str, object]]
+    peaks: dict[str, float | None]
+    tables_json: bytes
+    orbits_json: bytes
     warnings: list[str]
     engine_version: str
     failure: str | None
+
+    @cached_property
+    def tables(self) -> dict[Table, list[dict[str, Any]]]:
+        """Rows by the name of their table."""
+        found: dict[Table, list[dict[str, Any]]] = orjson.loads(self.tables_json)
+        return found
+
+    @cached_property
+    def orbits(self) -> list[dict[str, Any]]:
+        """Fourier coefficients of the cycles, each with the number of its row among the limit cycles."""
+        found: list[dict[str, Any]] = orjson.loads(self.orbits_json)
+        return found
+
+
+def columns(table: Table) -> list[str]:
+    """Return the names of a table's columns in the order of the contract, without the study's axes."""
+    return [field.name for field in fields(_ROW_TYPES[table])]
 
 
 def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
@@ -101,14 +130,22 @@ def _specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple
 
 
 def point_result(result: Result, number: int, values: dict[str, Any]) -> PointResult:
-    """Return the engine's result of one point as plain values."""
+    """Return the engine's result of one point as plain values; what is not finite becomes null."""
+    onsets = (row.wind_speed_m_per_s for row in result.critical_wind_speeds)
+    amplitudes = (row.vertical_m for row in result.limit_cycles if row.vertical_m is not None)
     return PointResult(
         point=number,
         axes=values,
-        static=_plain(result.static),
-        den_hartog=_plain(result.den_hartog),
-        tables={name: [_plain(row) for row in getattr(result, name)] for name in TABLES},
-        orbits=[_plain(orbit) for orbit in result.orbits],
+        static=_finite(asdict(result.static)),
+        den_hartog=_finite(asdict(result.den_hartog)),
+        peaks=_finite(
+            {
+                "lowest_critical_wind_speed_m_per_s": min(onsets, default=None),
+                "largest_vertical_m": max(amplitudes, default=None),
+            }
+        ),
+        tables_json=_json({name: getattr(result, name) for name in TABLES}),
+        orbits_json=_json(result.orbits),
         warnings=list(result.warnings),
         engine_version=result.engine_version,
         failure=None,
@@ -122,33 +159,21 @@ def failed_point(error: Exception, number: int, values: dict[str, Any]) -> Point
         axes=values,
         static={},
         den_hartog={},
-        tables={name: [] for name in TABLES},
-        orbits=[],
+        peaks={},
+        tables_json=_NO_ROWS,
+        orbits_json=b"[]",
         warnings=[],
         engine_version=ENGINE_VERSION,
         failure=f"{type(error).__name__}: {error}",
     )
 
 
-def _plain(row: Any) -> dict[str, Any]:
-    return {name: _value(getattr(row, name)) for name in _names(row.__class__)}
+def _json(found: object) -> bytes:
+    """Return dataclasses, enums and numpy's scalars as JSON."""
+    return orjson.dumps(found, option=orjson.OPT_SERIALIZE_NUMPY)
 
 
-@cache
-def _names(kind: type[Any]) -> tuple[str, ...]:
-    return tuple(field.name for field in dataclasses.fields(kind))
-
-
-def _value(value: Any) -> Any:
-    """Return a JSON value: the word of an enum, None for what is not finite, plain Python for numpy's scalars."""
-    kind = type(value)
-    if kind is float:  # the usual case comes first, since a batch has a hundred thousand of them a second
-        return value if math.isfinite(value) else None
-    if value is None or kind is str or kind is int or kind is bool:
-        return value
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, tuple):
-        return [_value(item) for item in value]
-    plain = value.item() if hasattr(value, "item") else value
-    return None if isinstance(plain, float) and not math.isfinite(plain) else plain
+def _finite(values: dict[str, Any]) -> dict[str, Any]:
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in values.items()
+    }

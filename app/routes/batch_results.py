@@ -72,7 +72,7 @@ def results(
         if form == "csv":
             return export.csv_text(batch_results.columns(name), batch_results.rows(session, batch_id, name))
         if asked.table is None:
-            return export.ndjson_text(batch_results.documents(session, batch_id))
+            return (text + "\n" for text in batch_results.documents(session, batch_id))
         return export.ndjson_text(batch_results.rows(session, batch_id, name))
 
     return _streamed(readers, pieces, _MEDIA_TYPES[form])

@@ -10,9 +10,9 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import convert, export, results
 from app.auth import Caller
+from app.convert import Table
 from app.errors import ProblemError, ProblemKind
 from app.export import Format
-from app.results import Table
 from app.routes import documentation
 from app.routes.common import PREFIX, RETRY_SECONDS, CallerOf, Readers, failure_of, find_job, job_address
 from app.schemas.answers import ResultDocument
@@ -89,7 +89,7 @@ def table(
     def pieces(session: Session) -> Iterator[str]:
         rows = results.rows(session, job_id, name)
         if chosen == "csv":
-            return export.csv_text([*axes, *results.columns(name)], rows)
+            return export.csv_text([*axes, *convert.columns(name)], rows)
         return export.json_text(name, rows)
 
     return _streamed(readers, pieces, chosen)

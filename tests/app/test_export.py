@@ -69,7 +69,11 @@ def test_numbers_are_left_alone_by_the_guard() -> None:
     assert "".join(csv_text(["a"], [{"a": -1.5}])) == "a\r\n-1.5\r\n"
 
 
-@given(st.lists(st.dictionaries(st.text(max_size=5), st.integers() | st.text(max_size=5) | st.none(), max_size=3)))
+@given(
+    st.lists(
+        st.dictionaries(st.text(max_size=5), st.integers(-(2**53), 2**53) | st.text(max_size=5) | st.none(), max_size=3)
+    )
+)
 def test_a_table_as_json_is_what_went_in(rows: list[dict[str, Any]]) -> None:
     assert json.loads("".join(json_text("t", rows))) == {"t": rows}
 

@@ -1,15 +1,14 @@
 from uuid import UUID
 
 import pytest
+from sqlalchemy import select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import convert, leases, results
-from app.convert import PointResult
-from app.results import Table
+from app.convert import TABLES, PointResult
+from app.tables import PointRow
 from tests.documents import add_job, long_request, point_result, short_request
-
-TABLES: tuple[Table, ...] = ("frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations")
 
 
 @pytest.fixture(scope="module")
@@ -64,12 +63,6 @@ def test_orbits_come_back_as_the_engine_gave_them(sessions: sessionmaker[Session
     assert expected
 
 
-def test_columns_are_those_of_the_engine_without_keys(computed: list[PointResult]) -> None:
-    for table in ("frequencies", "limit_cycles"):
-        assert results.columns(table) == list(computed[0].tables[table][0])
-    assert results.columns("bifurcations")[:3] == ["model", "loops", "branch"]
-
-
 def test_failed_point_has_its_sentence_and_no_numbers(sessions: sessionmaker[Session]) -> None:
     job_id = keep(sessions, [point_result(0), point_result(1, failure="It overflowed.")])
     with sessions() as session:
@@ -90,22 +83,32 @@ def test_jobs_do_not_see_each_others_rows(sessions: sessionmaker[Session]) -> No
         assert results.axes(session, other) == []
 
 
-def test_rows_with_other_columns_are_refused(sessions: sessionmaker[Session]) -> None:
-    more, less = point_result(), point_result()
-    more.tables["frequencies"][0]["vertical_hertz"] = 1.0
-    del less.tables["frequencies"][0]["vertical_hz"]
-    job_id = add_job(sessions)
-    for point, name in ((more, "vertical_hertz"), (less, "vertical_hz")):
-        with pytest.raises(ValueError, match=rf"\['{name}'\]"), sessions.begin() as session:
-            results.store(session, job_id, [point])
+def test_peaks_stand_beside_what_is_packed(sessions: sessionmaker[Session], computed: list[PointResult]) -> None:
+    job_id = keep(sessions, computed)
+    names = PointRow.lowest_critical_wind_speed_m_per_s, PointRow.largest_vertical_m
+    with sessions() as session:
+        kept = session.execute(select(*names).where(PointRow.job_id == job_id).order_by(PointRow.point)).all()
+    for peaks, point in zip(kept, computed, strict=True):
+        winds = [row["wind_speed_m_per_s"] for row in point.tables["critical_wind_speeds"]]
+        amplitudes = [row["vertical_m"] for row in point.tables["limit_cycles"] if row["vertical_m"] is not None]
+        assert tuple(peaks) == (min(winds), max(amplitudes))
 
 
-def test_rows_without_a_needed_value_are_refused(sessions: sessionmaker[Session]) -> None:
-    point = point_result()
-    point.tables["frequencies"][0]["loops"] = None
-    job_id = add_job(sessions)
+def test_a_point_is_one_row_much_smaller_than_its_text(
+    sessions: sessionmaker[Session], computed: list[PointResult]
+) -> None:
+    job_id = keep(sessions, computed)
+    with sessions() as session:
+        kept = session.execute(select(PointRow.tables, PointRow.orbits).where(PointRow.job_id == job_id)).all()
+    assert len(kept) == len(computed)
+    packed = sum(len(part) for row in kept for part in row)
+    assert packed < 0.4 * sum(len(point.tables_json) + len(point.orbits_json) for point in computed)
+
+
+def test_a_point_is_stored_once(sessions: sessionmaker[Session]) -> None:
+    job_id = keep(sessions, [point_result()])
     with pytest.raises(IntegrityError), sessions.begin() as session:
-        results.store(session, job_id, [point])
+        results.store(session, job_id, [point_result()])
 
 
 def test_a_job_without_study_has_no_axes(sessions: sessionmaker[Session]) -> None:

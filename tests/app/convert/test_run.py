@@ -37,7 +37,14 @@ def test_rows_hold_nothing_but_what_json_can_carry() -> None:
     (point,), _ = results({"line": example("c11-single"), "analysis": SHORT})
     for row in (row for rows in point.tables.values() for row in rows):
         assert {type(value) for value in row.values()} <= {str, int, float, bool, type(None)}
-    assert {type(number) for orbit in point.orbits for number in orbit["vertical"]} == {float}  # type: ignore[attr-defined]
+    assert {type(number) for orbit in point.orbits for number in orbit["vertical"]} == {float}
+
+
+def test_columns_are_those_of_the_rows() -> None:
+    (point,), _ = results({"line": example("c11-twin"), "analysis": SHORT})
+    for table in ("frequencies", "critical_wind_speeds", "limit_cycles"):
+        assert {tuple(row) for row in point.tables[table]} == {tuple(convert.columns(table))}
+    assert convert.columns("bifurcations")[:3] == ["model", "loops", "branch"]
 
 
 def test_a_study_runs_every_combination_with_the_last_axis_fastest() -> None:
@@ -55,7 +62,7 @@ def test_a_study_runs_every_combination_with_the_last_axis_fastest() -> None:
     ]
     assert [point.static["horizontal_tension_n"] for point in points] == [24000.0, 24000.0, 36000.0, 36000.0]
     onset = [point.tables["critical_wind_speeds"][0]["wind_speed_m_per_s"] for point in points]
-    assert onset[0] < onset[1]  # type: ignore[operator]
+    assert onset[0] < onset[1]
     assert advances[-1].fraction == 1.0
 
 
