@@ -12,7 +12,8 @@ Format = Literal["json", "csv"]
 Name = TypeVar("Name", bound=str)
 MEDIA_TYPES: Mapping[Format, str] = {"json": "application/json", "csv": "text/csv; charset=utf-8"}
 
-_FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+# The wide forms count, too: spreadsheets of East Asian settings read them as the narrow ones.
+_FORMULA_STARTS = (*"=+-@\t\r\n", *"\uff1d\uff0b\uff0d\uff20")
 _CHARACTERS_A_BLOCK = 65_536
 
 
@@ -66,25 +67,27 @@ def ndjson_text(rows: Iterable[Row]) -> Iterator[str]:
 
 
 def result_text(
-    points: Sequence[Row], tables: Mapping[str, Iterable[Row]], *, study: bool, failure: Row | None = None
+    request: Row, points: Sequence[Row], tables: Mapping[str, Iterable[Row]], failure: Row | None = None
 ) -> Iterator[str]:
     """Yield the pieces of a whole result document.
 
     Parameters
     ----------
+    request : mapping
+        The request with all defaults, which is given back as `input`; with a study, or of a chunk of a batch, which
+        has no line of its own, static and den_hartog are lists with a row for each point, else single objects.
     points : sequence of mappings
         With axes, static, den_hartog, warnings, engine_version and failure of each point.
     tables : mapping
         Rows by the name of their table; in a study they begin with the values of the axes.
-    study : bool
-        Whether static and den_hartog are lists with a row for each point, or single objects.
     failure : mapping, optional
         Kind and detail of the job's failure.
     """
-    yield "{"
+    several = "line" not in request or request.get("study") is not None
+    yield f"{{{_dump('input')}:{_dump(request)},"
     for name in ("static", "den_hartog"):
         found = [{**point["axes"], **point[name]} for point in points if point[name]]
-        yield f"{_dump(name)}:{_dump(found if study else next(iter(found), None))},"
+        yield f"{_dump(name)}:{_dump(found if several else next(iter(found), None))},"
     for name, rows in tables.items():
         yield from _member(name, rows)
         yield ","

@@ -11,7 +11,7 @@ from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
 from app.head import HeadAsGet
 from app.queue import Sender, celery_application
-from app.routes import aerodynamics, batch_results, batches, documentation, health, jobs, results
+from app.routes import aerodynamics, batch_results, batches, documentation, health, jobs, reference, results
 from app.settings import Settings, get_settings
 
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
@@ -62,6 +62,6 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.sender = Sender(celery_application(settings), app.state.writers)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batches, batch_results, aerodynamics, health):
+    for module in (jobs, results, batches, batch_results, aerodynamics, reference, health):
         app.include_router(module.router)
     return app

@@ -3,7 +3,7 @@
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -40,17 +40,18 @@ def analyse(line: LineFile, analysis: AnalysisFile = None, study: StudyFile = No
         request = convert.read(document)
     except BadInput as error:
         refuse(error.faults)
+    whole = request.model_dump(mode="json", by_alias=True, exclude={"study"} if request.study is None else None)
     points: list[PointResult] = []
     try:
         with progress_bar() as show:
-            for item in convert.run(request.model_dump(mode="json", by_alias=True)):
+            for item in convert.run(whole):
                 if isinstance(item, convert.Advance):
                     show(item.fraction, item.step)
                 else:
                     points.append(item)
     except (ArithmeticError, ValueError) as error:
         end(f"the computation failed: {error}", FAILED)
-    write(_result(points, study=request.study is not None), output)
+    write(_result(whole, points), output)
 
 
 def example(
@@ -64,7 +65,7 @@ def example(
     write(examples.example(name), None)
 
 
-def _result(points: Sequence["PointResult"], *, study: bool) -> Any:
+def _result(request: Mapping[str, Any], points: Sequence["PointResult"]) -> Any:
     from dataclasses import asdict
 
     from app import convert, export
@@ -72,4 +73,4 @@ def _result(points: Sequence["PointResult"], *, study: bool) -> Any:
     tables: dict[str, list[dict[str, object]]] = {
         name: [{**point.axes, **row} for point in points for row in point.tables[name]] for name in convert.TABLES
     }
-    return json.loads("".join(export.result_text([asdict(point) for point in points], tables, study=study)))
+    return json.loads("".join(export.result_text(request, [asdict(point) for point in points], tables)))

@@ -100,6 +100,7 @@ STOPPING_JOB: dict[str, Any] = {
     "cancel_requested": True,
 }
 RESULT: dict[str, Any] = {
+    "input": {"line": example("c11-twin"), "analysis": {"loops": [1], "models": ["hybrid"]}},
     "static": {
         "horizontal_tension_n": 30000.0,
         "catenary_parameter_m": 1285.5,

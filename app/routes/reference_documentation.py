@@ -1,6 +1,9 @@
-"""Examples for OpenAPI of what needs no job: fits of coefficients."""
+"""Examples for OpenAPI of what needs no job: fits, conductors, input fields."""
 
 from typing import Any
+
+from app.schemas.fields import example_of
+from app.schemas.reference import ConductorRow, FieldRow
 
 _MEASURED = (
     (20.0, -0.2734, 0.9778, -0.0643),
@@ -44,4 +47,8 @@ FIT: dict[str, Any] = {
             (60.0, -0.78417),
         )
     ],
+}
+CONDUCTORS: dict[str, Any] = {"conductors": [example_of(ConductorRow)]}
+FIELDS: dict[str, Any] = {
+    "fields": [example_of(FieldRow) | {"fewest_items": None, "most_items": None, "choices": None}],
 }

@@ -54,12 +54,11 @@ _TABLE_PROBLEMS = documentation.problems(
 def whole(job_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
     """Return everything that was found; a failed job answers with the rows that it has and its failure."""
     job = _ended_job(readers, caller, job_id)
-    study, failure = job.batch_id is not None or job.document.get("study") is not None, failure_of(job)
 
     def pieces(session: Session) -> Iterator[str]:
         points = list(results.points(session, job_id))
         tables: dict[str, Rows] = {name: results.rows(session, job_id, name) for name in convert.TABLES}
-        return export.result_text(points, tables, study=study, failure=failure)
+        return export.result_text(job.document, points, tables, failure_of(job))
 
     return _streamed(readers, pieces, "json")
 

@@ -1,11 +1,12 @@
 """What goes out: states of jobs, result rows, health, and problems of RFC 9457."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 from uuid import UUID
 
 from pydantic import ConfigDict, Field
 
+from app.examples import example
 from app.schemas.fields import Answer, example_of, told
 
 Status = Literal["accepted", "running", "successful", "failed", "dismissed"]
@@ -120,6 +121,7 @@ class PointFailure(Answer):
 class ResultDocument(Answer):
     """Everything that was found; in a study every row begins with the values of the axes."""
 
+    input: dict[str, Any] = told("What was asked, with every default that was taken", {"line": example("c11-twin")})
     static: StaticState | list[StaticState] | None = told("Static state of the span", example_of(StaticState))
     den_hartog: DenHartog | list[DenHartog] | None = told("Den Hartog's criterion", example_of(DenHartog))
     frequencies: list[Frequency] = told("Natural frequencies", [example_of(Frequency)])

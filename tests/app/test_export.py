@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 from app.export import csv_text, in_blocks, json_text, preferred_format, result_text
 
+SINGLE: dict[str, Any] = {"line": {"name": "x"}, "analysis": {"harmonics": 5}}
+STUDY: dict[str, Any] = {**SINGLE, "study": {"axes": []}}
 POINT: dict[str, Any] = {
     "axes": {},
     "static": {"sag_m": 1.5},
@@ -56,10 +58,10 @@ def test_csv_rows_follow_the_columns_and_leave_nothing_for_null() -> None:
 def test_no_text_passes_for_a_formula(value: str, column: str) -> None:
     text = "".join(csv_text([column], [{column: value}]))
     for cell in (cell for row in csv.reader(io.StringIO(text, newline="")) for cell in row):
-        assert not cell.startswith(("=", "+", "-", "@", "\t", "\r"))
+        assert not cell.startswith(tuple("=+-@\t\r\n\uff1d\uff0b\uff0d\uff20"))
 
 
-@pytest.mark.parametrize("value", ["=1+1", "+1", "-1", "@A1", "\t=1", "\r=1"])
+@pytest.mark.parametrize("value", ["=1+1", "+1", "-1", "@A1", "\t=1", "\r=1", "\n=1", "\uff1d1+1"])
 def test_text_that_looks_like_a_formula_gets_an_apostrophe(value: str) -> None:
     rows = list(csv.reader(io.StringIO("".join(csv_text(["a"], [{"a": value}])), newline="")))
     assert rows[1] == ["'" + value]
@@ -90,8 +92,9 @@ def test_blocks_are_large_but_bounded() -> None:
 
 
 def test_a_result_without_study_has_single_objects() -> None:
-    document = json.loads("".join(result_text([POINT], {"frequencies": [{"loops": 1}]}, study=False)))
+    document = json.loads("".join(result_text(SINGLE, [POINT], {"frequencies": [{"loops": 1}]})))
     assert document == {
+        "input": SINGLE,
         "static": {"sag_m": 1.5},
         "den_hartog": {"coefficient": -0.2, "unstable": True},
         "frequencies": [{"loops": 1}],
@@ -107,14 +110,18 @@ def test_a_study_has_a_row_for_each_point_and_its_failures() -> None:
         {**POINT, "axes": {"span.sag_m": 1.0}},
         {**POINT, "axes": {"span.sag_m": 2.0}, "static": None, "den_hartog": None, "failure": "why", "warnings": []},
     ]
-    document = json.loads("".join(result_text(points, {}, study=True)))
+    document = json.loads("".join(result_text(STUDY, points, {})))
     assert document["static"] == [{"span.sag_m": 1.0, "sag_m": 1.5}]
     assert document["failures"] == [{"span.sag_m": 2.0, "failure": "why"}]
 
 
+def test_a_chunk_of_a_batch_has_a_row_for_each_of_its_lines() -> None:
+    assert json.loads("".join(result_text({"batch_id": "b", "part": 0}, [POINT], {})))["static"] == [{"sag_m": 1.5}]
+
+
 def test_a_result_without_points_is_whole() -> None:
     failure = {"kind": "worker_lost", "detail": "gone"}
-    document = json.loads("".join(result_text([], {"frequencies": []}, study=False, failure=failure)))
+    document = json.loads("".join(result_text(SINGLE, [], {"frequencies": []}, failure)))
     assert document["static"] is None
     assert document["failure"] == failure
     assert document["engine_version"] is None

@@ -7,7 +7,7 @@ from pydantic import BaseModel
 
 from app import convert, schemas
 from app.main import create_app
-from app.schemas import aerodynamics, answers, batch
+from app.schemas import aerodynamics, answers, batch, reference
 from tests.app import service
 
 
@@ -30,7 +30,9 @@ def bodies(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]
 
 def model_of(content: dict[str, Any]) -> type[BaseModel] | None:
     name = content.get("schema", {}).get("$ref", "").rpartition("/")[2]
-    found = next((getattr(m, name) for m in (schemas, answers, batch, aerodynamics) if hasattr(m, name)), None)
+    found = next(
+        (getattr(m, name) for m in (schemas, answers, batch, aerodynamics, reference) if hasattr(m, name)), None
+    )
     return found if isinstance(found, type) and issubclass(found, BaseModel) else None
 
 

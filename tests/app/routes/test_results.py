@@ -9,6 +9,7 @@ import pytest
 
 from app import leases
 from app.db import make_engine, session_factory
+from app.schemas import JobRequest
 from app.schemas.answers import ResultDocument
 from app.settings import Settings
 from app.tables import FailureKind
@@ -51,6 +52,14 @@ def test_the_result_is_the_document_of_the_contract(shared_client: httpx.Client,
     document = shared_client.get(f"{address}/results").json()
     assert document["static"]["horizontal_tension_n"] == 30000.0
     assert document["den_hartog"] == {"coefficient": -0.1667, "unstable": True}
+
+
+def test_the_result_gives_back_what_was_asked_with_the_defaults(shared_client: httpx.Client, address: str) -> None:
+    taken = shared_client.get(f"{address}/results").json()["input"]
+    request = JobRequest.model_validate(short_request())
+    assert taken == request.model_dump(mode="json", by_alias=True, exclude={"study"})
+    assert taken["analysis"]["harmonics"] == 5
+    assert taken["line"]["supports"]["left"]["dead_end"] is False
 
 
 @pytest.mark.parametrize(("path", "name"), TABLES.items())

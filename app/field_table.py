@@ -1,0 +1,75 @@
+"""The table of input fields, read out of the schemas: name, type, unit, bounds, default and description of each."""
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+from app.schemas import JobRequest
+
+_Schema = Mapping[str, Any]
+
+
+@cache
+def input_fields() -> tuple[dict[str, Any], ...]:
+    """Return a row for every field of a request, in the order of the document.
+
+    Names are dotted. `[]` follows a list whose items have fields, `[spacer]` names the type of item that has them.
+    """
+    document = JobRequest.model_json_schema(by_alias=True)
+    return tuple(_fields("", _inlined(document, document["$defs"])))
+
+
+def _inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:
+    """Return a schema with every reference replaced by what it leads to."""
+    if isinstance(node, list):
+        return [_inlined(item, definitions) for item in node]
+    if not isinstance(node, dict):
+        return node
+    own = {key: _inlined(value, definitions) for key, value in node.items() if key not in {"$ref", "$defs"}}
+    if "$ref" not in node:
+        return own
+    return {**_inlined(definitions[node["$ref"].rpartition("/")[2]], definitions), **own}
+
+
+def _fields(prefix: str, schema: _Schema) -> Iterator[dict[str, Any]]:
+    """Yield the rows of an object's fields, each followed by those of what lies below it."""
+    for name, field in schema.get("properties", {}).items():
+        path = prefix + name
+        yield _row(path, field, required=name in schema.get("required", ()))
+        for form in _forms(field):
+            if form.get("type") == "array":
+                for item in _forms(form["items"]):
+                    kind = item.get("properties", {}).get("type", {}).get("const", "")
+                    yield from _fields(f"{path}[{kind}].", item)
+            else:
+                yield from _fields(f"{path}.", form)
+
+
+def _forms(schema: _Schema) -> list[_Schema]:
+    """Return what a schema allows beside null, one by one."""
+    several = schema.get("anyOf") or schema.get("oneOf")
+    if several is None:
+        return [] if schema.get("type") == "null" else [schema]
+    return [form for one in several for form in _forms(one)]
+
+
+def _row(path: str, field: _Schema, *, required: bool) -> dict[str, Any]:
+    forms = _forms(field)
+    innermost = forms[0]
+    while innermost.get("type") == "array":
+        innermost = _forms(innermost["items"])[0]
+    return {
+        "name": path,
+        "type": " or ".join(dict.fromkeys(form["type"] for form in forms)),
+        "unit": field.get("unit"),
+        "required": required,
+        "nullable": {"type": "null"} in field.get("anyOf", ()),
+        "default": field.get("default"),
+        "minimum": innermost.get("minimum"),
+        "maximum": innermost.get("maximum"),
+        "fewest_items": forms[0].get("minItems"),
+        "most_items": forms[0].get("maxItems"),
+        "choices": innermost.get("enum") or ([innermost["const"]] if "const" in innermost else None),
+        "description": field["description"],
+        "example": next(iter(field.get("examples", ())), None),
+    }

@@ -1,0 +1,41 @@
+"""What helps to write a request: the catalogue of conductors and the table of input fields."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from fastapi.responses import JSONResponse
+
+from app import conductors, field_table
+from app.errors import ProblemKind
+from app.routes import documentation, reference_documentation
+from app.routes.common import PREFIX
+from app.schemas.reference import ConductorList, FieldList
+
+router = APIRouter(prefix=PREFIX, tags=["reference"])
+
+
+@router.get(
+    "/conductors",
+    response_model=ConductorList,
+    responses={
+        200: documentation.body("The rows found", ("application/json", reference_documentation.CONDUCTORS)),
+        **documentation.problems(ProblemKind.INVALID_PARAMETER),
+    },
+)
+def list_conductors(
+    search: Annotated[
+        str, Query(max_length=100, description="Words that name, designation, type or stranding hold, in any case")
+    ] = "",
+) -> JSONResponse:
+    """List bare conductors of the catalogue with published figures, each row with its source."""
+    return JSONResponse({"conductors": conductors.search(search)})
+
+
+@router.get(
+    "/fields",
+    response_model=FieldList,
+    responses={200: documentation.body("The fields", ("application/json", reference_documentation.FIELDS))},
+)
+def list_fields() -> JSONResponse:
+    """List every field of a request with unit, bounds, default and description, made from the schemas themselves."""
+    return JSONResponse({"fields": field_table.input_fields()})

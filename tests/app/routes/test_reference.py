@@ -1,0 +1,19 @@
+import httpx
+
+from app.field_table import input_fields
+from app.schemas.reference import ConductorList, FieldList
+
+
+def test_conductors_are_sought_by_words(shared_client: httpx.Client) -> None:
+    answer = shared_client.get("/v1/conductors", params={"search": "acsr drake"})
+    assert answer.status_code == 200
+    (row,) = ConductorList.model_validate_json(answer.content).conductors
+    assert row.diameter_m == 0.02811
+    assert len(shared_client.get("/v1/conductors").json()["conductors"]) > 50
+    assert shared_client.get("/v1/conductors", params={"search": "x" * 101}).status_code == 400
+
+
+def test_fields_are_the_table_of_the_schemas(shared_client: httpx.Client) -> None:
+    answer = shared_client.get("/v1/fields")
+    FieldList.model_validate_json(answer.content)
+    assert answer.json()["fields"] == list(input_fields())
