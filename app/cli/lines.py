@@ -22,6 +22,7 @@ from app.cli.common import (
     write,
 )
 from app.examples import EXAMPLE_NAMES
+from app.studies import STUDY_NAMES
 
 if TYPE_CHECKING:
     from app.convert import PointResult
@@ -56,13 +57,17 @@ def analyse(line: LineFile, analysis: AnalysisFile = None, study: StudyFile = No
 
 def example(
     name: Annotated[str, typer.Argument(metavar="|".join(EXAMPLE_NAMES), help="Which of the source's lines.")],
+    study: Annotated[
+        str | None, typer.Option(metavar="|".join(STUDY_NAMES), help="Print a whole request: a study of this line.")
+    ] = None,
 ) -> None:
-    """Print one of the source's lines, ready to run."""
-    from app import examples
+    """Print one of the source's lines, or one of its studies of that line, ready to run."""
+    from app import examples, studies
 
-    if name not in EXAMPLE_NAMES:
-        end(f"there is no example {name!r}; there are {', '.join(EXAMPLE_NAMES)}", BAD_INPUT)
-    write(examples.example(name), None)
+    for kind, wanted, known in (("example", name, EXAMPLE_NAMES), ("study", study, STUDY_NAMES)):
+        if wanted is not None and wanted not in known:
+            end(f"there is no {kind} {wanted!r}; there are {', '.join(known)}", BAD_INPUT)
+    write(examples.example(name) if study is None else studies.study_request(study, name), None)
 
 
 def _result(request: Mapping[str, Any], points: Sequence["PointResult"]) -> Any:

@@ -46,7 +46,7 @@ def check(document: Mapping[str, object]) -> list[Fault]:
 def request_faults(request: schemas.JobRequest) -> list[Fault]:
     """Return the faults that a request has beyond its schema."""
     axes = request.study.axes if request.study else []
-    sound = [SoundAxis(i, axis.parameter, list(enumerate(axis.values))) for i, axis in enumerate(axes)]
+    sound = [SoundAxis(i, axis.parameters, list(enumerate(axis.values))) for i, axis in enumerate(axes)]
     return _combined({}, SoundParts.of(request.line), request.analysis, sound)
 
 

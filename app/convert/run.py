@@ -123,7 +123,9 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
 
 
 def _specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:
-    line, analysis, faults = gather(SoundParts.of(study.varied(request.line, values)), request.analysis)
+    line, analysis, faults = gather(
+        SoundParts.of(study.varied(request.line, study.settings(request.study, values))), request.analysis
+    )
     if line is None or faults:
         raise InvalidSpec(*faults)
     return line, analysis

@@ -24,10 +24,10 @@ _AXIS_VALUE: TypeAdapter[Any] = TypeAdapter(AxisValue)
 
 @dataclass(frozen=True, slots=True)
 class SoundAxis:
-    """An axis of a study with its number, and those of its values that are sound with theirs."""
+    """An axis of a study with its number, the fields that it varies, and its sound values with their numbers."""
 
     number: int
-    parameter: str
+    parameters: Sequence[str]
     values: Sequence[tuple[int, Any]]
 
 
@@ -94,12 +94,13 @@ def sound_axes(study: object) -> list[SoundAxis]:
 
 
 def _axis(number: int, axis: Mapping[str, Any]) -> SoundAxis | None:
-    named = _sound(schemas.Axis, {"parameter": axis.get("parameter"), "values": [0]})
+    fields = {name: axis[name] for name in ("parameter", "also") if name in axis}
+    named = _sound(schemas.Axis, {**fields, "values": [0]})
     if named is None:
         return None
     values = axis.get("values")
     listed = values[:STUDY_POINTS_LIMIT] if isinstance(values, list) else []
-    return SoundAxis(number, named.parameter, [(j, value) for j, value in enumerate(listed) if _is_axis_value(value)])
+    return SoundAxis(number, named.parameters, [(j, value) for j, value in enumerate(listed) if _is_axis_value(value)])
 
 
 def _is_axis_value(value: object) -> bool:

@@ -27,6 +27,12 @@ def points(study: schemas.Study | None) -> Iterator[dict[str, Any]]:
         yield dict(zip(names, values, strict=True))
 
 
+def settings(study: schemas.Study | None, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the value of every field that a point sets, those that follow an axis among them."""
+    axes = study.axes if study else []
+    return {name: values[axis.parameter] for axis in axes for name in axis.parameters}
+
+
 def count(study: schemas.Study | None) -> int:
     """Return the number of points."""
     return math.prod(len(axis.values) for axis in study.axes) if study else 1
@@ -98,19 +104,22 @@ def faults(ground: Ground, axes: Sequence[SoundAxis]) -> Iterator[Fault]:
     if found or len(axes) < 2 or math.prod(len(axis.values) for axis in axes) > STUDY_POINTS_LIMIT:
         return
     for combination in itertools.product(*(axis.values for axis in axes)):
-        values = {axis.parameter: value for axis, (_, value) in zip(axes, combination, strict=True)}
+        values = {name: value for axis, (_, value) in zip(axes, combination, strict=True) for name in axis.parameters}
         yield from _point_faults(ground, values, "/study/axes")
 
 
 def _axis_faults(ground: Ground, axis: SoundAxis) -> Iterator[Fault]:
-    path = axis.parameter.split(".")
-    reason = _path_fault(ground, path)
-    if reason:
-        yield Fault(json_pointer(["study", "axes", axis.number, "parameter"]), "unknown_parameter", reason)
+    wrong = False
+    for number, name in enumerate(axis.parameters):
+        if reason := _path_fault(ground, name.split(".")):
+            wrong = True
+            place = ["parameter"] if number == 0 else ["also", number - 1]
+            yield Fault(json_pointer(["study", "axes", axis.number, *place]), "unknown_parameter", reason)
+    if wrong:
         return
     for j, value in axis.values:
         pointer = json_pointer(["study", "axes", axis.number, "values", j])
-        yield from _point_faults(ground, {axis.parameter: value}, pointer)
+        yield from _point_faults(ground, dict.fromkeys(axis.parameters, value), pointer)
 
 
 def _point_faults(ground: Ground, values: dict[str, Any], pointer: str) -> Iterator[Fault]:

@@ -6,5 +6,6 @@ Figures are made as objects, without pyplot and its global state.
 from app.plots.amplitudes import amplitude
 from app.plots.common import MEDIA_TYPES, Extension
 from app.plots.orbits import orbit
+from app.plots.studies import Abscissa, Study, study
 
-__all__ = ["MEDIA_TYPES", "Extension", "amplitude", "orbit"]
+__all__ = ["MEDIA_TYPES", "Abscissa", "Extension", "Study", "amplitude", "orbit", "study"]

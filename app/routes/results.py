@@ -82,8 +82,7 @@ def table(
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, "Tables are application/json or text/csv.")
     job = _ended_job(readers, caller, job_id)
     name = _TABLES[table]
-    axes = [axis["parameter"] for axis in (job.document.get("study") or {"axes": []})["axes"]]
-    axes = ["number"] if job.batch_id is not None else axes
+    axes = _axes(job)
 
     def pieces(session: Session) -> Iterator[str]:
         rows = results.rows(session, job_id, name)
@@ -92,6 +91,31 @@ def table(
         return export.json_text(name, rows)
 
     return _streamed(readers, pieces, chosen)
+
+
+@router.get(
+    "/plots/study.{extension}",
+    response_class=Response,
+    responses={200: documentation.PICTURE_ANSWER, **_PROBLEMS},
+)
+def study_plot(
+    job_id: UUID,
+    extension: PictureFormat,
+    caller: CallerOf,
+    readers: Readers,
+    abscissa: Annotated[
+        Literal["reduced", "parameter"], Query(description="The source's ratios, or values in the field's own unit")
+    ] = "reduced",
+) -> Response:
+    """Draw all points of a study over what it varies; a study of two fields gives a map."""
+    from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
+
+    job = _ended_job(readers, caller, job_id)
+    with readers() as session:
+        found = _study_rows(session, job_id)
+    length = job.document.get("line", {"span": {"length_m": 0.0}})["span"]["length_m"]
+    drawn = plots.study(job.name or str(job.id), {"": plots.Study(_axes(job), length, found)}, extension, abscissa)
+    return Response(drawn, media_type=plots.MEDIA_TYPES[extension])
 
 
 @router.get(
@@ -133,6 +157,12 @@ def _ended_job(readers: sessionmaker[Session], caller: Caller, job_id: UUID) -> 
     return job
 
 
+def _axes(job: Job) -> list[str]:
+    """Return the names of the columns that stand before the others in every row of a job."""
+    study = job.document.get("study") or {"axes": []}
+    return ["number"] if job.batch_id is not None else [axis["parameter"] for axis in study["axes"]]
+
+
 def _streamed(readers: sessionmaker[Session], pieces: Pieces, form: Format) -> StreamingResponse:
     """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
 
@@ -163,3 +193,12 @@ def _point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[di
     found: dict[str, list[dict[str, Any]]] = {name: at_point(name) for name in _TABLES.values()}
     found["orbits"] = [orbit for orbit in results.orbits(session, job_id) if orbit["point"] == point]
     return found
+
+
+def _study_rows(session: Session, job_id: UUID) -> dict[str, list[dict[str, Any]]]:
+    """Return what the picture of a study shows, each row after the values of the axes."""
+    points = list(results.points(session, job_id))
+    solved = [{**point["axes"], **point["static"]} for point in points if point["static"]]
+    failed = [{**point["axes"], "failure": point["failure"]} for point in points if point["failure"]]
+    tables = {name: list(results.rows(session, job_id, name)) for name in ("critical_wind_speeds", "limit_cycles")}
+    return {"static": solved, "failures": failed, **tables}

@@ -136,15 +136,21 @@ AxisValue = Annotated[
 ]
 
 
-class Axis(Document):
-    """One field of the line and the values that it takes in turn."""
+ParameterPath = Annotated[str, Field(min_length=1, max_length=120, pattern=r"^[a-z][a-z0-9_]*(\.[a-z0-9_]+)+$")]
 
-    parameter: str = Field(
-        min_length=1,
-        max_length=120,
-        pattern=r"^[a-z][a-z0-9_]*(\.[a-z0-9_]+)+$",
+
+class Axis(Document):
+    """One field of the line, or several together, and the values that it takes in turn."""
+
+    parameter: ParameterPath = Field(
         description="Dotted path of a number or word of the line; list items by number: devices.0.position_m",
         examples=["span.horizontal_tension_n"],
+    )
+    also: list[ParameterPath] = Field(
+        default=[],
+        max_length=10,
+        description="Further fields that take the same values",
+        examples=[["damping.horizontal_ratio"]],
     )
     values: list[AxisValue] = Field(
         min_length=1,
@@ -152,6 +158,11 @@ class Axis(Document):
         description="Values in the field's own unit",
         examples=[[24000, 30000, 36000]],
     )
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """All fields that take the values, the one that names the axis first."""
+        return (self.parameter, *self.also)
 
 
 class Study(Document):
@@ -163,7 +174,8 @@ class Study(Document):
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:
-        if len({axis.parameter for axis in self.axes}) != len(self.axes):
+        varied = [name for axis in self.axes for name in axis.parameters]
+        if len(set(varied)) != len(varied):
             raise PydanticCustomError("distinct", "the axes must vary different fields")
         points = math.prod(len(axis.values) for axis in self.axes)
         if points > STUDY_POINTS_LIMIT:

@@ -12,6 +12,7 @@ import pytest
 from app.examples import EXAMPLE_NAMES, example
 from app.schemas.answers import ResultDocument
 from app.settings import Settings
+from app.studies import study_request
 from tests.app.lines import SHORT, changed
 from tests.documents import short_request
 from tests.processes import running_worker
@@ -52,6 +53,15 @@ def test_an_example_is_printed_ready_to_run(name: str) -> None:
 
 def test_an_unknown_example_is_refused_with_those_that_there_are() -> None:
     assert "c11-twin" in refused("example", "c12")
+    assert "figure-4" in refused("example", "c11-twin", "--study", "figure-1")
+
+
+def test_a_study_of_the_source_is_printed_as_a_whole_request_that_runs() -> None:
+    request = json.loads(galloping("example", "--study", "figure-6", "c11-single").stdout)
+    assert request == study_request("figure-6", "c11-single")
+    request["analysis"]["wind_speeds_m_per_s"] = [4.0]
+    result = json.loads(galloping("analyse", "-", text=json.dumps(request)).stdout)
+    assert result["critical_wind_speeds"][0]["wind_speed_m_per_s"] == pytest.approx(3.94, rel=0.005)
 
 
 def test_the_twin_analysed_gives_the_figures_of_the_theory(tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ def test_the_document_is_openapi_3_1(document: dict[str, Any]) -> None:
 
 def test_every_body_but_a_photograph_has_an_example(document: dict[str, Any]) -> None:
     missing = [place for place, media_type, content in bodies(document) if not examples(content)]
-    assert missing == ["get /v1/jobs/{job_id}/plots/{picture}.{extension} 200"]
+    assert missing == [f"get /v1/jobs/{{job_id}}/plots/{name}.{{extension}} 200" for name in ("study", "{picture}")]
 
 
 def test_every_example_is_valid_by_its_own_schema(document: dict[str, Any]) -> None:

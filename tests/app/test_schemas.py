@@ -145,6 +145,8 @@ def test_a_bundle_is_a_circle_or_positions(bundle: dict[str, Any]) -> None:
         [{"parameter": "span.length_m", "values": [10**400]}],
         [{"parameter": "span..length_m", "values": [1]}],
         [{"parameter": "__class__.x", "values": [1]}],
+        [{"parameter": "span.length_m", "also": ["span.length_m"], "values": [1]}],
+        [{"parameter": "span.length_m", "also": ["__class__.x"], "values": [1]}],
     ],
 )
 def test_a_study_has_one_or_two_axes_of_different_fields_and_at_most_ten_thousand_points(axes: list[Any]) -> None:

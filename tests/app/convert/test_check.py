@@ -1,4 +1,5 @@
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -132,6 +133,8 @@ def test_what_is_no_request_at_all_is_refused(document: object) -> None:
         ({"parameter": "span.sag_m", "values": [1.5]}, "/study/axes/0/values/0"),
         ({"parameter": "devices.0.position_m", "values": [20.0, 200.0]}, "/study/axes/0/values/1"),
         ({"parameter": "damping.model", "values": ["constant_ratio", "other"]}, "/study/axes/0/values/1"),
+        ({"parameter": "span.length_m", "also": ["span.lenght_m"], "values": [126.0]}, "/study/axes/0/also/0"),
+        ({"parameter": "devices.2.from_m", "also": ["devices.2.to_m"], "values": [50.0]}, "/study/axes/0/values/0"),
     ],
 )
 def test_a_fault_of_a_study_is_named_by_its_pointer(axis: dict[str, Any], pointer: str) -> None:
@@ -144,6 +147,33 @@ def test_a_study_that_fits_is_taken() -> None:
         {"parameter": "damping.model", "values": ["constant_ratio", "constant_coefficient"]},
     ]
     assert convert.check({"line": FULL_LINE, "study": {"axes": axes}}) == []
+
+
+def numbers(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, float]]:
+    """Yield the dotted path and the value of every number of a document."""
+    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, value in items:
+        yield from numbers(value, (*path, str(key)))
+    if isinstance(node, int | float) and not isinstance(node, bool):
+        yield ".".join(path), node
+
+
+@pytest.mark.parametrize(("parameter", "value"), list(numbers(FULL_LINE)))
+def test_every_number_of_a_line_can_be_varied(parameter: str, value: float) -> None:
+    near = [value * 0.999, value * 1.001] if isinstance(value, float) else [value]  # the span's end bounds positions
+    assert [] in [convert.check(studied(FULL_LINE, (parameter, [value, other]))) for other in near]
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("supports.longitudinal_stiffness_n_per_m", 1e5),
+        ("supports.left.adjacent_span_m", 150.0),
+        ("supports.left.insulator_length_m", 2.0),
+    ],
+)
+def test_what_is_left_open_can_be_varied(path: str, value: float) -> None:
+    assert convert.check(studied(FULL_LINE, (path, [value]))) == []
 
 
 def studied(line: dict[str, Any], *axes: tuple[str, list[Any]]) -> dict[str, Any]:

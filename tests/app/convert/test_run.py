@@ -66,6 +66,16 @@ def test_a_study_runs_every_combination_with_the_last_axis_fastest() -> None:
     assert advances[-1].fraction == 1.0
 
 
+def test_fields_that_follow_an_axis_take_its_values() -> None:
+    axis = {"parameter": "damping.vertical_ratio", "also": ["damping.horizontal_ratio"], "values": [1e-3]}
+    analysis = {**SHORT, "wind_speeds_m_per_s": [], "loops": [2]}
+    (tied,), _ = results({"line": example("c11-twin"), "analysis": analysis, "study": {"axes": [axis]}})
+    line = changed("damping.vertical_ratio", 1e-3, changed("damping.horizontal_ratio", 1e-3, example("c11-twin")))
+    (given,), _ = results({"line": line, "analysis": analysis})
+    assert tied.tables == given.tables
+    assert tied.axes == {"damping.vertical_ratio": 1e-3}
+
+
 def test_a_point_that_fails_does_not_end_its_study() -> None:
     line = changed("devices", FULL_LINE["devices"][:1], example("c11-twin"))
     axis = {"parameter": "devices.0.position_m", "values": [20.0, 200.0, 30.0]}

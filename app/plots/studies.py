@@ -1,0 +1,210 @@
+"""Studies: amplitudes over what varies, as the source draws them (paper Figures 4 to 9), and maps over two fields."""
+
+import math
+import textwrap
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from app.plots.common import MARKERS, NAMES, Extension, Found, Row, drawn, loops_and_models, loops_name
+from app.plots.maps import map_figure
+
+Abscissa = Literal["reduced", "parameter"]
+
+_PALETTE = ("#0b5394", "#c55a11", "#38761d", "#741b47", "#bf9000", "#45818e", "#990000", "#674ea7")
+_TENSIONS = frozenset({"span.horizontal_tension_n", "span.catenary_parameter_m", "span.sag_m"})
+_DAMPING = frozenset({"damping.vertical_ratio", "damping.horizontal_ratio", "damping.torsional_ratio"})
+_LENGTH = "span.length_m"
+_MOST_IN_LEGEND = 12
+_SIZES = (7.0, 5.5, 4.0, 2.5)  # of one study after the other: equal cycles stay visible below each other
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """A job's result as pictures of studies read it.
+
+    axes: names of the fields that vary; length: of the span [m], where no axis varies it; found: the result document,
+    whose rows begin with the values of the axes.
+    """
+
+    axes: Sequence[str]
+    length: float
+    found: Found
+
+
+@dataclass(frozen=True, slots=True)
+class _Series:
+    """Cycles that belong together: look and name in the legend, abscissa and row of each cycle, and their model."""
+
+    name: str
+    colour: str
+    size: float
+    model: str
+    points: Sequence[tuple[Any, Row]]
+
+
+def study(title: str, studies: Mapping[str, Study], extension: Extension, abscissa: Abscissa = "reduced") -> bytes:
+    """Draw the ratios of lasting motions over what varies, a row of panels a number of loops; two axes make a map.
+
+    Parameters
+    ----------
+    title : str
+        What stands above.
+    studies : mapping
+        Studies over the same axes by their name in the legend. A map shows the first.
+    extension : {"svg", "png"}
+        Format of the picture.
+    abscissa : {"reduced", "parameter"}
+        Whether damping, tension, length and wind speed are shown as the source's ratios or in their own units.
+    """
+    first = next(iter(studies.values()))
+    if len(first.axes) > 1:
+        return drawn(lambda: map_figure(title, first.axes, first.found), extension)
+    return drawn(lambda: _study_figure(title, studies, abscissa), extension)
+
+
+def _study_figure(title: str, studies: Mapping[str, Study], abscissa: Abscissa) -> Figure:
+    first = next(iter(studies.values()))
+    series = list(_all_series(studies, abscissa))
+    loops = sorted({count for one in studies.values() for count in loops_and_models(one.found)[0]})
+    figure = Figure(figsize=(10.5, 1.5 + 2.5 * len(loops)), layout="constrained")
+    panels = figure.subplots(len(loops), len(_RATIOS), squeeze=False, sharex=True)
+    for count, row in zip(loops, panels, strict=True):
+        for panel, (text, ratio) in zip(row, _RATIOS, strict=True):
+            for one in series:
+                _draw(panel, one, [(place, ratio(r), r) for place, r in one.points if r["loops"] == count])
+            panel.set_ylabel(f"{text}\n{loops_name(count)}" if panel is row[0] else text)
+            panel.set_ylim(bottom=0.0)
+            panel.grid(visible=True, alpha=0.25)
+    for panel in panels[-1]:
+        panel.set_xlabel(_label(first.axes, abscissa))
+    figure.suptitle(textwrap.fill(title, 90), fontweight="bold")
+    _legend(figure, series, sum(len(one.found.get("failures", ())) for one in studies.values()))
+    return figure
+
+
+def _both(row: Row) -> float:
+    return math.hypot(row["vertical_ratio"], row["horizontal_ratio"])
+
+
+_RATIOS: Sequence[tuple[str, Callable[[Row], float]]] = (
+    ("vertical A_y / s_a", lambda row: float(row["vertical_ratio"])),
+    ("horizontal A_z / s_a", lambda row: float(row["horizontal_ratio"])),
+    ("both A / s_a", _both),
+)
+
+
+def _label(axes: Sequence[str], abscissa: Abscissa) -> str:
+    """Say what the abscissa is."""
+    if not axes:
+        return "reduced wind speed U / (f L_x)" if abscissa == "reduced" else "wind speed [m/s]"
+    if abscissa == "parameter":
+        return axes[0]
+    if axes[0] in _DAMPING:
+        return "reduced critical wind speed U_c / (f L_x)"
+    if axes[0] in _TENSIONS:
+        return "tension ratio H / w"
+    return "span ratio L_x / s_a" if axes[0] == _LENGTH else axes[0]
+
+
+def _all_series(studies: Mapping[str, Study], abscissa: Abscissa) -> Iterator[_Series]:
+    """Yield the cycles of each study by model, and by wind speed unless that is what varies."""
+    speeds = sorted({row["wind_speed_m_per_s"] for one in studies.values() for row in _lasting(one)})
+    colours = iter(_PALETTE * (1 + len(studies) * len(speeds) // len(_PALETTE)))
+    for number, (name, one) in enumerate(studies.items()):
+        where, size = _places(one, abscissa), _SIZES[number % len(_SIZES)]
+        for speed in speeds if one.axes else [None]:
+            colour = next(colours)
+            parts = [name, f"{speed:g} m/s" if speed is not None and len(speeds) > 1 else ""]
+            rows = [row for row in _lasting(one) if speed is None or row["wind_speed_m_per_s"] == speed]
+            for model in NAMES:
+                points = [(where(row), row) for row in rows if row["model"] == model and where(row) is not None]
+                if points:
+                    yield _Series(", ".join(part for part in parts if part), colour, size, model, points)
+
+
+def _lasting(study: Study) -> list[Row]:
+    """Return the motions that last, or may."""
+    return [
+        row
+        for row in study.found["limit_cycles"]
+        if row["kind"] != "equilibrium" and row["stability"] != "unstable" and row["vertical_ratio"] is not None
+    ]
+
+
+def _places(study: Study, abscissa: Abscissa) -> Callable[[Row], Any]:
+    """Return the function that gives the abscissa of a cycle, None where it has none."""
+    if not study.axes:
+        return lambda row: row["reduced_wind_speed" if abscissa == "reduced" else "wind_speed_m_per_s"]
+    axis = study.axes[0]
+    if abscissa == "reduced" and axis in _DAMPING:
+        critical = _lowest_onsets(study)
+        return lambda row: _reduced(critical.get((row[axis], row["model"], row["loops"])), row)
+    if abscissa == "reduced" and (axis in _TENSIONS or axis == _LENGTH):
+        ratio = _span_ratio if axis == _LENGTH else _tension_ratio
+        static = {row[axis]: ratio(row, row.get(_LENGTH, study.length)) for row in study.found["static"]}
+        return lambda row: static.get(row[axis])
+    return lambda row: row[axis]
+
+
+def _tension_ratio(static: Row, length: float) -> float:
+    """Return H/w with the weight of one iced sub-conductor in the span; the line does not tell its bare weight."""
+    return float(static["catenary_parameter_m"]) / length
+
+
+def _span_ratio(static: Row, length: float) -> float:
+    return length / float(static["sag_m"])
+
+
+def _lowest_onsets(study: Study) -> Mapping[tuple[Any, str, int], float]:
+    """Return the lowest critical wind speed by value of the axis, model and number of loops [m/s]."""
+    found: dict[tuple[Any, str, int], float] = {}
+    for row in study.found["critical_wind_speeds"]:
+        if row["crossing"] == "onset":
+            key = (row[study.axes[0]], row["model"], row["loops"])
+            found[key] = min(found.get(key, math.inf), row["wind_speed_m_per_s"])
+    return found
+
+
+def _reduced(critical: float | None, cycle: Row) -> float | None:
+    """Return U_c/(f L_x) with the scale that the cycle's own reduced wind speed has."""
+    if critical is None or cycle["reduced_wind_speed"] is None:
+        return None
+    return float(critical * cycle["reduced_wind_speed"] / cycle["wind_speed_m_per_s"])
+
+
+def _draw(panel: Axes, series: _Series, points: Sequence[tuple[Any, float, Row]]) -> None:
+    """Draw cycles, stable ones filled and joined where there is one at each place."""
+    for stability in dict.fromkeys(row["stability"] for _, _, row in points):
+        here = [(place, value) for place, value, row in points if row["stability"] == stability]
+        places = [place for place, _ in here]
+        numeric = all(isinstance(place, int | float) for place in places)
+        joined = stability == "stable" and numeric and len(set(places)) == len(places)
+        panel.plot(
+            *zip(*(sorted(here) if numeric else here), strict=True),
+            linestyle="-" if joined else "none",
+            linewidth=0.8,
+            marker=MARKERS[series.model],
+            markersize=series.size,
+            color=series.colour,
+            markerfacecolor=series.colour if stability == "stable" else "lightgrey",
+            clip_on=False,
+        )
+
+
+def _legend(figure: Figure, series: Sequence[_Series], failed: int) -> None:
+    """Explain the marks, as far as that is short, and say how many points failed."""
+    several = len({one.model for one in series}) > 1
+    handles = []
+    for one in series[:_MOST_IN_LEGEND]:
+        parts = [one.name, NAMES[one.model] if several or not one.name else ""]
+        label, marker = ", ".join(part for part in parts if part), MARKERS[one.model]
+        handles.append(Line2D([], [], marker=marker, markersize=one.size, color=one.colour, linewidth=0.8, label=label))
+    handles.append(Line2D([], [], linestyle="none", label="filled: stable, grey: not decided"))
+    if failed:
+        handles.append(Line2D([], [], linestyle="none", label=f"{failed} point{'s' * (failed > 1)} failed"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
