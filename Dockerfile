@@ -1,4 +1,16 @@
 # One image for the API, the workers and the migrations; docker-compose.yml names their commands.
+FROM python:3.11-slim-bookworm AS build
+
+# The engine's kernels are compiled here, so that the image itself needs no compiler.
+RUN apt-get update && apt-get install --yes --no-install-recommends gcc libc6-dev
+WORKDIR /source
+COPY pyproject.toml README.md ./
+COPY engine engine
+COPY app app
+COPY worker worker
+COPY migrations migrations
+RUN pip wheel --no-cache-dir --no-deps --wheel-dir /wheels .
+
 FROM python:3.11-slim-bookworm
 
 # One BLAS thread: threads and forked workers freeze each other, and one process a core is faster here.
@@ -12,12 +24,9 @@ ENV OPENBLAS_NUM_THREADS=1 \
 RUN useradd --system --uid 10001 --home-dir /data --create-home galloping
 
 WORKDIR /opt/galloping
-COPY pyproject.toml constraints.txt README.md ./
-COPY engine engine
-COPY app app
-COPY worker worker
-COPY migrations migrations
-RUN pip install --no-cache-dir --constraint constraints.txt .
+COPY constraints.txt ./
+COPY --from=build /wheels /wheels
+RUN pip install --no-cache-dir --constraint constraints.txt /wheels/*.whl
 
 USER galloping
 WORKDIR /data

@@ -27,7 +27,7 @@ MEANING = {
     "branch_auto_points": "orbits that AUTO computes on it",
     "branch_difference": "largest relative difference of the dominant amplitude at AUTO's wind speeds",
     "fleet_lines_per_s_core": "standard line jobs a second and core",
-    "fleet_floor_ratio": "their time over that of their own LAPACK calls, replayed",
+    "fleet_floor_ratio": "their time over that of the LAPACK calls that their numpy form makes, replayed",
     "fleet_exponent": "exponent of the time over the number of lines",
     "finite_element_over_hybrid": "cost of the finite element model over the hybrid one",
     "service_overhead_ratio": "a batch through HTTP, queue, worker and database over the engine alone",

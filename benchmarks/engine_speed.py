@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.auto import Branch, continued_branch
 from benchmarks.lines import random_line, source_line
-from benchmarks.measure import median_seconds, recorded_lapack
+from benchmarks.measure import median_seconds, numpy_forms, recorded_lapack
 from benchmarks.models import discretized, hybrid_models, plain_rate
 from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
@@ -161,7 +161,7 @@ def fleet(largest: int) -> Iterator[tuple[str, float]]:
     rates, floors = [], []
     for first in range(0, 320, 64):
         part = lines[first : first + 64]
-        with recorded_lapack() as calls:
+        with numpy_forms(), recorded_lapack() as calls:
             analysed(part, STANDARD_JOB)
         begin = time.perf_counter()
         analysed(part, STANDARD_JOB)

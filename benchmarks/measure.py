@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from engine import compiled
+
 LAPACK = ("solve", "inv", "eig", "eigvals", "eigh", "eigvalsh", "cholesky", "svd", "det")
 
 
@@ -57,3 +59,14 @@ def recorded_lapack() -> Iterator[Calls]:
     finally:
         for name, function in originals.items():
             setattr(np.linalg, name, function)
+
+
+@contextmanager
+def numpy_forms() -> Iterator[None]:
+    """Leave the compiled kernels aside while the context is open, so that every system solved reaches LAPACK."""
+    before = compiled.AVAILABLE
+    try:
+        compiled.AVAILABLE = False
+        yield
+    finally:
+        compiled.AVAILABLE = before

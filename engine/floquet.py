@@ -1,12 +1,14 @@
 """Floquet stability of periodic motions. Theory section 7.3."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from engine import compiled
 from engine.aerodynamics import force_gradient
 from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
-from engine.harmonic import Orbits, pick, states
+from engine.harmonic import Orbits, basis, fourier, pick, states
 from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability
 
@@ -83,14 +85,28 @@ def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> Flo
 
     The number of steps is a power of two.
     """
+    if compiled.AVAILABLE:
+        motion = (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
+        return compiled.product_over_period(model, motion, _gauss_basis(steps, orbits.coefficients.shape[-1] // 2))
     width = 2.0 * np.pi / steps
-    offset = np.sqrt(3.0) / 6.0
-    middle = (np.arange(steps) + 0.5) * width
     with np.errstate(over="ignore", invalid="ignore"):
-        first, second = (_generator(model, orbits, middle + sign * offset * width) for sign in (-1.0, 1.0))
+        first, second = (_generator(model, orbits, tau) for tau in _gauss_phases(steps))
         commutator = second @ first - first @ second
         exponent = 0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator
         return _ordered_product(_exponential(exponent))
+
+
+def _gauss_phases(steps: int) -> FloatArray:
+    """Return the phases of the two Gauss points of every step: (2, steps) [rad]."""
+    offset = np.array([[-1.0], [1.0]]) * np.sqrt(3.0) / 6.0
+    return np.asarray((np.arange(steps) + 0.5 + offset) * (2.0 * np.pi / steps))
+
+
+@lru_cache
+def _gauss_basis(steps: int, harmonics: int) -> tuple[FloatArray, FloatArray]:
+    """Return the Fourier basis and its derivative at the Gauss points: (2, steps, 2 H + 1) each."""
+    values = fourier(_gauss_phases(steps), harmonics)
+    return values, values @ basis(harmonics).derivative
 
 
 def _steps(model: ReducedModel, orbits: Orbits) -> IntArray:

@@ -9,6 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from engine import compiled
 from engine.aerodynamics import force, force_gradient
 from engine.arrays import FloatArray, IntArray, merged
 from engine.hybrid import ReducedModel, take
@@ -146,7 +147,11 @@ def balance(
         matrix = np.concatenate([jacobian(here, orbits), phase[:, None]], axis=1)
         return np.concatenate([rows, drift[:, None]], axis=-1), matrix
 
-    solution = newton(system, x, scale, options)
+    options = options or Options()
+    if compiled.AVAILABLE:
+        solution = compiled.solved_balances(model, member, start.wind_speed, reference, (x, scale, options))
+    else:
+        solution = newton(system, x, scale, options)
     return _unpacked(solution.x, m, start.wind_speed), solution
 
 

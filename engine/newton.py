@@ -79,6 +79,11 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | 
         step[active] = size
         iterations[active] += 1
         active = active[size > options.tolerance]
+    return solution(x, step, iterations, options)
+
+
+def solution(x: FloatArray, step: FloatArray, iterations: IntArray, options: Options) -> Solution:
+    """Judge the last steps."""
     outcome = np.full(step.shape, Outcome.NO_CONVERGENCE, dtype=np.object_)
     outcome[step <= options.tolerance] = Outcome.CONVERGED
     return Solution(x, outcome, step, iterations)

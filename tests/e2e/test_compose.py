@@ -90,7 +90,7 @@ def test_our_processes_have_one_blas_thread_and_no_privileges(services: dict[str
     users = re.findall(r"^USER (\S+)$", image, re.MULTILINE)
     assert users and users[-1] not in ("root", "0")
     assert "--constraint constraints.txt" in image
-    copied = {word for line in re.findall(r"^COPY (.+) \S+$", image, re.MULTILINE) for word in line.split()}
+    copied = {word for line in re.findall(r"^COPY (?!--from)(.+) \S+$", image, re.MULTILINE) for word in line.split()}
     assert {"pyproject.toml", "constraints.txt", "README.md", "app", "engine", "worker", "migrations"} <= copied
     assert all((ROOT / name).exists() for name in copied)
 

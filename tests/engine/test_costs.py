@@ -4,7 +4,7 @@ import numpy as np
 
 from benchmarks.engine_speed import STANDARD_JOB, analysed
 from benchmarks.lines import random_line
-from benchmarks.measure import recorded_lapack
+from benchmarks.measure import numpy_forms, recorded_lapack
 
 BALANCES_A_CYCLE = 7.5  # Newton steps a cycle found, those of starts that lead to a known one included
 CALLS_A_STACK = 170
@@ -13,7 +13,7 @@ CALLS_A_STACK = 170
 def test_systems_solved_a_line() -> None:
     generator = np.random.default_rng(7)
     lines = [random_line(generator) for _ in range(8)]
-    with recorded_lapack() as calls:
+    with numpy_forms(), recorded_lapack() as calls:
         results = analysed(lines, STANDARD_JOB)
     balances = sum(
         int(np.prod(arguments[0].shape[:-2]))

@@ -1,0 +1,15 @@
+from engine.arrays import AnyArray, FloatArray
+
+Arrays = tuple[AnyArray, ...]
+Shape = tuple[int, int, int, int]
+
+def balance(
+    model: Arrays,
+    shape: Shape,
+    size: tuple[int, int],
+    cycles: Arrays,
+    options: tuple[float, float, int],
+    results: Arrays,
+    /,
+) -> None: ...
+def monodromy(model: Arrays, shape: Shape, size: tuple[int, int], orbits: Arrays, matrices: FloatArray, /) -> None: ...

@@ -1,0 +1,101 @@
+"""The compiled kernels (engine/kernels/*.c) for the functions that they serve. Decision 0010.
+
+Where they were not built AVAILABLE is False, and the numpy forms beside the callers, which are their tests, serve.
+"""
+
+import numpy as np
+
+from engine.arrays import AnyArray, FloatArray, IntArray
+from engine.hybrid import ReducedModel
+from engine.newton import Options, Solution, solution
+
+try:
+    from engine import _kernels
+
+    AVAILABLE = True
+except ImportError:
+    AVAILABLE = False
+
+
+def solved_balances(
+    model: ReducedModel,
+    member: IntArray,
+    wind_speed: FloatArray,
+    phase: FloatArray,
+    newton: tuple[FloatArray, FloatArray, Options],
+) -> Solution:
+    """Solve harmonic balances by Newton's method as `engine.newton.newton` would.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    member, wind_speed : (cycles,)
+        The model of each cycle, and its wind speed [m/s].
+    phase : (cycles, m (2 H + 1))
+        The row of the phase condition.
+    newton : tuple
+        Starts and scales (cycles, m (2 H + 1) + 1), and options.
+
+    Returns
+    -------
+    Solution
+    """
+    start, scale, options = newton
+    x = np.array(start, order="C")
+    step, iterations = np.full(x.shape[0], np.inf), np.zeros(x.shape[0], dtype=np.intp)
+    harmonics = (phase.shape[-1] // model.mass.shape[-1]) // 2
+    _kernels.balance(
+        _parts(model),
+        _shape(model),
+        (x.shape[0], harmonics),
+        _contiguous(member, wind_speed, phase, scale),
+        (options.tolerance, options.largest_step, options.iterations),
+        (x, step, iterations),
+    )
+    return solution(x, step, iterations, options)
+
+
+def product_over_period(
+    model: ReducedModel, orbits: tuple[FloatArray, ...], basis: tuple[FloatArray, FloatArray]
+) -> FloatArray:
+    """Integrate the linearized equations over one period as `engine.floquet` would.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (cycles,).
+    orbits : tuple of arrays
+        Coefficients (cycles, m, 2 H + 1), angular frequency and wind speed (cycles,).
+    basis : pair of arrays (2, steps, 2 H + 1)
+        The Fourier basis and its derivative at the two Gauss points of every step.
+
+    Returns
+    -------
+    (cycles, 2 m, 2 m)
+    """
+    cycles, m, size = orbits[0].shape
+    matrices = np.empty((cycles, 2 * m, 2 * m))
+    _kernels.monodromy(
+        _parts(model),
+        _shape(model),
+        (basis[0].shape[1], size // 2),
+        _contiguous(np.linalg.inv(model.mass), *orbits, *basis),
+        matrices,
+    )
+    return matrices
+
+
+def _shape(model: ReducedModel) -> tuple[int, int, int, int]:
+    """Return members, co-ordinates, points and local variables."""
+    members, points, local, twice = model.load.forms.shape
+    return members, twice // 2, points, local
+
+
+def _parts(model: ReducedModel) -> tuple[AnyArray, ...]:
+    load = model.load
+    return _contiguous(model.mass, model.damping, model.stiffness, load.forms, load.table, load.slopes)
+
+
+def _contiguous(*arrays: AnyArray) -> tuple[AnyArray, ...]:
+    return tuple(np.ascontiguousarray(array) for array in arrays)

@@ -1,0 +1,168 @@
+/* Monodromy matrices by Magnus' method of fourth order, two Gauss points a step. engine/floquet.py, theory section 7.3.
+ *
+ * Each lane follows a stretch of the period of its own, so that matrix products run side by side. */
+#include "kernels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST, SECOND, EXPONENT, SQUARE, CUBE, FOURTH, HIGH, PRODUCT, MATRICES };
+
+typedef struct {
+    int m, n, size;        /* n = 2 m; size = 2 H + 1 */
+    ptrdiff_t count;       /* n n */
+    Lanes *matrices;       /* (MATRICES, n, n) */
+    Lanes *blocks;         /* (2, n, m): rows of -M^-1 K(tau) / w^2 and -M^-1 C(tau) / w at the two Gauss points */
+    Lanes *state, *force, *gradient, *scratch;
+} Workspace;
+
+static void release(Workspace *w)
+{
+    free(w->matrices), free(w->blocks), free(w->state), free(w->force), free(w->gradient), free(w->scratch);
+}
+
+static int prepare(Workspace *w, const Model *model, int harmonics)
+{
+    *w = (Workspace){.m = model->m, .n = 2 * model->m, .size = 2 * harmonics + 1};
+    w->count = (ptrdiff_t)w->n * w->n;
+    const size_t m = (size_t)w->m;
+    w->matrices = calloc(MATRICES * (size_t)w->count, sizeof(Lanes));
+    w->blocks = calloc(4 * m * m, sizeof(Lanes));
+    w->state = calloc(2 * m, sizeof(Lanes));
+    w->force = calloc(m, sizeof(Lanes));
+    w->gradient = calloc(4 * m * m, sizeof(Lanes));
+    w->scratch = calloc(load_scratch(model), sizeof(Lanes));
+    return w->matrices && w->blocks && w->state && w->force && w->gradient && w->scratch;
+}
+
+static inline Lanes *matrix_of(const Workspace *w, int which) { return w->matrices + which * w->count; }
+
+WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restrict right, Lanes *restrict product)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            Lanes sum = {0};
+            for (int k = 0; k < n; k++)
+                sum += left[i * n + k] * right[k * n + j];
+            product[i * n + j] = sum;
+        }
+}
+
+/* Set the lower half (m, 2 m) of A(tau) of y' = A y, y = (q, dq/dtau), at one Gauss point of the lanes' steps. */
+WIDE static void generate(Workspace *w, const Model *model, const Monodromies *wanted, ptrdiff_t cycle, int point,
+                          ptrdiff_t step)
+{
+    const int m = w->m, n = w->n;
+    const ptrdiff_t stretch = wanted->steps / LANES;
+    const double omega = wanted->angular_frequency[cycle], speed = wanted->wind_speed[cycle];
+    const double *coefficients = wanted->coefficients + cycle * m * w->size;
+    const double *inverse = wanted->inverse_mass + cycle * m * m;
+    Lanes *block = w->blocks + point * m * n;
+    for (int lane = 0; lane < LANES; lane++) {
+        const ptrdiff_t at = (point * wanted->steps + lane * stretch + step) * w->size;
+        for (int j = 0; j < m; j++) {
+            double q = 0.0, motion = 0.0;
+            for (int c = 0; c < w->size; c++) {
+                q += coefficients[j * w->size + c] * wanted->values[at + c];
+                motion += coefficients[j * w->size + c] * wanted->slopes[at + c];
+            }
+            w->state[j][lane] = q;
+            w->state[m + j][lane] = omega / speed * motion;
+        }
+    }
+    load_at(model, w->state, w->force, w->gradient, w->scratch);
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < m; j++) {
+            Lanes elastic = {0}, viscous = {0};
+            for (int k = 0; k < m; k++) {
+                elastic += inverse[i * m + k] * (speed * speed * w->gradient[k * n + j] - model->stiffness[k * m + j]);
+                viscous += inverse[i * m + k] * (speed * w->gradient[k * n + m + j] - model->damping[k * m + j]);
+            }
+            block[i * n + j] = elastic / (omega * omega);
+            block[i * n + m + j] = viscous / omega;
+        }
+}
+
+/* Set the exponent h/2 (A_1 + A_2) + sqrt(3)/12 h^2 (A_2 A_1 - A_1 A_2); the upper half of each A is (0, 1). */
+WIDE static void exponent(Workspace *w, double width)
+{
+    const int m = w->m, n = w->n;
+    const Lanes *first = w->blocks, *second = w->blocks + m * n;
+    Lanes *result = matrix_of(w, EXPONENT);
+    const double half = 0.5 * width, bracket = sqrt(3.0) / 12.0 * width * width;
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < n; j++) {
+            Lanes lower = j < m ? (Lanes){0} : second[i * n + j - m] - first[i * n + j - m];
+            for (int k = 0; k < m; k++)
+                lower += second[i * n + m + k] * first[k * n + j] - first[i * n + m + k] * second[k * n + j];
+            result[i * n + j] = bracket * (first[i * n + j] - second[i * n + j]) + (j == m + i ? width : 0.0);
+            result[(m + i) * n + j] = half * (first[i * n + j] + second[i * n + j]) + bracket * lower;
+        }
+}
+
+/* Sum the series of the exponential to degree 8 with four products; the steps keep its argument small. */
+WIDE static void exponentiate(Workspace *w, Lanes *result)
+{
+    const int n = w->n;
+    Lanes *a = matrix_of(w, EXPONENT), *square = matrix_of(w, SQUARE), *cube = matrix_of(w, CUBE);
+    Lanes *fourth = matrix_of(w, FOURTH), *high = matrix_of(w, HIGH);
+    multiply(n, a, a, square);
+    multiply(n, square, a, cube);
+    multiply(n, square, square, fourth);
+    for (ptrdiff_t e = 0; e < w->count; e++)
+        high[e] = a[e] / 120.0 + square[e] / 720.0 + cube[e] / 5040.0 + fourth[e] / 40320.0
+                  + (e % (n + 1) ? 0.0 : 1.0 / 24.0);
+    multiply(n, fourth, high, result);
+    for (ptrdiff_t e = 0; e < w->count; e++)
+        result[e] += a[e] + square[e] / 2.0 + cube[e] / 6.0 + (e % (n + 1) ? 0.0 : 1.0);
+}
+
+/* Multiply the lanes' matrices, later ones on the left, into the result. */
+static void collect(const Workspace *w, const Lanes *lanes, double *result)
+{
+    const int n = w->n;
+    double *product = (double *)matrix_of(w, HIGH);
+    for (ptrdiff_t e = 0; e < w->count; e++)
+        result[e] = lanes[e][0];
+    for (int lane = 1; lane < LANES; lane++) {
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++) {
+                double sum = 0.0;
+                for (int k = 0; k < n; k++)
+                    sum += lanes[i * n + k][lane] * result[k * n + j];
+                product[i * n + j] = sum;
+            }
+        memcpy(result, product, (size_t)w->count * sizeof *result);
+    }
+}
+
+static void integrate(Workspace *w, const Model *model, const Monodromies *wanted, ptrdiff_t cycle)
+{
+    const ptrdiff_t stretch = wanted->steps / LANES;
+    Lanes *sofar = matrix_of(w, FIRST), *next = matrix_of(w, SECOND), *factor = matrix_of(w, PRODUCT);
+    for (ptrdiff_t step = 0; step < stretch; step++) {
+        for (int point = 0; point < 2; point++)
+            generate(w, model, wanted, cycle, point, step);
+        exponent(w, 2.0 * M_PI / (double)wanted->steps);
+        exponentiate(w, step ? factor : next);
+        if (step)
+            multiply(w->n, factor, sofar, next);
+        Lanes *swapped = sofar;
+        sofar = next;
+        next = swapped;
+    }
+    collect(w, sofar, wanted->matrices + cycle * w->count);
+}
+
+int integrate_monodromies(const Model *stack, const Monodromies *wanted)
+{
+    Workspace workspace;
+    const int ready = prepare(&workspace, stack, wanted->harmonics);
+    for (ptrdiff_t cycle = 0; ready && cycle < wanted->cycles; cycle++) {
+        const Model model = model_of(stack, cycle);
+        integrate(&workspace, &model, wanted, cycle);
+    }
+    release(&workspace);
+    return ready;
+}

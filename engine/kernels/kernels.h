@@ -1,0 +1,76 @@
+/* Compiled forms of the engine's innermost loops. The numpy forms beside their callers are their tests and stand in for
+ * them where no compiler was at hand. Every array is in C order and of double precision. */
+#ifndef GALLOPING_KERNELS_H
+#define GALLOPING_KERNELS_H
+
+#include <stddef.h>
+
+/* Eight states, samples or steps side by side: arithmetic on one of these is arithmetic on all. */
+#define LANES 8
+typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
+
+/* Two versions of a function, of which the loader takes the one that the processor has the instructions for. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__)
+#define WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define WIDE
+#endif
+
+/* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U), laid out as engine.hybrid.ReducedModel:
+ * mass, damping, stiffness (m, m); forms (points, local, 2 m); table (points, m, monomials);
+ * slopes (points, m, local, lower monomials). */
+typedef struct {
+    int m, points, local, monomials, lower;
+    const double *mass, *damping, *stiffness, *forms, *table, *slopes;
+} Model;
+
+/* Shift a stack of models to one of its members. */
+Model model_of(const Model *stack, ptrdiff_t member);
+
+/* Lanes of scratch that load_at needs. */
+size_t load_scratch(const Model *model);
+
+/* Evaluate f (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m). Theory section 5. */
+void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch);
+
+/* Factorize a matrix with partial pivoting in place; rows are pointers and are swapped with those of the right side.
+ * Return 0 if a pivot vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
+int factorize(int n, double **rows, int *pivots);
+
+/* Solve with these factors in place. */
+void substitute(int n, double *const *rows, const int *pivots, double *x);
+
+/* What Newton's method is told, engine.newton.Options. */
+typedef struct {
+    double tolerance, largest_step;
+    int iterations;
+} Options;
+
+/* Starts and results of the harmonic balance, as engine.harmonic.balance makes them; unknowns = m (2 H + 1) + 1:
+ * x, scale (cycles, unknowns); reference (cycles, unknowns - 1); wind_speed, step (cycles); iterations (cycles). */
+typedef struct {
+    ptrdiff_t cycles;
+    int harmonics;
+    const ptrdiff_t *member;
+    const double *wind_speed, *reference, *scale;
+    double *x, *step;
+    ptrdiff_t *iterations;
+} Balances;
+
+/* Solve every balance by Newton's method; return 0 if memory is short. Theory section 7.2. */
+int solve_balances(const Model *stack, const Balances *balances, const Options *options);
+
+/* Orbits whose monodromy is wanted: inverse_mass (cycles, m, m); coefficients (cycles, m, 2 H + 1);
+ * angular_frequency, wind_speed (cycles); values, slopes (2, steps, 2 H + 1), the basis and its derivative by tau at the
+ * two Gauss points of every step; matrices (cycles, 2 m, 2 m). Steps is a multiple of LANES. */
+typedef struct {
+    ptrdiff_t cycles, steps;
+    int harmonics;
+    const double *inverse_mass, *coefficients, *angular_frequency, *wind_speed, *values, *slopes;
+    double *matrices;
+} Monodromies;
+
+/* Integrate the linearized equations over one period; return 0 if memory is short. Theory section 7.3. */
+int integrate_monodromies(const Model *stack, const Monodromies *wanted);
+
+#endif

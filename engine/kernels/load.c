@@ -1,0 +1,72 @@
+/* The load: cubic polynomials in linear forms of (q, q'/U), summed over points. engine/aerodynamics.py, theory section 5. */
+#include "kernels.h"
+
+#include <string.h>
+
+Model model_of(const Model *stack, ptrdiff_t member)
+{
+    Model one = *stack;
+    const ptrdiff_t m = one.m, points = one.points, local = one.local;
+    one.mass += member * m * m;
+    one.damping += member * m * m;
+    one.stiffness += member * m * m;
+    one.forms += member * points * local * 2 * m;
+    one.table += member * points * m * one.monomials;
+    one.slopes += member * points * m * local * one.lower;
+    return one;
+}
+
+size_t load_scratch(const Model *model)
+{
+    return (size_t)model->local + 1 + (size_t)model->monomials;
+}
+
+/* Evaluate 1 and every monomial, x_i, then x_i x_j (i <= j), then x_i x_j x_k (i <= j <= k). */
+static inline void powers(int variables, const Lanes *x, Lanes *terms)
+{
+    Lanes *next = terms;
+    *next++ = (Lanes){0} + 1.0;
+    for (int i = 0; i < variables; i++)
+        *next++ = x[i];
+    for (int i = 0; i < variables; i++)
+        for (int j = i; j < variables; j++)
+            *next++ = x[i] * x[j];
+    for (int i = 0; i < variables; i++)
+        for (int j = i; j < variables; j++) {
+            const Lanes product = x[i] * x[j];
+            for (int k = j; k < variables; k++)
+                *next++ = product * x[k];
+        }
+}
+
+static inline Lanes polynomial(int count, const double *coefficients, const Lanes *terms)
+{
+    Lanes sum = {0};
+    for (int t = 0; t < count; t++)
+        sum += coefficients[t] * terms[t];
+    return sum;
+}
+
+WIDE void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch)
+{
+    const int m = model->m, local = model->local;
+    Lanes *x = scratch, *terms = scratch + local;
+    memset(force, 0, (size_t)m * sizeof *force);
+    memset(gradient, 0, (size_t)m * 2 * (size_t)m * sizeof *gradient);
+    for (int p = 0; p < model->points; p++) {
+        const double *forms = model->forms + (ptrdiff_t)p * local * 2 * m;
+        for (int l = 0; l < local; l++)
+            x[l] = polynomial(2 * m, forms + l * 2 * m, state);
+        powers(local, x, terms);
+        for (int i = 0; i < m; i++) {
+            const ptrdiff_t row = (ptrdiff_t)p * m + i;
+            force[i] += polynomial(model->monomials, model->table + row * model->monomials, terms + 1);
+            for (int l = 0; l < local; l++) {
+                const Lanes slope = polynomial(model->lower, model->slopes + (row * local + l) * model->lower, terms);
+                for (int v = 0; v < 2 * m; v++)
+                    if (forms[l * 2 * m + v] != 0.0)
+                        gradient[i * 2 * m + v] += forms[l * 2 * m + v] * slope;
+            }
+        }
+    }
+}

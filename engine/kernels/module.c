@@ -1,0 +1,139 @@
+/* The module engine._kernels: arrays come in as buffers, whose item and length are checked before use. */
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#include <string.h>
+
+#include "kernels.h"
+
+/* Buffers of one call, let go together. */
+typedef struct {
+    Py_buffer held[24];
+    int count;
+} Buffers;
+
+static void let_go(Buffers *buffers)
+{
+    while (buffers->count)
+        PyBuffer_Release(&buffers->held[--buffers->count]);
+}
+
+/* Return the items of a contiguous array of `expected` numbers of 8 bytes of a kind, or NULL with an exception. */
+static void *items(Buffers *buffers, PyObject *array, Py_ssize_t expected, const char *kinds, int flags)
+{
+    Py_buffer *view = &buffers->held[buffers->count];
+    if (PyObject_GetBuffer(array, view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | flags) < 0)
+        return NULL;
+    buffers->count++;
+    if (view->itemsize == 8 && view->format && strlen(view->format) == 1 && strchr(kinds, view->format[0])
+        && view->len == 8 * expected)
+        return view->buf;
+    PyErr_Format(PyExc_ValueError, "array %d must hold %zd numbers of kind %s", buffers->count, expected, kinds);
+    return NULL;
+}
+
+#define REALS(array, expected) items(&buffers, array, expected, "d", 0)
+#define RESULT(array, expected) items(&buffers, array, expected, "d", PyBUF_WRITABLE)
+#define INDICES(array, expected) items(&buffers, array, expected, "lq", 0)
+
+/* Read a stack of models from the tuple (mass, damping, stiffness, forms, table, slopes). */
+static int read_model(Buffers *held, PyObject *parts, const int *shape, Model *model, Py_ssize_t members)
+{
+    const Py_ssize_t m = shape[0], points = shape[1], local = shape[2];
+    const Py_ssize_t lower = 1 + local + local * (local + 1) / 2;
+    const Py_ssize_t monomials = lower - 1 + local * (local + 1) * (local + 2) / 6;
+    const Py_ssize_t sizes[] = {m * m, m * m, m * m, points * local * 2 * m, points * m * monomials,
+                                points * m * local * lower};
+    const double *read[6];
+    for (int i = 0; i < 6; i++)
+        if (!(read[i] = items(held, PyTuple_GET_ITEM(parts, i), members * sizes[i], "d", 0)))
+            return 0;
+    *model = (Model){(int)m, (int)points, (int)local, (int)monomials, (int)lower,
+                     read[0], read[1], read[2], read[3], read[4], read[5]};
+    return 1;
+}
+
+static int within(const Py_ssize_t *index, Py_ssize_t count, Py_ssize_t limit)
+{
+    for (Py_ssize_t i = 0; i < count; i++)
+        if (index[i] < 0 || index[i] >= limit) {
+            PyErr_Format(PyExc_IndexError, "model %zd of a stack of %zd", index[i], limit);
+            return 0;
+        }
+    return 1;
+}
+
+static PyObject *finished(Buffers *buffers, int enough_memory)
+{
+    let_go(buffers);
+    if (PyErr_Occurred())
+        return NULL;
+    if (!enough_memory)
+        return PyErr_NoMemory();
+    Py_RETURN_NONE;
+}
+
+static PyObject *balance(PyObject *Py_UNUSED(self), PyObject *arguments)
+{
+    Buffers buffers = {.count = 0};
+    PyObject *parts, *member, *speed, *reference, *scale, *x, *step, *iterations;
+    int shape[3], harmonics;
+    Py_ssize_t members, cycles;
+    Options options;
+    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOO)(ddi)(OOO)", &PyTuple_Type, &parts, &members, shape, shape + 1,
+                          shape + 2, &cycles, &harmonics, &member, &speed, &reference, &scale, &options.tolerance,
+                          &options.largest_step, &options.iterations, &x, &step, &iterations))
+        return NULL;
+    const Py_ssize_t unknowns = shape[0] * (2 * (Py_ssize_t)harmonics + 1) + 1;
+    Model model;
+    Balances wanted = {.cycles = cycles, .harmonics = harmonics};
+    int done = 1;
+    if (read_model(&buffers, parts, shape, &model, members) && (wanted.member = INDICES(member, cycles))
+        && within(wanted.member, cycles, members)
+        && (wanted.wind_speed = REALS(speed, cycles)) && (wanted.reference = REALS(reference, cycles * (unknowns - 1)))
+        && (wanted.scale = REALS(scale, cycles * unknowns)) && (wanted.x = RESULT(x, cycles * unknowns))
+        && (wanted.step = RESULT(step, cycles))
+        && (wanted.iterations = items(&buffers, iterations, cycles, "lq", PyBUF_WRITABLE))) {
+        Py_BEGIN_ALLOW_THREADS
+        done = solve_balances(&model, &wanted, &options);
+        Py_END_ALLOW_THREADS
+    }
+    return finished(&buffers, done);
+}
+
+static PyObject *monodromy(PyObject *Py_UNUSED(self), PyObject *arguments)
+{
+    Buffers buffers = {.count = 0};
+    PyObject *parts, *inverse, *coefficients, *frequency, *speed, *values, *slopes, *matrices;
+    int shape[3], harmonics;
+    Py_ssize_t cycles, steps;
+    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOOOO)O", &PyTuple_Type, &parts, &cycles, shape, shape + 1, shape + 2,
+                          &steps, &harmonics, &inverse, &coefficients, &frequency, &speed, &values, &slopes, &matrices))
+        return NULL;
+    if (steps % LANES)
+        return PyErr_Format(PyExc_ValueError, "steps must be a multiple of %d", LANES);
+    const Py_ssize_t m = shape[0], size = 2 * (Py_ssize_t)harmonics + 1;
+    Model model;
+    Monodromies wanted = {.cycles = cycles, .steps = steps, .harmonics = harmonics};
+    int done = 1;
+    if (read_model(&buffers, parts, shape, &model, cycles) && (wanted.inverse_mass = REALS(inverse, cycles * m * m))
+        && (wanted.coefficients = REALS(coefficients, cycles * m * size))
+        && (wanted.angular_frequency = REALS(frequency, cycles)) && (wanted.wind_speed = REALS(speed, cycles))
+        && (wanted.values = REALS(values, 2 * steps * size)) && (wanted.slopes = REALS(slopes, 2 * steps * size))
+        && (wanted.matrices = RESULT(matrices, cycles * 4 * m * m))) {
+        Py_BEGIN_ALLOW_THREADS
+        done = integrate_monodromies(&model, &wanted);
+        Py_END_ALLOW_THREADS
+    }
+    return finished(&buffers, done);
+}
+
+static PyMethodDef methods[] = {
+    {"balance", balance, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
+    {"monodromy", monodromy, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
+    {NULL, NULL, 0, NULL},
+};
+
+static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "_kernels", "The engine's innermost loops.", 0, methods,
+                                        NULL, NULL, NULL, NULL};
+
+PyMODINIT_FUNC PyInit__kernels(void) { return PyModuleDef_Init(&definition); }

@@ -1,0 +1,145 @@
+"""The compiled kernels against the numpy forms that they stand for, and those forms where nothing was compiled."""
+
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from engine import compiled
+from engine.arrays import FloatArray, IntArray
+from engine.cycles import Cycles, energy_starts, find_cycles
+from engine.floquet import floquet, monodromy
+from engine.harmonic import Orbits, balance
+from engine.hybrid import ReducedModel, take
+from engine.newton import Options, Solution
+from tests.builders import hybrid, source_line
+from tests.engine.test_harmonic import MODELS, random_orbits
+
+COPIES = 11  # not a multiple of what the kernels do side by side
+
+
+def test_a_machine_with_a_compiler_has_them() -> None:
+    assert compiled.AVAILABLE or shutil.which("cc") is None
+
+
+@pytest.fixture
+def both(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
+    assert compiled.AVAILABLE
+    return monkeypatch
+
+
+def perturbed(model: ReducedModel) -> ReducedModel:
+    """Return a stack of models, each with a damping of its own, so that members must not be mixed up."""
+    stack = take(model, np.zeros(4, dtype=np.intp))
+    factors = np.linspace(0.5, 2.0, 4)[:, None, None]
+    return ReducedModel(
+        stack.mass,
+        factors * stack.damping,
+        stack.stiffness,
+        stack.load,
+        stack.shapes,
+        stack.direction,
+        stack.statically_unstable,
+    )
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("harmonics", [1, 5, 12])
+def test_a_newton_step_is_that_of_the_numpy_form(name: str, harmonics: int, both: pytest.MonkeyPatch) -> None:
+    model = perturbed(MODELS[name]())
+    start = random_orbits(model, harmonics, COPIES)
+    member = np.arange(COPIES) % 4
+
+    def stepped() -> tuple[Orbits, Solution]:
+        return balance(model, member, start, Options(iterations=1))
+
+    found, how = stepped()
+    both.setattr(compiled, "AVAILABLE", False)
+    expected, expected_how = stepped()
+    size = np.abs(expected.coefficients).max()
+    assert found.coefficients == pytest.approx(expected.coefficients, rel=1e-9, abs=1e-9 * size)
+    assert found.angular_frequency == pytest.approx(expected.angular_frequency, rel=1e-9)
+    assert how.step == pytest.approx(expected_how.step, rel=1e-9)
+    assert how.iterations.tolist() == expected_how.iterations.tolist() == [1] * COPIES
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_multipliers_are_those_of_the_numpy_form(name: str, both: pytest.MonkeyPatch) -> None:
+    model = take(perturbed(MODELS[name]()), np.arange(COPIES) % 4)
+    orbits = random_orbits(model, 5, COPIES)
+    found = monodromy(model, orbits)
+    both.setattr(compiled, "AVAILABLE", False)
+    expected = monodromy(model, orbits)
+    known = np.isfinite(expected).all(axis=(1, 2))
+    assert known.any()
+    for mine, theirs in zip(found[known], expected[known], strict=True):
+        assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-11 * np.abs(theirs).max())
+
+
+def cycles_of(model: ReducedModel) -> Cycles:
+    winds = np.array([4.0, 6.0, 8.0])
+    return find_cycles(model, winds, energy_starts(model, winds, 5), 5)
+
+
+def test_the_numpy_form_finds_the_same_cycles(both: pytest.MonkeyPatch) -> None:
+    model = take(hybrid(source_line(1, torsional_ratio=0.0308), 2), [0])
+    found = cycles_of(model)
+    both.setattr(compiled, "AVAILABLE", False)
+    expected = cycles_of(model)
+    assert found.wind.tolist() == expected.wind.tolist()
+    assert found.floquet.stability.tolist() == expected.floquet.stability.tolist()
+    assert found.orbits.angular_frequency == pytest.approx(expected.orbits.angular_frequency, rel=1e-9)
+    assert sizes(found) == pytest.approx(sizes(expected), rel=1e-7)
+
+
+def sizes(cycles: Cycles) -> FloatArray:
+    return np.asarray(np.linalg.norm(cycles.orbits.coefficients, axis=(1, 2)))
+
+
+def test_starts_that_are_no_numbers_are_left_alone() -> None:
+    model = hybrid(source_line(2), 1)
+    start = random_orbits(model, 3, 2)
+    start.coefficients[0, 1, 2] = np.nan
+    _, how = balance(model, np.zeros(2, dtype=np.intp), start)
+    assert how.iterations[0] == 0
+    assert not how.converged[0]
+    assert how.iterations[1] > 0
+
+
+@pytest.mark.parametrize(
+    ("member", "speeds", "error", "message"),
+    [
+        (np.zeros(2, dtype=np.intp), 3, ValueError, "must hold 2 numbers of kind d"),
+        (np.zeros(2, dtype=np.int32), 2, ValueError, "of kind"),
+        (np.array([0, 1]), 2, IndexError, "model 1 of a stack of 1"),
+    ],
+)
+def test_arrays_that_do_not_fit_are_refused(
+    member: IntArray, speeds: int, error: type[Exception], message: str
+) -> None:
+    unknowns = np.ones((2, 3 * 7 + 1))
+    with pytest.raises(error, match=message):
+        compiled.solved_balances(
+            hybrid(source_line(2), 1), member, np.ones(speeds), unknowns[:, 1:], (unknowns, unknowns, Options())
+        )
+
+
+def test_overflow_is_a_value() -> None:
+    model = hybrid(source_line(2), 1)
+    orbits = random_orbits(model, 3, 1)
+    wild = Orbits(1e200 * orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
+    assert np.isnan(floquet(model, wild).multipliers).all()
+
+
+def test_the_engine_starts_without_them() -> None:
+    program = (
+        "import sys; sys.modules['engine._kernels'] = None\n"
+        "from engine import compiled\n"
+        "from tests.engine.test_compiled import cycles_of, hybrid, source_line\n"
+        "assert not compiled.AVAILABLE\n"
+        "print(len(cycles_of(hybrid(source_line(2), 1)).member))\n"
+    )
+    run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    assert int(run.stdout) == 3
