@@ -10,7 +10,15 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (lines.analyse, service.serve, service.worker, service.migrate, service.submit, lines.example):
+for command in (
+    lines.analyse,
+    service.serve,
+    service.worker,
+    service.migrate,
+    service.submit,
+    lines.example,
+    lines.ellipse,
+):
     app.command()(command)
 
 

@@ -1,10 +1,10 @@
-"""Commands that need no service: `galloping analyse` and `example`."""
+"""Commands that need no service: `galloping analyse`, `example` and `ellipse`."""
 # ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
 
 import json
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -68,6 +68,23 @@ def example(
         if wanted is not None and wanted not in known:
             end(f"there is no {kind} {wanted!r}; there are {', '.join(known)}", BAD_INPUT)
     write(examples.example(name) if study is None else studies.study_request(study, name), None)
+
+
+def ellipse(
+    method: Annotated[Literal["davison", "toye", "cigre", "aeso"], typer.Option(help="Whose ellipse.")],
+    sag_m: Annotated[float, typer.Option(help="Iced sag at mid-span.")],
+    span_m: Annotated[float | None, typer.Option(help="Span length, for toye.")] = None,
+    diameter_m: Annotated[float | None, typer.Option(help="Of a sub-conductor, for cigre and aeso.")] = None,
+    subconductors: Annotated[int, typer.Option(help="For cigre and aeso.")] = 1,
+) -> None:
+    """Print the galloping ellipse of design practice at mid-loop; nulls where the method sees no galloping."""
+    from app import convert
+    from app.faults import BadInput
+
+    try:
+        write(convert.ellipse(method, sag_m, span_m, diameter_m, subconductors), None)
+    except BadInput as error:
+        refuse(error.faults)
 
 
 def _result(request: Mapping[str, Any], points: Sequence["PointResult"]) -> Any:

@@ -1,6 +1,7 @@
 """The border to the engine: JSON documents in, plain rows out. Units change here and nowhere else."""
 
 from app.convert.check import check, read, request_faults, with_further_faults
+from app.convert.clearance import ellipse
 from app.convert.fit import fit
 from app.convert.run import TABLES, Advance, PointResult, Table, columns, run
 from app.convert.stack import NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
@@ -15,6 +16,7 @@ __all__ = [
     "Table",
     "check",
     "columns",
+    "ellipse",
     "fit",
     "read",
     "read_analysis",

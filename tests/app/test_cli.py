@@ -42,7 +42,7 @@ def refused(*arguments: str, text: str | None = None) -> str:
 def test_help_names_the_commands() -> None:
     ended = galloping("--help")
     assert ended.returncode == 0
-    for command in ("analyse", "serve", "worker", "migrate", "submit", "example"):
+    for command in ("analyse", "serve", "worker", "migrate", "submit", "example", "ellipse"):
         assert command in ended.stdout
 
 
@@ -62,6 +62,23 @@ def test_a_study_of_the_source_is_printed_as_a_whole_request_that_runs() -> None
     request["analysis"]["wind_speeds_m_per_s"] = [4.0]
     result = json.loads(galloping("analyse", "-", text=json.dumps(request)).stdout)
     assert result["critical_wind_speeds"][0]["wind_speed_m_per_s"] == pytest.approx(3.94, rel=0.005)
+
+
+def test_an_ellipse_of_design_practice_is_printed() -> None:
+    """CIGRE's published example: S 20.65 ft, d 28.1432 mm, bundle: 20.0, 8 and 6 ft."""
+    asked = ("--method", "cigre", "--sag-m", "6.2941", "--diameter-m", "0.0281432", "--subconductors", "2")
+    found = json.loads(galloping("ellipse", *asked).stdout)
+    assert list(found) == ["major_axis_m", "minor_axis_m", "b_m"]
+    assert list(found.values()) == pytest.approx([6.10, 2.44, 1.83], abs=0.005)
+    without = galloping("ellipse", "--method", "cigre", "--sag-m", "0.1", "--diameter-m", "0.0281432")
+    assert set(json.loads(without.stdout).values()) == {None}
+
+
+def test_an_ellipse_without_its_lengths_is_refused_with_their_options() -> None:
+    assert "--span-m: is needed by toye" in refused("ellipse", "--method", "toye", "--sag-m", "2")
+    told = refused("ellipse", "--method", "aeso", "--sag-m", "-2")
+    assert "--sag-m: must be" in told
+    assert "--diameter-m" in told
 
 
 def test_the_twin_analysed_gives_the_figures_of_the_theory(tmp_path: Path) -> None:
