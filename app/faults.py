@@ -13,8 +13,10 @@ _MOST_CHARACTERS = 200
 _MOST_SHOWN = 80
 
 # A tagged union puts the name of its branch into a location, behind the field or the item that it is the type of.
-_SPEEDS, _DEVICES = "wind_speeds_m_per_s", "devices"
-_UNION_BRANCHES = frozenset({"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range"})
+_SPEEDS, _DEVICES, _AERODYNAMICS = "wind_speeds_m_per_s", "devices", "aerodynamics"
+_UNION_BRANCHES = frozenset(
+    {"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range", "coefficients", "measured"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +119,9 @@ def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str) -
 
 def _is_branch(location: Sequence[int | str], place: int) -> bool:
     owners = location[max(0, place - 2) : place]
-    return location[place] in _UNION_BRANCHES and (owners[-1:] == (_SPEEDS,) or owners[:1] == (_DEVICES,))
+    return location[place] in _UNION_BRANCHES and (
+        owners[-1:] in {(_SPEEDS,), (_AERODYNAMICS,)} or owners[:1] == (_DEVICES,)
+    )
 
 
 def _found(error: Mapping[str, Any]) -> str:

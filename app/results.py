@@ -20,7 +20,7 @@ from app.tables import PointRow
 if TYPE_CHECKING:
     from app.convert import PointResult
 
-STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m")
+STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m", "twist_rad")
 PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m")
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100

@@ -8,11 +8,12 @@ import numpy as np
 from engine.arrays import FloatArray, merged
 from engine.cycles import Cycles, explicit_starts, find_cycles
 from engine.family import Starts
-from engine.fem import FIELDS, matrices
+from engine.fem import FIELDS
 from engine.harmonic import Orbits, resized
 from engine.hybrid import (
     Discretization,
     ReducedModel,
+    discretize,
     finite_element_model,
     hybrid_model,
     take,
@@ -20,11 +21,9 @@ from engine.hybrid import (
 )
 from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.outcome import Fault, InvalidSpec
-from engine.profile import static_profile
 from engine.report import assembled
 from engine.result import Progress, Result
 from engine.rows import Found, FrequencyTable, coupled_squares
-from engine.sections import sections
 from engine.spec import Analysis, Line, Model, check_compatible
 from engine.stability import critical_wind_speeds
 
@@ -93,14 +92,12 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
 
 
 def _prepare(lines: Sequence[Line], analysis: Analysis) -> _Prepared:
-    profile = static_profile(lines)
-    made_of = sections(lines, profile)
-    system = matrices(lines, profile, made_of)
-    made = Discretization(tuple(lines), profile, made_of, system)
+    made = discretize(lines, analysis.static_twist)
+    system, arc_length = made.matrices, made.profile.arc_length
     finite_element = Model.FINITE_ELEMENT in analysis.models
     loops = set(analysis.loops) | {1, 2}
     extra = set(analysis.finite_element_loops) if finite_element else set()
-    shapes = directional_shapes(system, profile.arc_length, tuple(sorted(loops | extra)))
+    shapes = directional_shapes(system, arc_length, tuple(sorted(loops | extra)))
     modes = full_modes(system, tuple(sorted(set(analysis.loops) | extra))) if finite_element else None
     return _Prepared(made, shapes, modes)
 

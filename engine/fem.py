@@ -4,7 +4,8 @@ Three-node isoparametric cable elements; four freedoms a node in the order U, V,
 rigid cross-section (3) lets the sums over sub-conductors be taken once, so their number costs nothing.
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,17 +50,63 @@ def matrices(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -
     -------
     Matrices
     """
-    elements = lines[0].span.elements
-    nodes = _element_nodes(profile, elements)
-    bundle = bundle_sums(lines)
+    interpolation, weight = mass_points(lines, profile, made_of)
+    at = strain_points(lines, profile)
+    density = elastic_density(lines, at, bundle_sums(lines)[:, :, None, None])
+    stiffness = assemble(quadratic_form(at.slopes, at.weight, density))
+    stiffness += assemble(quadratic_form(interpolation, weight, _ice_stiffness_density(lines, made_of)))
+    for line, here, values, device in mounted(lines, profile):
+        gravity = -GRAVITY * _device_inertia(device)[W, THETA]
+        stiffness[line, here, here] += np.kron(np.outer(values, values), np.diag([0.0, 0.0, 0.0, gravity]))
+    add_end_springs(lines, profile, stiffness)
+    mass = mass_matrix(lines, profile, made_of)
+    return Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
+
+
+def mass_matrix(
+    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, twist: FloatArray | None = None
+) -> FloatArray:
+    """Assemble M, with cross-sections and devices turned by a static twist (lines, nodes) [rad] if there is one."""
+    interpolation, weight = mass_points(lines, profile, made_of)
+    sums = bundle_sums(lines)[:, :, None, None] if twist is None else turned_sums(lines, made_of.twist)
+    mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, made_of, sums)))
+    for line, here, values, device in mounted(lines, profile):
+        turn = 0.0 if twist is None else float(values @ twist[line, here.start // FIELDS : here.stop // FIELDS])
+        mass[line, here, here] += np.kron(np.outer(values, values), _device_inertia(device, turn))
+    return mass
+
+
+def mass_points(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -> tuple[FloatArray, FloatArray]:
+    """Return the shape functions at the points of the sections, (lines, elements, points, 3), and their ds [m]."""
     interpolation, derivative = shape_functions(made_of.local)
-    weight = made_of.local_weight * np.linalg.norm(_metric(derivative, nodes), axis=-1)
-    stiffness = _assemble(_elastic_stiffness(lines, profile, nodes, bundle))
-    stiffness += _assemble(_quadratic_form(interpolation, weight, _ice_stiffness_density(lines, made_of)))
-    mass = _assemble(_quadratic_form(interpolation, weight, _mass_density(lines, made_of, bundle)))
-    _add_devices(lines, profile, stiffness, mass)
-    _add_end_springs(lines, profile, stiffness)
-    return Matrices(stiffness, mass, _fixed(profile, stiffness.shape[-1]), interpolation, weight)
+    metric = derivative @ element_nodes(profile, lines[0].span.elements)
+    return interpolation, made_of.local_weight * np.linalg.norm(metric, axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class StrainPoints:
+    """Quadrature points of the strains.
+
+    values: (points, 3) and slopes: (lines, elements, points, 3), shape functions and their derivatives by s; weight:
+    (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z'); tension: T [N] there.
+    """
+
+    values: FloatArray
+    slopes: FloatArray
+    weight: FloatArray
+    direction: FloatArray
+    tension: FloatArray
+
+
+def strain_points(lines: Sequence[Line], profile: StaticProfile) -> StrainPoints:
+    """Lay the points at which the strains are integrated."""
+    abscissae, weights = gauss_rule(STIFFNESS_POINTS)
+    values, derivative = shape_functions(abscissae)
+    metric = derivative @ element_nodes(profile, lines[0].span.elements)
+    jacobian = np.linalg.norm(metric, axis=-1)
+    direction = metric / jacobian[..., None]
+    tension = profile.horizontal_tension[:, None, None] / direction[..., 0]
+    return StrainPoints(values, derivative / jacobian[..., None], weights * jacobian, direction, tension)
 
 
 def shape_functions(local: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -78,19 +125,24 @@ def bundle_sums(lines: Sequence[Line]) -> FloatArray:
     return np.array(sums, dtype=np.float64).T
 
 
-def _element_nodes(profile: StaticProfile, elements: int) -> FloatArray:
+def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
+    """Return the `bundle_sums` of cross-sections turned by angles (lines, elements, points) [rad]: (6, ...)."""
+    n, s_y, s_z, s_yy, s_zz, s_yz = bundle_sums(lines)[:, :, None, None]
+    c, s = np.cos(angle), np.sin(angle)
+    one = np.ones_like(angle)
+    y_y = c**2 * s_yy - 2.0 * c * s * s_yz + s**2 * s_zz
+    y_z = c * s * (s_yy - s_zz) + (c**2 - s**2) * s_yz
+    return np.stack([n * one, c * s_y - s * s_z, s * s_y + c * s_z, y_y, s_yy + s_zz - y_y, y_z])
+
+
+def element_nodes(profile: StaticProfile, elements: int) -> FloatArray:
     """Return the node positions of each element, (lines, elements, 3 nodes, 3 co-ordinates)."""
     arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, 2 * elements + 1)
     first = 2 * np.arange(elements)[:, None] + np.arange(3)
     return coordinates(profile, arc)[:, first]
 
 
-def _metric(derivative: FloatArray, nodes: FloatArray) -> FloatArray:
-    """Return dr/d(local) of the isoparametric curve, (lines, elements, points, 3)."""
-    return derivative @ nodes
-
-
-def _quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray) -> FloatArray:
+def quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray) -> FloatArray:
     """Integrate values_a density_ij values_b over each element: (lines, elements, 12, 12)."""
     weighted = values[..., :, None] * weight[..., None, None]
     pairs = np.swapaxes(values[..., None] * weighted.swapaxes(-1, -2), -3, -1)
@@ -99,25 +151,14 @@ def _quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray)
     return np.asarray(blocks.swapaxes(-3, -2).reshape(*flat.shape[:-2], 12, 12))
 
 
-def _elastic_stiffness(
-    lines: Sequence[Line], profile: StaticProfile, nodes: FloatArray, bundle: FloatArray
-) -> FloatArray:
-    abscissae, weights = gauss_rule(STIFFNESS_POINTS)
-    _, derivative = shape_functions(abscissae)
-    metric = _metric(derivative, nodes)
-    jacobian = np.linalg.norm(metric, axis=-1)
-    slopes = metric / jacobian[..., None]
-    tension = profile.horizontal_tension[:, None, None] / slopes[..., 0]
-    density = _elastic_density(lines, slopes, tension, bundle)
-    return _quadratic_form(derivative / jacobian[..., None], weights * jacobian, density)
-
-
-def _elastic_density(lines: Sequence[Line], slopes: FloatArray, tension: FloatArray, bundle: FloatArray) -> FloatArray:
+def elastic_density(lines: Sequence[Line], at: StrainPoints, sums: FloatArray) -> FloatArray:
     """Return D with density (U', V', W', Theta') D (U', V', W', Theta')^T: (lines, elements, points, 4, 4).
 
-    The strain of sub-conductor i is b.(U', V', W') + (z' y_i - y' z_i) Theta' with b = (x', y', z'), eqs. (3), (7).
+    The strain of sub-conductor i is b.(U', V', W') + (z' y_i - y' z_i) Theta' with b = (x', y', z'), eqs. (3), (7). D
+    is linear in the sums, those of `bundle_sums` with axes for elements and points.
     """
-    n, s_y, s_z, s_yy, s_zz, s_yz = bundle[:, :, None, None]
+    n, s_y, s_z, s_yy, s_zz, s_yz = sums
+    slopes, tension = at.direction, at.tension
     rigidity = _per_line(lines, [line.conductor.axial_rigidity for line in lines])
     coupling = _per_line(lines, [line.conductor.axial_torsional_coupling for line in lines])
     torsional = _per_line(lines, [line.conductor.torsional_rigidity for line in lines])
@@ -138,7 +179,7 @@ def _elastic_density(lines: Sequence[Line], slopes: FloatArray, tension: FloatAr
 
 def _mass_density(lines: Sequence[Line], made_of: Sections, bundle: FloatArray) -> FloatArray:
     """Return R with kinetic energy density 1/2 (U, V, W, Theta)' R (U, V, W, Theta)'^T, eqs. (A1)-(A4)."""
-    n, s_y, s_z, s_yy, s_zz, _ = bundle[:, :, None, None]
+    n, s_y, s_z, s_yy, s_zz, _ = bundle
     inertia = _per_line(lines, [line.conductor.polar_inertia for line in lines])
     mass, moment_y, moment_z = made_of.mass, made_of.first_moment[..., 0], made_of.first_moment[..., 1]
     density = np.zeros((*mass.shape, FIELDS, FIELDS))
@@ -162,7 +203,7 @@ def _per_line(lines: Sequence[Line], values: Sequence[float]) -> FloatArray:
     return np.array(values, dtype=np.float64).reshape(len(lines), 1, 1)
 
 
-def _assemble(element: FloatArray) -> FloatArray:
+def assemble(element: FloatArray) -> FloatArray:
     """Add element matrices (lines, elements, 12, 12) to (lines, freedoms, freedoms); neighbours share one node."""
     count, elements = element.shape[:2]
     freedoms = FIELDS * (2 * elements + 1)
@@ -173,31 +214,31 @@ def _assemble(element: FloatArray) -> FloatArray:
     return total
 
 
-def _fixed(profile: StaticProfile, freedoms: int) -> BoolArray:
+def held_freedoms(profile: StaticProfile, freedoms: int) -> BoolArray:
+    """Tell which freedoms the supports hold: (lines, freedoms)."""
     fixed = np.zeros((profile.arc_length.size, freedoms), dtype=np.bool_)
     fixed[:, [V, W, THETA, -FIELDS + V, -FIELDS + W, -FIELDS + THETA]] = True
     fixed[:, [U, -FIELDS + U]] = np.isinf(profile.end_stiffness)
     return fixed
 
 
-def _add_end_springs(lines: Sequence[Line], profile: StaticProfile, stiffness: FloatArray) -> None:
+def add_end_springs(lines: Sequence[Line], profile: StaticProfile, stiffness: FloatArray) -> None:
+    """Add the springs that hold U at both ends to K (lines, freedoms, freedoms), in place."""
     count = np.array([len(line.bundle.positions) for line in lines])
     springs = np.where(np.isinf(profile.end_stiffness), 0.0, profile.end_stiffness)
     stiffness[:, U, U] += count * springs[:, 0]
     stiffness[:, -FIELDS + U, -FIELDS + U] += count * springs[:, 1]
 
 
-def _add_devices(lines: Sequence[Line], profile: StaticProfile, stiffness: FloatArray, mass: FloatArray) -> None:
+def mounted(
+    lines: Sequence[Line], profile: StaticProfile
+) -> Iterator[tuple[int, slice, FloatArray, Spacer | DetuningPendulum]]:
+    """Yield line, freedoms of the element, shape-function values (3,) and device of every device at a point."""
     for i, line in enumerate(lines):
         for device in line.devices:
-            if isinstance(device, AirflowSpoiler):
-                continue
-            first, values = interpolation_at(profile, i, line.span.elements, device.position)
-            here = slice(FIELDS * first, FIELDS * (first + 3))
-            inertia, gravity = _device_inertia(device)
-            pairs = np.outer(values, values)
-            mass[i, here, here] += np.kron(pairs, inertia)
-            stiffness[i, here, here] += np.kron(pairs, np.diag([0.0, 0.0, 0.0, gravity]))
+            if not isinstance(device, AirflowSpoiler):
+                first, values = interpolation_at(profile, i, line.span.elements, device.position)
+                yield i, slice(FIELDS * first, FIELDS * (first + 3)), values, device
 
 
 def interpolation_at(profile: StaticProfile, line: int, elements: int, position: float) -> tuple[int, FloatArray]:
@@ -209,14 +250,19 @@ def interpolation_at(profile: StaticProfile, line: int, elements: int, position:
     return 2 * element, values
 
 
-def _device_inertia(device: Spacer | DetuningPendulum) -> tuple[FloatArray, float]:
-    """Return the 4 x 4 inertia of a device on (U, V, W, Theta) and its gravity stiffness on Theta [N m]."""
-    inertia = np.diag([device.mass] * FIELDS)
+def device_offset(device: Spacer | DetuningPendulum, turn: float = 0.0) -> tuple[float, float]:
+    """Return (y, z) [m] of a device's mass, its cross-section turned by an angle [rad]; a spacer is centred."""
     if isinstance(device, Spacer):
-        inertia[THETA, THETA] = device.polar_inertia
-        return inertia, 0.0
-    y, z = -device.arm * np.cos(device.angle), device.arm * np.sin(device.angle)
-    inertia[THETA, THETA] = device.mass * device.arm**2
+        return 0.0, 0.0
+    angle = device.angle - turn
+    return -device.arm * math.cos(angle), device.arm * math.sin(angle)
+
+
+def _device_inertia(device: Spacer | DetuningPendulum, turn: float = 0.0) -> FloatArray:
+    """Return the 4 x 4 inertia of a device on (U, V, W, Theta)."""
+    y, z = device_offset(device, turn)
+    inertia = np.diag([device.mass] * FIELDS)
+    inertia[THETA, THETA] = device.polar_inertia if isinstance(device, Spacer) else device.mass * device.arm**2
     inertia[V, THETA] = inertia[THETA, V] = -device.mass * z
     inertia[W, THETA] = inertia[THETA, W] = device.mass * y
-    return inertia, float(-device.mass * GRAVITY * y)
+    return inertia

@@ -1,12 +1,12 @@
 """Cubic coefficients from tabulated lift, drag and moment. Theory section 5, paper eqs. (A18), (A19)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.arrays import FloatArray
 from engine.outcome import Fault, require
-from engine.spec import Aerodynamics, Coefficients
+from engine.spec import Aerodynamics, Coefficients, MeasuredCoefficients
 
 ORDER = 3
 
@@ -46,6 +46,8 @@ class CoefficientFit:
 def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: float) -> CoefficientFit:
     """Fit C_y, C_z and C_theta by cubics in the angle from the static one, constants included.
 
+    Angles count modulo a turn, so that a table of the whole circle serves every static angle.
+
     Parameters
     ----------
     table : CoefficientTable
@@ -63,10 +65,12 @@ def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: f
     InvalidSpec
         If fewer than five rows lie in the range, or all of them on one side of the static angle.
     """
-    here = np.abs(table.angle - static_angle) <= half_range * (1.0 + 1e-12)
-    alpha = table.angle[here] - static_angle
+    away = (table.angle - static_angle + np.pi) % (2.0 * np.pi) - np.pi
+    here = np.abs(away) <= half_range * (1.0 + 1e-12)
+    alpha = away[here]
     enough = alpha.size > ORDER + 1 and alpha.min() <= 0.0 <= alpha.max()
-    rule = "must leave at least five rows of the table, on both sides of the static angle"
+    here_deg = f"{np.degrees(static_angle):.1f} deg"
+    rule = f"must leave at least five rows of the table, on both sides of the static angle ({here_deg})"
     require(None if enough else Fault("half_range", half_range, rule))
     lift, drag = table.lift[here], table.drag[here]
     vertical = lift * np.cos(alpha) + drag * np.sin(alpha)
@@ -79,6 +83,20 @@ def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: f
     fitted_range = float(np.abs(alpha).max())
     aerodynamics = Aerodynamics(rows[0], rows[1], rows[2], _triple(coefficients[0]), fitted_range)
     return CoefficientFit(aerodynamics, _triple(residual), alpha.size)
+
+
+def fit_measured(measured: MeasuredCoefficients, twist: float = 0.0) -> Aerodynamics:
+    """Fit anew what was measured, at the static angle plus a twist [rad].
+
+    Raises
+    ------
+    InvalidSpec
+        If the table is not sound, or does not reach around that angle.
+    """
+    columns = (measured.angle, measured.lift, measured.drag, measured.moment)
+    table = CoefficientTable(*(np.array(column) for column in columns))
+    fitted = fit_coefficients(table, measured.static_angle + twist, measured.half_range)
+    return replace(fitted.aerodynamics, measured=measured)
 
 
 def den_hartog_coefficient(table: CoefficientTable) -> FloatArray:

@@ -11,11 +11,12 @@ import numpy as np
 
 from engine.aerodynamics import PolynomialLoad, integrated, published_load, span_load
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.fem import FIELDS, THETA, Matrices, U, V, W, shape_functions
+from engine.fem import FIELDS, THETA, Matrices, U, V, W, matrices, shape_functions
 from engine.modes import DirectionalShapes, FullModes, at_points
-from engine.profile import StaticProfile
-from engine.sections import Sections
-from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, Line, LongitudinalInertia
+from engine.profile import StaticProfile, static_profile
+from engine.sections import Sections, sections
+from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, Line, LongitudinalInertia, StaticTwist
+from engine.twist import TwistedState, twisted_matrices, twisted_state
 
 TRANSVERSE = (V, W, THETA)
 
@@ -40,12 +41,29 @@ class ReducedModel:
 
 @dataclass(frozen=True, slots=True)
 class Discretization:
-    """Everything of a stack of lines that both reduced models are made from."""
+    """Everything of a stack of lines that both reduced models are made from; twist is None where it is neglected."""
 
     lines: tuple[Line, ...]
     profile: StaticProfile
     sections: Sections
     matrices: Matrices
+    twist: TwistedState | None = None
+
+
+def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NEGLECTED) -> Discretization:
+    """Go from lines with equal numbers of elements to their matrices, about the twisted state if it is to be solved.
+
+    Raises
+    ------
+    InvalidSpec
+        If a table of coefficients does not reach around the angle to which its section is twisted.
+    """
+    profile = static_profile(lines)
+    made_of = sections(lines, profile)
+    if static_twist is StaticTwist.NEGLECTED:
+        return Discretization(tuple(lines), profile, made_of, matrices(lines, profile, made_of))
+    state = twisted_state(lines, profile, made_of)
+    return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, made_of, state), state)
 
 
 def hybrid_model(

@@ -5,6 +5,7 @@ import numpy as np
 from engine import ENGINE_VERSION
 from engine.hybrid import Discretization
 from engine.modes import DirectionalShapes
+from engine.outcome import Outcome
 from engine.profile import mean_mass
 from engine.result import DenHartog, LimitCycleRow, Orbit, Result, StaticState
 from engine.rows import Found, FrequencyTable, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
@@ -47,6 +48,7 @@ def assembled(
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
         outside = sum(cycle.outcome.value == "outside_fit" for cycle in cycles)
         fit = [f"{outside} cycles leave the range of angles to which the coefficients were fitted."] if outside else []
+        said = line_warnings(line) + _twist_warnings(made, i)
         results.append(
             Result(
                 static=_static_state(made, i),
@@ -56,7 +58,7 @@ def assembled(
                 limit_cycles=cycles,
                 bifurcations=(),
                 orbits=orbits,
-                warnings=(*line_warnings(line), *fit, *(text for table in dropped for text in table[i])),
+                warnings=(*said, *fit, *(text for table in dropped for text in table[i])),
                 engine_version=ENGINE_VERSION,
             )
         )
@@ -106,4 +108,19 @@ def _static_state(made: Discretization, line: int) -> StaticState:
         catenary_parameter_m=float(profile.catenary_parameter[line]),
         sag_m=float(profile.sag[line]),
         longitudinal_stiffness_n_per_m=stiffness if np.isfinite(stiffness) else None,
+        twist_rad=_largest_twist(made, line),
     )
+
+
+def _largest_twist(made: Discretization, line: int) -> float | None:
+    """Return the static twist of largest size [rad], None where it is neglected or was not found."""
+    if made.twist is None or made.twist.outcome[line] is not Outcome.CONVERGED:
+        return None
+    angle = made.twist.angle[line]
+    return float(angle[np.abs(angle).argmax()])
+
+
+def _twist_warnings(made: Discretization, line: int) -> list[str]:
+    if made.twist is None or made.twist.outcome[line] is Outcome.CONVERGED:
+        return []
+    return ["The static twist was not found; everything is computed about the untwisted state."]

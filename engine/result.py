@@ -11,12 +11,16 @@ Direction = Literal["vertical", "horizontal", "torsional"]
 
 @dataclass(frozen=True, slots=True)
 class StaticState:
-    """Static state of the span, theory section 2; the stiffness is the smaller of both ends, None at dead ends."""
+    """Static state of the span, theory section 2; the stiffness is the smaller of both ends, None at dead ends.
+
+    The twist is the largest on the span with its sign, None where it is neglected or was not found.
+    """
 
     horizontal_tension_n: float
     catenary_parameter_m: float
     sag_m: float
     longitudinal_stiffness_n_per_m: float | None
+    twist_rad: float | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,13 @@ positions, so that a boundary inside an element is integrated exactly on both si
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from engine.arrays import FloatArray
+from engine.fit import fit_measured
 from engine.profile import StaticProfile, arc_position, horizontal_position
 from engine.spec import Aerodynamics, AirflowSpoiler, Line, ice_properties
 
@@ -24,7 +25,8 @@ class Sections:
     local is the element co-ordinate in [-1, 1] and local_weight its quadrature weight (0 on padding);
     mass [kg/m] and first_moment (..., 2) = m (e_y, e_z) [kg] of a sub-conductor; wind_factor phi;
     aerodynamics (..., 3, 4): rows vertical, horizontal, torsional, columns a_i0 to a_i3 of a sub-conductor.
-    fitted_range (lines,): the smallest range of the fits on the line [rad], infinite where none is known.
+    fitted_range (lines,): the smallest range of the fits on the line [rad], infinite where none is known; twist:
+    static twist by which moments and coefficients are turned already [rad].
     """
 
     local: FloatArray
@@ -34,6 +36,7 @@ class Sections:
     wind_factor: FloatArray
     aerodynamics: FloatArray
     fitted_range: FloatArray
+    twist: FloatArray
 
 
 def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
@@ -57,8 +60,7 @@ def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
     local = edges[..., :-1, None] + 0.5 * width * (abscissae + 1.0)
     shape = (len(lines), elements, -1)
     local = local.reshape(shape)
-    arc = (np.arange(elements)[:, None] + 0.5 * (local + 1.0)) * (profile.arc_length[:, None, None] / elements)
-    position = horizontal_position(profile, arc)
+    position = _positions(profile, local)
     values = [_line_properties(line, x) for line, x in zip(lines, position, strict=True)]
     return Sections(
         local=local,
@@ -68,7 +70,51 @@ def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
         wind_factor=np.stack([v[2] for v in values]),
         aerodynamics=np.stack([v[3] for v in values]),
         fitted_range=np.array([_fitted_range(line) for line in lines]),
+        twist=np.zeros(local.shape),
     )
+
+
+def turned(lines: Sequence[Line], profile: StaticProfile, made_of: Sections, twist: FloatArray) -> Sections:
+    """Turn untwisted sections: the first moments as vectors, and coefficients with a table fitted at the local angle.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+    profile : StaticProfile
+    made_of : Sections
+        Without twist.
+    twist : (lines, elements, points)
+        Static twist [rad].
+
+    Returns
+    -------
+    Sections
+
+    Raises
+    ------
+    InvalidSpec
+        If a table does not reach around the local angle.
+    """
+    position = _positions(profile, made_of.local)
+    stack = zip(lines, position, twist, strict=True)
+    return replace(
+        turned_moments(made_of, twist), aerodynamics=np.stack([_aerodynamics(line, x, turn) for line, x, turn in stack])
+    )
+
+
+def turned_moments(made_of: Sections, twist: FloatArray) -> Sections:
+    """Turn the first moments of untwisted sections, and leave the coefficients as they are."""
+    moment_y, moment_z = made_of.first_moment[..., 0], made_of.first_moment[..., 1]
+    c, s = np.cos(twist), np.sin(twist)
+    moment = np.stack([moment_y * c - moment_z * s, moment_y * s + moment_z * c], axis=-1)
+    return replace(made_of, first_moment=moment, twist=twist)
+
+
+def _positions(profile: StaticProfile, local: FloatArray) -> FloatArray:
+    """Return the horizontal positions of points given by their co-ordinates in the elements [m]."""
+    elements = local.shape[1]
+    arc = (np.arange(elements)[:, None] + 0.5 * (local + 1.0)) * (profile.arc_length[:, None, None] / elements)
+    return horizontal_position(profile, arc)
 
 
 @lru_cache
@@ -104,20 +150,33 @@ def _line_properties(line: Line, position: FloatArray) -> tuple[FloatArray, Floa
     e_y, e_z, base = ice_properties(line, line.ice)
     mass = np.full(position.shape, base)
     moment = np.broadcast_to(base * np.array([e_y, e_z]), (*position.shape, 2)).copy()
-    aerodynamics = np.broadcast_to(_table(line.ice.aerodynamics), (*position.shape, 3, 4)).copy()
     for segment in line.ice.segments:
         here = (position >= segment.start) & (position < segment.stop)
         e_y, e_z, iced = ice_properties(line, segment)
         mass[here] = iced
         moment[here] = iced * np.array([e_y, e_z])
-        if segment.aerodynamics is not None:
-            aerodynamics[here] = _table(segment.aerodynamics)
     for device in line.devices:
         if isinstance(device, AirflowSpoiler):
-            here = (position >= device.start) & (position < device.stop)
-            mass[here] += device.mass
-            aerodynamics[here] = _table(device.aerodynamics)
-    return mass, moment, _wind_factor(line, position), aerodynamics
+            mass[(position >= device.start) & (position < device.stop)] += device.mass
+    return mass, moment, _wind_factor(line, position), _aerodynamics(line, position, np.zeros(position.shape))
+
+
+def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatArray:
+    """Return the coefficients at positions [m], a spoiler's before a segment's before the span's: (..., 3, 4)."""
+    stretches = [(s.start, s.stop, s.aerodynamics) for s in line.ice.segments if s.aerodynamics is not None]
+    stretches += [(d.start, d.stop, d.aerodynamics) for d in line.devices if isinstance(d, AirflowSpoiler)]
+    result = np.empty((*position.shape, 3, 4))
+    for start, stop, aerodynamics in [(-np.inf, np.inf, line.ice.aerodynamics), *stretches]:
+        here = (position >= start) & (position < stop)
+        result[here] = _at_local_angle(aerodynamics, twist[here])
+    return result
+
+
+def _at_local_angle(aerodynamics: Aerodynamics, twist: FloatArray) -> FloatArray:
+    """Return coefficients at points of the given twist [rad]; without a table they hold for the section at rest."""
+    if aerodynamics.measured is None or not twist.any():
+        return _table(aerodynamics)
+    return np.stack([_table(fit_measured(aerodynamics.measured, turn)) for turn in twist.tolist()])
 
 
 def _wind_factor(line: Line, position: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from app.faults import BadInput, Fault, json_pointer
 from engine.outcome import InvalidSpec
 
 
-def fit(request: schemas.FitRequest) -> dict[str, Any]:
+def fit(request: schemas.MeasuredCoefficients) -> dict[str, Any]:
     """Fit cubics to a table (theory section 5) and return the answer as plain values.
 
     Raises

@@ -5,9 +5,11 @@ engine knows it, else at the part itself.
 """
 
 import math
+from dataclasses import replace
 
 from app import schemas
 from engine import spec
+from engine.outcome import Fault, InvalidSpec, require
 
 
 def conductor(part: schemas.Conductor) -> spec.Conductor:
@@ -47,8 +49,14 @@ def supports(part: schemas.Supports) -> spec.Supports:
     return spec.Supports(part.longitudinal_stiffness, support(part.left), support(part.right))
 
 
-def aerodynamics(part: schemas.Aerodynamics, at_rest: schemas.AerodynamicsAtRest | None) -> spec.Aerodynamics:
-    """Build the coefficients from what the contract keeps in two places."""
+def aerodynamics(
+    part: schemas.Aerodynamics | schemas.MeasuredCoefficients, at_rest: schemas.AerodynamicsAtRest | None
+) -> spec.Aerodynamics:
+    """Build the coefficients from what the contract keeps in two places, or from a table."""
+    if isinstance(part, schemas.MeasuredCoefficients):
+        rule = "must be absent beside a table, which holds the values at rest itself"
+        require(Fault("at_rest", None, rule) if at_rest else None)
+        return _fitted(part)
     return spec.Aerodynamics(
         vertical=_three(part.vertical),
         horizontal=_three(part.horizontal),
@@ -56,6 +64,18 @@ def aerodynamics(part: schemas.Aerodynamics, at_rest: schemas.AerodynamicsAtRest
         at_rest=(at_rest.vertical, at_rest.horizontal, at_rest.torsional) if at_rest else None,
         fitted_range=None if part.fitted_range is None else math.radians(part.fitted_range),
     )
+
+
+def _fitted(part: schemas.MeasuredCoefficients) -> spec.Aerodynamics:
+    from engine.fit import fit_measured  # noqa: PLC0415 - lines without a table need no numerics
+
+    rows = [(math.radians(row.angle), row.lift, row.drag, row.moment) for row in part.table]
+    angle, lift, drag, moment = zip(*rows, strict=True)
+    static, half_range = math.radians(part.static_angle), math.radians(part.half_range)
+    try:
+        return fit_measured(spec.MeasuredCoefficients(angle, lift, drag, moment, static, half_range))
+    except InvalidSpec as error:
+        raise InvalidSpec(*(replace(f, field=f"aerodynamics.{f.field}") for f in error.faults)) from error
 
 
 def segment(part: schemas.IceSegment) -> spec.IceSegment:
@@ -100,6 +120,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         critical_wind_limit=part.critical_wind_limit,
         harmonics=part.harmonics,
         finite_element_loops=tuple(part.finite_element_loops),
+        static_twist=spec.StaticTwist(part.static_twist),
     )
 
 

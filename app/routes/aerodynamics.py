@@ -26,7 +26,7 @@ router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route
     },
 )
 def fit(
-    document: Annotated[schemas.FitRequest, Body(openapi_examples=reference_documentation.FIT_REQUESTS)],
+    document: Annotated[schemas.MeasuredCoefficients, Body(openapi_examples=reference_documentation.FIT_REQUESTS)],
 ) -> JSONResponse:
     """Fit cubics about the static angle to measured lift, drag and moment, as a line's `ice` takes them.
 

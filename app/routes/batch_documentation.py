@@ -74,6 +74,7 @@ RESULT: dict[str, Any] = {
         "catenary_parameter_m": 1285.5,
         "sag_m": 1.54,
         "longitudinal_stiffness_n_per_m": 128490.0,
+        "twist_rad": None,
     },
     "den_hartog": {"coefficient": -0.1667, "unstable": True},
     "warnings": [],

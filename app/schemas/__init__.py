@@ -1,6 +1,5 @@
 """The JSON that goes in and comes out, as pydantic models: names, units, bounds and examples of the contract."""
 
-from app.schemas.aerodynamics import CoefficientRow, FitRequest
 from app.schemas.analysis import Analysis, Axis, JobRequest, Study, WindSpeedRange
 from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
 from app.schemas.environment import (
@@ -14,6 +13,7 @@ from app.schemas.environment import (
     Wind,
 )
 from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
+from app.schemas.measured import CoefficientRow, MeasuredCoefficients
 
 __all__ = [
     "Aerodynamics",
@@ -28,11 +28,11 @@ __all__ = [
     "Damping",
     "DetuningPendulum",
     "Device",
-    "FitRequest",
     "Ice",
     "IceSegment",
     "JobRequest",
     "Line",
+    "MeasuredCoefficients",
     "ProfilePoint",
     "Spacer",
     "Span",

@@ -1,50 +1,8 @@
-"""Fits of measured coefficients: the table that comes in, and the coefficients that go out, ready for a line's ice."""
-
-from itertools import pairwise
-
-from pydantic import Field, field_validator
-from pydantic_core import PydanticCustomError
+"""Fits of measured coefficients: what goes out, ready for a line's ice."""
 
 from app.schemas.answers import DenHartog
 from app.schemas.environment import COEFFICIENTS, Aerodynamics, AerodynamicsAtRest
-from app.schemas.fields import Answer, Document, example_of, quantity, told
-
-FULL_TURN = (-360.0, 360.0)
-_COEFFICIENT = (-1e3, 1e3)
-_ROW = {"angle_deg": 40.0, "lift": 0.31, "drag": 1.18, "moment": -0.12}
-
-
-class CoefficientRow(Document):
-    """What was measured at one angle, of one iced sub-conductor."""
-
-    angle: float = quantity("angle_deg", "Angle of the ice against the wind", "deg", FULL_TURN, 40.0)
-    lift: float = quantity("lift", "Lift coefficient, positive upward, over the diameter", "1", _COEFFICIENT, 0.31)
-    drag: float = quantity("drag", "Drag coefficient, positive downwind, over the diameter", "1", _COEFFICIENT, 1.18)
-    moment: float = quantity("moment", "Moment coefficient, over the squared diameter", "1", _COEFFICIENT, -0.12)
-
-
-class FitRequest(Document):
-    """A table of measured coefficients, and the angle about which they are fitted."""
-
-    table: list[CoefficientRow] = Field(
-        min_length=5, max_length=10_000, description="Rows in the order of rising angles", examples=[[_ROW] * 5]
-    )
-    static_angle: float = quantity(
-        "static_angle_deg", "Angle at which the ice rests: alpha is counted from it", "deg", FULL_TURN, 40.0
-    )
-    half_range: float = quantity(
-        "half_range_deg", "Rows within this angle of the static one are used", "deg", (0.01, 180.0), 20.0
-    )
-
-    @field_validator("table")
-    @classmethod
-    def _rising(cls, table: list[CoefficientRow]) -> list[CoefficientRow]:
-        for number, (before, here) in enumerate(pairwise(table), start=1):
-            if not before.angle < here.angle:
-                found = {"number": number, "angle": here.angle, "before": before.angle}
-                message = "angles must rise, but row {number} (from 0) has {angle} after {before}"
-                raise PydanticCustomError("rising", message, found)
-        return table
+from app.schemas.fields import Answer, example_of, told
 
 
 class FitResidual(Answer):

@@ -96,6 +96,12 @@ class Analysis(Document):
         json_schema_extra={"unit": "1"},
     )
 
+    static_twist: Literal["neglected", "solved"] = Field(
+        default="neglected",
+        description="Whether eccentric ice turns the sections at rest; solved, mass, weight and tables turn with them",
+        examples=["neglected"],
+    )
+
     @model_validator(mode="after")
     def _distinct(self) -> Self:
         for name in ("loops", "models", "finite_element_loops"):

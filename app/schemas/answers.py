@@ -90,6 +90,7 @@ class StaticState(Answer):
     longitudinal_stiffness_n_per_m: Number = told(
         "Longitudinal stiffness of the supports; null at dead ends [N/m]", 128460.7
     )
+    twist_rad: Number = told("Largest static twist of the sections; null where it is neglected [rad]", -0.75)
 
 
 class DenHartog(Answer):

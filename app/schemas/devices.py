@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.schemas.environment import AT_REST, COEFFICIENTS, Aerodynamics, AerodynamicsAtRest
+from app.schemas.environment import AT_REST, COEFFICIENTS, AerodynamicsAtRest, AerodynamicsForm
 from app.schemas.fields import ON_SPAN, Document, quantity
 
 
@@ -35,8 +35,8 @@ class AirflowSpoiler(Document):
     type: Literal["airflow_spoiler"] = Field(description="Kind of device", examples=["airflow_spoiler"])
     start: float = quantity("from_m", "Where the stretch begins", "m", ON_SPAN, 30.0)
     stop: float = quantity("to_m", "Where the stretch ends", "m", ON_SPAN, 60.0)
-    aerodynamics: Aerodynamics = Field(
-        description="Coefficients of one sub-conductor on the stretch", examples=[COEFFICIENTS]
+    aerodynamics: AerodynamicsForm = Field(
+        description="Coefficients of one sub-conductor on the stretch, or their table", examples=[COEFFICIENTS]
     )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,

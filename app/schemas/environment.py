@@ -2,11 +2,12 @@
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from app.examples import example
 from app.schemas.fields import ICED_MASS, ON_SPAN, Document, quantity
+from app.schemas.measured import MeasuredCoefficients
 
 Cubic = Annotated[list[Annotated[float, Field(ge=-1e4, le=1e4)]], Field(min_length=3, max_length=3)]
 
@@ -40,6 +41,18 @@ class Aerodynamics(Document):
     )
 
 
+def _form(value: object) -> str:
+    tabulated = isinstance(value, MeasuredCoefficients) or (isinstance(value, dict) and "table" in value)
+    return "measured" if tabulated else "coefficients"
+
+
+AerodynamicsForm = Annotated[
+    Annotated[Aerodynamics, Tag("coefficients")] | Annotated[MeasuredCoefficients, Tag("measured")],
+    Discriminator(_form),
+]
+"""Cubic coefficients, or the table that they are fitted to; with a table they follow the static twist."""
+
+
 class AerodynamicsAtRest(Document):
     """Coefficients at the static angle, which the relative-wind model needs."""
 
@@ -53,8 +66,8 @@ class IceSegment(Document):
 
     start: float = quantity("from_m", "Where the stretch begins", "m", ON_SPAN, 0.0)
     stop: float = quantity("to_m", "Where the stretch ends", "m", ON_SPAN, 62.94)
-    aerodynamics: Aerodynamics | None = Field(
-        default=None, description="Coefficients on the stretch", examples=[COEFFICIENTS]
+    aerodynamics: AerodynamicsForm | None = Field(
+        default=None, description="Coefficients or their table on the stretch", examples=[COEFFICIENTS]
     )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,
@@ -88,7 +101,10 @@ class Ice(Document):
     eccentricity_z: float = quantity(
         "eccentricity_z_m", "Mass centre of the iced section, downwind", "m", _ECCENTRICITY, -0.63e-3, 0.0
     )
-    aerodynamics: Aerodynamics = Field(description="Coefficients of one iced sub-conductor", examples=[COEFFICIENTS])
+    aerodynamics: AerodynamicsForm = Field(
+        description="Coefficients of one iced sub-conductor, or the table that they are fitted to",
+        examples=[COEFFICIENTS],
+    )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,
         alias="aerodynamics_at_rest",

@@ -33,3 +33,4 @@ class PointRow(Base):
     largest_vertical_m: Mapped[float | None]
     tables: Mapped[bytes | None] = mapped_column(LargeBinary)
     orbits: Mapped[bytes | None] = mapped_column(LargeBinary)
+    twist_rad: Mapped[float | None]

@@ -4,9 +4,27 @@ Axes (docs/conventions.md): X along the span, Y up, Z horizontal and downwind. P
 the left support. Every property of a sub-conductor is that of one iced sub-conductor.
 """
 
-from engine.spec.analysis import AerodynamicModel, Analysis, Closure, LongitudinalInertia, Model, check_compatible
+from engine.spec.analysis import (
+    AerodynamicModel,
+    Analysis,
+    Closure,
+    LongitudinalInertia,
+    Model,
+    StaticTwist,
+    check_compatible,
+)
 from engine.spec.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
-from engine.spec.environment import Aerodynamics, BlowOut, Coefficients, Damping, DampingModel, Ice, IceSegment, Wind
+from engine.spec.environment import (
+    Aerodynamics,
+    BlowOut,
+    Coefficients,
+    Damping,
+    DampingModel,
+    Ice,
+    IceSegment,
+    MeasuredCoefficients,
+    Wind,
+)
 from engine.spec.line import Line, ice_properties
 from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 
@@ -28,9 +46,11 @@ __all__ = [
     "IceSegment",
     "Line",
     "LongitudinalInertia",
+    "MeasuredCoefficients",
     "Model",
     "Spacer",
     "Span",
+    "StaticTwist",
     "Support",
     "Supports",
     "Wind",

@@ -40,6 +40,13 @@ class LongitudinalInertia(StrEnum):
     CONDENSED = "condensed"
 
 
+class StaticTwist(StrEnum):
+    """Whether ice and pendulums turn the cross-sections at rest: neglected as in the source, or solved for."""
+
+    NEGLECTED = "neglected"
+    SOLVED = "solved"
+
+
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model.
@@ -56,6 +63,7 @@ class Analysis:
     critical_wind_limit: float = 30.0
     harmonics: int = 5
     finite_element_loops: tuple[int, ...] = (1, 2, 3)
+    static_twist: StaticTwist = StaticTwist.NEGLECTED
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""

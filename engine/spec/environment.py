@@ -11,11 +11,27 @@ Coefficients = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
+class MeasuredCoefficients:
+    """What cubic coefficients were fitted to, so that they can be fitted anew where the section is turned.
+
+    angle [rad], rising, with lift, drag and moment of one sub-conductor, all (rows,); static_angle: the angle of the
+    table at which the untwisted section stands [rad]; half_range: rows within it of the local angle are used [rad].
+    """
+
+    angle: tuple[float, ...]
+    lift: tuple[float, ...]
+    drag: tuple[float, ...]
+    moment: tuple[float, ...]
+    static_angle: float
+    half_range: float
+
+
+@dataclass(frozen=True, slots=True)
 class Aerodynamics:
     """Cubic coefficients a_i1, a_i2, a_i3 of one sub-conductor over the angle of attack [1/rad^j], eqs. (A11)-(A17).
 
     at_rest holds a_y0, a_z0, a_theta0, which only the relative-wind model needs; fitted_range is the largest |alpha|
-    [rad] for which the fit holds, None where it is not known.
+    [rad] for which the fit holds, None where it is not known; measured is the table behind the fit, if there is one.
     """
 
     vertical: Coefficients
@@ -23,6 +39,7 @@ class Aerodynamics:
     torsional: Coefficients
     at_rest: Coefficients | None = None
     fitted_range: float | None = None
+    measured: MeasuredCoefficients | None = None
 
     def __post_init__(self) -> None:
         """Check that every coefficient is finite."""

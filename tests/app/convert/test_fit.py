@@ -10,7 +10,7 @@ from app.faults import BadInput
 A_Y, A_Z, A_M = (0.2, -0.1667, -4.0547, 8.3581), (1.1, 0.8605, 0.8325, 1.7815), (-0.1, -0.7272, 0.2935, 5.9704)
 
 
-def request(half_range: float = 20.0, static: float = 40.0) -> schemas.FitRequest:
+def request(half_range: float = 20.0, static: float = 40.0) -> schemas.MeasuredCoefficients:
     """Return a table of exact cubics about 40 degrees: C_L = C_y cos - C_z sin, C_D = C_y sin + C_z cos."""
     rows = []
     for angle in range(10, 71, 2):
@@ -18,7 +18,7 @@ def request(half_range: float = 20.0, static: float = 40.0) -> schemas.FitReques
         c_y, c_z, c_m = (sum(c * a**j for j, c in enumerate(row)) for row in (A_Y, A_Z, A_M))
         lift, drag = c_y * math.cos(a) - c_z * math.sin(a), c_y * math.sin(a) + c_z * math.cos(a)
         rows.append({"angle_deg": float(angle), "lift": lift, "drag": drag, "moment": c_m})
-    return schemas.FitRequest.model_validate(
+    return schemas.MeasuredCoefficients.model_validate(
         {"table": rows, "static_angle_deg": static, "half_range_deg": half_range},
     )
 
@@ -64,3 +64,56 @@ def test_a_cycle_beyond_the_fitted_range_says_so() -> None:
     fitted = convert.fit(request())["aerodynamics"]
     assert outcomes(fitted | {"fitted_range_deg": 60.0}) == {"converged"}
     assert outcomes(fitted | {"fitted_range_deg": 5.0}) == {"outside_fit"}
+
+
+def measured() -> dict[str, Any]:
+    """Return the request as a line takes it."""
+    return request().model_dump(mode="json", by_alias=True)
+
+
+def test_a_line_with_the_table_is_the_line_with_its_fit() -> None:
+    fitted = convert.fit(request())
+    first, second = (example("c11-twin") for _ in range(2))
+    first["ice"]["aerodynamics"] = measured()
+    second["ice"] |= {name: fitted[name] for name in ("aerodynamics", "aerodynamics_at_rest")}
+    asked = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [6.0], "aerodynamic_model": "relative_wind"}
+    tables = [_tables({"line": line, "analysis": asked}) for line in (first, second)]
+    assert tables[0] == tables[1]
+
+
+def _tables(document: dict[str, Any]) -> object:
+    asked = convert.read(document).model_dump(mode="json", by_alias=True)
+    return next(item for item in convert.run(asked) if isinstance(item, convert.PointResult)).tables
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer"),
+    [
+        ({"half_range_deg": 3.0}, "/line/ice/aerodynamics/half_range_deg"),
+        ({"static_angle_deg": 400.0}, "/line/ice/aerodynamics/static_angle_deg"),
+        ({"vertical": [1.0, 2.0, 3.0]}, "/line/ice/aerodynamics/vertical"),
+    ],
+)
+def test_faults_of_a_table_point_into_the_line(change: dict[str, Any], pointer: str) -> None:
+    line = example("c11-twin")
+    line["ice"]["aerodynamics"] = measured() | change
+    assert [fault.pointer for fault in convert.check({"line": line})] == [pointer]
+
+
+def test_values_at_rest_beside_a_table_are_refused() -> None:
+    line = example("c11-twin")
+    line["ice"] |= {
+        "aerodynamics": measured(),
+        "aerodynamics_at_rest": {"vertical": 0, "horizontal": 1, "torsional": 0},
+    }
+    assert [fault.pointer for fault in convert.check({"line": line})] == ["/line/ice/aerodynamics_at_rest"]
+
+
+def test_static_twist_is_asked_for_by_its_word() -> None:
+    line = example("c11-single")
+    line["span"]["length_m"] = 250.0
+    analysis = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0], "static_twist": "solved"}
+    asked = convert.read({"line": line, "analysis": analysis}).model_dump(mode="json", by_alias=True)
+    point = next(item for item in convert.run(asked) if isinstance(item, convert.PointResult))
+    assert point.static["twist_rad"] == pytest.approx(-2.37, abs=0.3)
+    assert {row["outcome"] for row in point.tables["frequencies"]} == {"converged"}

@@ -40,7 +40,7 @@ def test_every_line_has_the_numbers_that_it_has_alone() -> None:
     for number in (1, 20, 40):
         expected = alone(lines[number])
         assert found[number].axes == {"number": number}
-        assert found[number].static == pytest.approx(expected.static, rel=1e-9)
+        assert close(found[number].static, expected.static)
         for table, rows in expected.tables.items():
             pairs = zip(found[number].tables[table], rows, strict=True)
             assert [pair for pair in pairs if not close(*pair)] == []
