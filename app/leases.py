@@ -7,7 +7,7 @@ the earlier worker still says about it finds no row and is dropped, with its res
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from sqlalchemy import ColumnElement, CursorResult, and_, false, func, or_, sele
 from sqlalchemy.orm import Session
 
 from app import results
+from app.correlation import Ids
 from app.db import database_time
 from app.jobs import record
 from app.settings import Settings
@@ -38,12 +39,13 @@ class Beat(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """The right to work on a job: its attempt number fences off every earlier worker."""
+    """The right to work on a job: its attempt number fences off every earlier worker; its ids go into the logs."""
 
     job_id: UUID
     attempt: int
     document: dict[str, Any]
     batch_id: UUID | None = None
+    ids: Ids = field(default_factory=Ids)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +72,15 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
             lease_expires_at=now + timedelta(seconds=lease_seconds),
             dispatched_at=func.coalesce(Job.dispatched_at, now),
         )
-        .returning(Job.attempt, Job.document, Job.batch_id)
+        .returning(Job.attempt, Job.document, Job.batch_id, Job.request_id, Job.trace_parent)
         .execution_options(synchronize_session=False)
     )
     taken = session.execute(statement).one_or_none()
     if taken is None:
         return None
     record(session, job_id, JobEventKind.RUNNING, attempt=taken.attempt, detail=owner)
-    return Claim(job_id, taken.attempt, taken.document, taken.batch_id)
+    ids = Ids(taken.request_id, taken.trace_parent, str(job_id), taken.attempt)
+    return Claim(job_id, taken.attempt, taken.document, taken.batch_id, ids)
 
 
 def heartbeat(session: Session, held: Claim, lease_seconds: float, progress: float, step: str) -> Beat:

@@ -5,8 +5,10 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 from fastapi import FastAPI
+from starlette.types import ASGIApp
 
 from app import errors
+from app.access import Access
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
 from app.head import HeadAsGet
@@ -28,6 +30,10 @@ class Service(FastAPI):
         if not self.openapi_schema:
             self.openapi_schema = documentation.with_nulls(super().openapi())
         return self.openapi_schema
+
+    def build_middleware_stack(self) -> ASGIApp:
+        """Return the application with its middleware, all of it inside of `Access`."""
+        return Access(super().build_middleware_stack())
 
 
 def create_app(settings: Settings | None = None) -> Service:

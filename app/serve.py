@@ -1,4 +1,4 @@
-"""The commands that run the service: migrate, worker, and serve, which is the whole of it in one command."""
+"""The commands that run the service: migrate, api, worker, and serve, which is the whole of it in one command."""
 
 import logging
 import os
@@ -11,9 +11,9 @@ from alembic import command
 from alembic.config import Config
 from sqlalchemy import Connection, text
 
-from app import processes
+from app import logs, processes
 from app.db import make_engine
-from app.settings import Settings
+from app.settings import Settings, get_settings
 
 _MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
 _STOP_SECONDS = 10.0
@@ -53,22 +53,34 @@ def worker(settings: Settings) -> NoReturn:
     os.execve(sys.executable, [sys.executable, "-m", "worker"], processes.environment(settings))
 
 
+def api(settings: Settings, host: str, port: int) -> int:
+    """Run the API alone, until SIGTERM or SIGINT; returns 0.
+
+    Requests that are being served then are finished, as long as that takes no longer than the time for a stop.
+    """
+    logs.configure(settings)
+    # Our own log of requests is in the place of uvicorn's.
+    uvicorn.run("app.main:create_app", factory=True, host=host, port=port, log_config=None, access_log=False)
+    return 0
+
+
 def serve(settings: Settings, host: str, port: int) -> int:
     """Migrate, then run the API and a worker as child processes until SIGTERM or SIGINT; return the exit code.
 
     A worker that ends by itself is started again; if the API does, the service ends with its code. Both end with this
     process even if it is killed, and whatever they left undone is taken up by the next start.
     """
+    logs.configure(settings)
     migrate(settings)
     with processes.until_stopped() as wait:
-        api = processes.start(settings, "app.serve", host, str(port))
+        api_process = processes.start(settings, "app.serve", host, str(port))
         worker_process = processes.start(settings, "worker")
-        while not wait(_LOOK_SECONDS) and api.poll() is None:
+        while not wait(_LOOK_SECONDS) and api_process.poll() is None:
             if worker_process.poll() is not None:
                 _logger.warning("the worker ended with code %s and is started again", worker_process.returncode)
                 worker_process = processes.start(settings, "worker")
-        code = api.poll()
-        processes.stop([api, worker_process], signal.SIGTERM, settings.shutdown_seconds + _STOP_SECONDS)
+        code = api_process.poll()
+        processes.stop([api_process, worker_process], signal.SIGTERM, settings.shutdown_seconds + _STOP_SECONDS)
     return code or 0
 
 
@@ -78,10 +90,6 @@ def _take_turns(connection: Connection) -> None:
         connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _MIGRATION_LOCK})
 
 
-def _run_api(host: str, port: int) -> None:
-    processes.end_with_parent()
-    uvicorn.run("app.main:create_app", factory=True, host=host, port=port)
-
-
 if __name__ == "__main__":
-    _run_api(sys.argv[1], int(sys.argv[2]))
+    processes.end_with_parent()
+    sys.exit(api(get_settings(), sys.argv[1], int(sys.argv[2])))

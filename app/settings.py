@@ -4,7 +4,7 @@ import os
 import secrets
 from functools import cache
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -56,6 +56,9 @@ class Settings(BaseSettings):
     max_attempts: Count = Field(default=3, description="Attempts before a job counts as lost with its workers")
     soft_time_limit_seconds: Seconds = Field(default=3600.0, description="A job that runs longer fails")
     hard_time_limit_seconds: Seconds = Field(default=3660.0, description="A process that still runs then is killed")
+
+    log_level: Literal["debug", "info", "warning", "error"] = Field(default="info", description="Least that is logged")
+    log_format: Literal["json", "text"] = Field(default="json", description="Logs for machines, or for people")
 
     worker_processes: Count = Field(default_factory=_usable_processors, description="Jobs run at once by one worker")
     max_jobs_per_process: Count = Field(default=200, description="After so many jobs a process is replaced")

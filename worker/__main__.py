@@ -11,7 +11,7 @@ from uuid import uuid4
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases, processes
+from app import leases, logs, processes
 from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
 from worker.health import show_life
@@ -25,9 +25,9 @@ _logger = logging.getLogger(__name__)
 
 def main() -> int:
     """Run until SIGTERM or SIGINT; a pool that dies is replaced, and its jobs go back to the queue at once."""
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     processes.end_with_parent()
     settings = get_settings()
+    logs.configure(settings)
     engine = make_engine(settings)
     try:
         _supervise(session_factory(engine), settings, f"{socket.gethostname()}:{os.getpid()}:{uuid4().hex[:8]}")

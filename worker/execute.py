@@ -4,6 +4,7 @@ import logging
 import threading
 import time
 from collections.abc import Iterator
+from contextvars import copy_context
 from types import TracebackType
 from typing import Self
 from uuid import UUID
@@ -13,7 +14,7 @@ from pydantic import ValidationError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches, convert, leases
+from app import batches, convert, correlation, leases
 from app.convert import Advance, PointResult
 from app.db import make_engine, session_factory
 from app.leases import Beat, Claim, Failure
@@ -47,13 +48,26 @@ def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, o
     if held is None or steps is None:
         _logger.info("job %s is not waiting for a worker", job_id)
         return
+    with correlation.bound(held.ids):
+        _work(sessions, settings, held, steps)
+
+
+def _work(
+    sessions: sessionmaker[Session], settings: Settings, held: Claim, steps: Iterator[Advance | PointResult]
+) -> None:
+    _logger.info("job begins")
+    begin = time.monotonic()
     points: list[PointResult] = []
     with Pulse(sessions, held, settings) as pulse:
         failure = _compute(steps, held, settings, pulse, points)
+    seconds = time.monotonic() - begin
     with sessions.begin() as session:
         ended = _conclude(session, held, pulse.verdict, failure, points)
     if not ended:
-        _logger.warning("job %s was taken from attempt %d, whose results are dropped", job_id, held.attempt)
+        _logger.warning("the job was taken from this attempt, whose results are dropped")
+        return
+    facts = {"verdict": pulse.verdict.value, "failure": failure and failure.kind.value, "points": len(points)}
+    _logger.info("job ends", extra={**facts, "engine_seconds": round(seconds, 3)})
 
 
 class Pulse:
@@ -68,7 +82,7 @@ class Pulse:
         self._sessions, self._held, self._settings = sessions, held, settings
         self._latest = Advance(0.0, "")
         self._stopped = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="heartbeat", daemon=True)
+        self._thread = threading.Thread(target=copy_context().run, args=(self._run,), name="heartbeat", daemon=True)
 
     def report(self, advance: Advance) -> None:
         """Note how far the job is, for the next heartbeat."""
@@ -91,7 +105,7 @@ class Pulse:
             try:
                 self._beat()
             except SQLAlchemyError as error:
-                _logger.warning("job %s misses a heartbeat: %s", self._held.job_id, error)
+                _logger.warning("the job misses a heartbeat: %s", error)
 
     def _beat(self) -> None:
         latest = self._latest
@@ -118,7 +132,7 @@ def _compute(
     except SoftTimeLimitExceeded:
         return Failure(FailureKind.TIME_LIMIT, leases.time_limit_sentence(settings))
     except Exception as error:
-        _logger.exception("job %s failed in attempt %d", held.job_id, held.attempt)
+        _logger.exception("the engine failed")
         sentence = f"The computation stopped on an internal error ({type(error).__name__}); the log has the details."
         return Failure(FailureKind.INTERNAL, sentence)
     failures = [point.failure for point in points if point.failure is not None]

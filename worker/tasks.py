@@ -5,8 +5,10 @@ from functools import cache
 from uuid import UUID
 
 from celery import Celery
+from celery.signals import setup_logging
 from sqlalchemy.orm import Session, sessionmaker
 
+from app import logs
 from app.db import make_engine, session_factory
 from app.processes import end_with_parent
 from app.queue import CHUNK_QUEUE_NAME, QUEUE_NAME, TASK_NAME, celery_application
@@ -49,7 +51,6 @@ def _worker_options(settings: Settings) -> dict[str, object]:
         "task_time_limit": settings.hard_time_limit_seconds,
         "worker_cancel_long_running_tasks_on_connection_loss": False,
         "worker_concurrency": settings.worker_processes,
-        "worker_hijack_root_logger": False,
         "worker_max_tasks_per_child": settings.max_jobs_per_process,
         "worker_pool": "worker.pool:EmbeddedPool" if embedded else "prefork",
         "worker_prefetch_multiplier": 1,
@@ -58,9 +59,16 @@ def _worker_options(settings: Settings) -> dict[str, object]:
     }
 
 
+def _leave_logs(**_: object) -> None:
+    """Keep Celery from configuring the logs: it does so unless someone listens to its signal."""
+
+
 def _run_pool() -> None:
     end_with_parent()
-    application = worker_application(get_settings(), os.environ[OWNER])
+    settings = get_settings()
+    logs.configure(settings)
+    setup_logging.connect(_leave_logs)
+    application = worker_application(settings, os.environ[OWNER])
     quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat", "--hostname=galloping@%h"]
     queues = f"--queues={QUEUE_NAME},{CHUNK_QUEUE_NAME}"
     application.worker_main(["--quiet", "worker", "--loglevel=WARNING", queues, *quiet])

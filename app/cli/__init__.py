@@ -13,6 +13,7 @@ app = typer.Typer(
 for command in (
     lines.analyse,
     service.serve,
+    service.api,
     service.worker,
     service.migrate,
     service.submit,

@@ -1,4 +1,4 @@
-"""Commands that run the service, and the one that sends it a line: `serve`, `worker`, `migrate`, `submit`."""
+"""Commands that run the service, and the one that sends it a line: `serve`, `api`, `worker`, `migrate`, `submit`."""
 # ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
 
 from typing import Annotated
@@ -21,14 +21,26 @@ from app.cli.common import (
     write,
 )
 
+Host = Annotated[str, typer.Option(help="Address to listen on.")]
+Port = Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")]
+
 
 def serve(
-    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8000,
+    host: Host = "127.0.0.1",
+    port: Port = 8000,
     data_dir: DataDirectory = None,
 ) -> None:
     """Run the service with its embedded database, broker and worker; SIGTERM ends it cleanly."""
     from app.serve import serve as run
+
+    with operator_told():
+        code = run(read_settings(data_dir), host, port)
+    raise typer.Exit(code)
+
+
+def api(host: Host = "127.0.0.1", port: Port = 8000, data_dir: DataDirectory = None) -> None:
+    """Run the API alone, on a database that is migrated; workers are processes of their own."""
+    from app.serve import api as run
 
     with operator_told():
         code = run(read_settings(data_dir), host, port)

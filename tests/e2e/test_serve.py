@@ -1,6 +1,7 @@
 """`galloping serve` as a whole: the job by HTTP, a clean end, and a start after everything was killed."""
 
 import contextlib
+import json
 import socket
 import time
 from collections.abc import Iterator
@@ -66,6 +67,7 @@ def wait_for(client: httpx.Client, location: str, state: str) -> None:
 
 def test_job_by_http_and_a_clean_end(settings: Settings, sessions: sessionmaker[Session]) -> None:
     with serving(settings, free_port()) as (process, client):
+        client.headers["X-Request-ID"] = "asset-17"
         location = submit(client, short_request())
         wait_for(client, location, "successful")
         rows = client.get(f"{location}/results/limit-cycles").raise_for_status().json()
@@ -75,6 +77,11 @@ def test_job_by_http_and_a_clean_end(settings: Settings, sessions: sessionmaker[
         assert process.wait(20.0) == 0
         assert time.monotonic() - start < 15.0
         assert group(process) == []
+    written = (settings.data_dir / "process.log").read_text().splitlines()
+    lines = [json.loads(line) for line in written if line.startswith("{")]  # Celery prints a warning to root
+    of_job = [line["event"] for line in lines if line.get("job_id") == location.rpartition("/")[2]]
+    assert of_job == ["job begins", "job ends"]  # from the worker, under the id of the request to the API
+    assert {line["request_id"] for line in lines if "job_id" in line} == {"asset-17"}
 
 
 def test_next_start_goes_on_where_it_was(settings: Settings, sessions: sessionmaker[Session]) -> None:
