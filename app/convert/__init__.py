@@ -4,6 +4,7 @@ from app.convert.check import check, read, request_faults, with_further_faults
 from app.convert.clearance import ellipse
 from app.convert.fit import fit
 from app.convert.run import TABLES, Advance, PointResult, Table, columns, run
+from app.convert.shapes import mode_shapes
 from app.convert.stack import NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
 from engine import ENGINE_VERSION
 
@@ -18,6 +19,7 @@ __all__ = [
     "columns",
     "ellipse",
     "fit",
+    "mode_shapes",
     "read",
     "read_analysis",
     "read_line",

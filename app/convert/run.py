@@ -107,7 +107,7 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
     from engine.analysis import analyse  # noqa: PLC0415 - the API and `galloping --help` need no solver
 
     try:
-        line, analysis = _specification(request, values)
+        line, analysis = specification(request, values)
         progress = analyse(line, analysis)
         while True:
             try:
@@ -122,7 +122,14 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
         yield failed_point(error, number, values)
 
 
-def _specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:
+def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:
+    """Return what the engine is asked at one point of a request.
+
+    Raises
+    ------
+    pydantic.ValidationError, InvalidSpec
+        If the line is at fault there.
+    """
     line, analysis, faults = gather(
         SoundParts.of(study.varied(request.line, study.settings(request.study, values))), request.analysis
     )

@@ -5,7 +5,8 @@ Figures are made as objects, without pyplot and its global state.
 
 from app.plots.amplitudes import amplitude
 from app.plots.common import MEDIA_TYPES, Extension
+from app.plots.modes import modes
 from app.plots.orbits import orbit
 from app.plots.studies import Abscissa, Study, study
 
-__all__ = ["MEDIA_TYPES", "Abscissa", "Extension", "Study", "amplitude", "orbit", "study"]
+__all__ = ["MEDIA_TYPES", "Abscissa", "Extension", "Study", "amplitude", "modes", "orbit", "study"]

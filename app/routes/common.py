@@ -18,7 +18,7 @@ RETRY_SECONDS = "1"
 ENDED = frozenset({JobStatus.SUCCESSFUL, JobStatus.FAILED, JobStatus.DISMISSED})
 
 _TABLE_LINKS = ("frequencies", "critical-wind-speeds", "limit-cycles")
-_PLOT_LINKS = ("amplitude", "orbit", "study")
+_PLOT_LINKS = ("amplitude", "orbit", "modes", "study")
 
 
 def _settings(request: Request) -> Settings:

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import convert, export, results
+from app import batches, convert, export, results
 from app.auth import Caller
 from app.convert import Table
 from app.errors import ProblemError, ProblemKind
@@ -20,7 +20,7 @@ from app.tables import Job, JobStatus
 
 router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
 
-Picture = Literal["amplitude", "orbit"]
+Picture = Literal["amplitude", "orbit", "modes"]
 PictureFormat = Literal["svg", "png"]
 Rows = Iterator[dict[str, object]]
 Pieces = Callable[[Session], Iterator[str]]
@@ -131,15 +131,35 @@ def plot(
     readers: Readers,
     point: Annotated[int, Query(ge=0, description="Point of a study")] = 0,
 ) -> Response:
-    """Draw the amplitudes over wind speed, or the orbits where they are observed."""
+    """Draw the amplitudes over wind speed, the orbits where they are observed, or the mode shapes of both models."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
     job = _ended_job(readers, caller, job_id)
     with readers() as session:
         found = _point_rows(session, job_id, point)
+        if picture == "modes":
+            found["shapes"] = _shapes(session, job, point)
     title = job.name or str(job.id)
-    draw = plots.amplitude if picture == "amplitude" else plots.orbit
+    draw = {"amplitude": plots.amplitude, "orbit": plots.orbit, "modes": plots.modes}[picture]
     return Response(draw(title, found, extension), media_type=plots.MEDIA_TYPES[extension])
+
+
+def _shapes(session: Session, job: Job, point: int) -> list[dict[str, Any]]:
+    """Compute the mode shapes of a point anew, which takes less than it would to keep them.
+
+    Raises
+    ------
+    ProblemError
+        404 if the line of the point has none.
+    """
+    document, place = job.document, point
+    if job.batch_id is not None:  # a chunk, whose points are lines of the batch
+        analysis, lines = batches.lines_of_chunk(session, job.id, job.batch_id)
+        document, place = {"line": next(x.document for x in lines if x.number == point), "analysis": analysis}, 0
+    try:
+        return convert.mode_shapes(document, place)
+    except (ArithmeticError, ValueError) as error:
+        raise ProblemError(ProblemKind.NOT_FOUND, f"The line has no mode shapes at point {point}.") from error
 
 
 def _ended_job(readers: sessionmaker[Session], caller: Caller, job_id: UUID) -> Job:
