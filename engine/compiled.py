@@ -10,7 +10,7 @@ from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution, solution
 
 try:
-    from engine import _kernels
+    from engine._kernels import balance, even_parts, monodromy
 
     AVAILABLE = True
 except ImportError:
@@ -45,7 +45,7 @@ def solved_balances(
     x = np.array(start, order="C")
     step, iterations = np.full(x.shape[0], np.inf), np.zeros(x.shape[0], dtype=np.intp)
     harmonics = (phase.shape[-1] // model.mass.shape[-1]) // 2
-    _kernels.balance(
+    balance(
         _parts(model),
         _shape(model),
         (x.shape[0], harmonics),
@@ -76,7 +76,7 @@ def product_over_period(
     """
     cycles, m, size = orbits[0].shape
     matrices = np.empty((cycles, 2 * m, 2 * m))
-    _kernels.monodromy(
+    monodromy(
         _parts(model),
         _shape(model),
         (basis[0].shape[1], size // 2),
@@ -84,6 +84,28 @@ def product_over_period(
         matrices,
     )
     return matrices
+
+
+def even_part(
+    polynomials: FloatArray, statics: FloatArray, member: IntArray, angle: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Evaluate the scalar equation of the explicit first harmonic as `engine.describing` would.
+
+    Parameters
+    ----------
+    polynomials, statics : (members, 4, 7) and (members, 3)
+    member, angle : arrays that broadcast to (...)
+        Where, and the amplitude R [rad].
+
+    Returns
+    -------
+    pair of arrays (..., 2)
+        The even part of the polynomial at both roots w^2 of its odd part, and those roots.
+    """
+    even, square = np.empty((2, *angle.shape, 2))
+    places = (polynomials, statics, np.broadcast_to(member, angle.shape), angle)
+    even_parts((polynomials.shape[0], angle.size), _contiguous(*places), (even, square))
+    return even, square
 
 
 def _shape(model: ReducedModel) -> tuple[int, int, int, int]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine import compiled
 from engine.aerodynamics import force
 from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray
 from engine.hybrid import ReducedModel, take
@@ -134,6 +135,8 @@ def _gains(alpha: FloatArray, angle: FloatArray) -> FloatArray:
 
 def _even_part(scalar: _Scalar, member: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the even part of the polynomial at both roots w^2 of its odd part, and those roots: (..., 2) each."""
+    if compiled.AVAILABLE:
+        return compiled.even_part(scalar.polynomials, scalar.static, member, angle)
     gains = _gains(_mean_angle(scalar.static[member], angle), angle)
     factors = np.concatenate([np.ones((*angle.shape, 1)), -gains], axis=-1)
     p = (factors[..., None, :] @ scalar.polynomials[member])[..., 0, :]

@@ -93,7 +93,9 @@ WIDE static void exponent(Workspace *w, double width)
     const double half = 0.5 * width, bracket = sqrt(3.0) / 12.0 * width * width;
     for (int i = 0; i < m; i++)
         for (int j = 0; j < n; j++) {
-            Lanes lower = j < m ? (Lanes){0} : second[i * n + j - m] - first[i * n + j - m];
+            Lanes lower = {0};
+            if (j >= m)
+                lower += second[i * n + j - m] - first[i * n + j - m];
             for (int k = 0; k < m; k++)
                 lower += second[i * n + m + k] * first[k * n + j] - first[i * n + m + k] * second[k * n + j];
             result[i * n + j] = bracket * (first[i * n + j] - second[i * n + j]) + (j == m + i ? width : 0.0);

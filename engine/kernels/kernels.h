@@ -7,9 +7,9 @@
 
 /* Eight states, samples or steps side by side: arithmetic on one of these is arithmetic on all. */
 #define LANES 8
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
+typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
 
-/* Two versions of a function, of which the loader takes the one that the processor has the instructions for. */
+/* Versions of a function, of which the loader takes the one that the processor has the instructions for. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__)
 #define WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
@@ -33,12 +33,10 @@ size_t load_scratch(const Model *model);
 /* Evaluate f (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m). Theory section 5. */
 void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch);
 
-/* Factorize a matrix with partial pivoting in place; rows are pointers and are swapped with those of the right side.
- * Return 0 if a pivot vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
-int factorize(int n, double **rows, int *pivots);
-
-/* Solve with these factors in place. */
-void substitute(int n, double *const *rows, const int *pivots, double *x);
+/* Solve a system by elimination with partial pivoting. Row i holds the coefficients, its right side as entry n, and then
+ * at least LANES zeros; the solution takes the place of the right sides, and the rest is lost. Return 0 if a pivot
+ * vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
+int eliminate(int n, double **rows);
 
 /* What Newton's method is told, engine.newton.Options. */
 typedef struct {
@@ -72,5 +70,17 @@ typedef struct {
 
 /* Integrate the linearized equations over one period; return 0 if memory is short. Theory section 7.3. */
 int integrate_monodromies(const Model *stack, const Monodromies *wanted);
+
+/* Where the explicit first harmonic is wanted: polynomials (members, 4, 7) and statics (members, 3) as in
+ * engine.describing; member, angle (count); even, square (count, 2). */
+typedef struct {
+    ptrdiff_t count;
+    const ptrdiff_t *member;
+    const double *polynomials, *statics, *angle;
+    double *even, *square;
+} EvenParts;
+
+/* Evaluate the even part of the characteristic polynomial at the roots w^2 of its odd part. Theory section 7.1. */
+void evaluate_even_parts(const EvenParts *wanted);
 
 #endif

@@ -127,9 +127,27 @@ static PyObject *monodromy(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, done);
 }
 
+static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
+{
+    Buffers buffers = {.count = 0};
+    PyObject *polynomials, *statics, *member, *angle, *even, *square;
+    Py_ssize_t members, count;
+    if (!PyArg_ParseTuple(arguments, "(nn)(OOOO)(OO)", &members, &count, &polynomials, &statics, &member, &angle, &even,
+                          &square))
+        return NULL;
+    EvenParts wanted = {.count = count};
+    if ((wanted.polynomials = REALS(polynomials, members * 28)) && (wanted.statics = REALS(statics, members * 3))
+        && (wanted.member = INDICES(member, count)) && within(wanted.member, count, members)
+        && (wanted.angle = REALS(angle, count)) && (wanted.even = RESULT(even, 2 * count))
+        && (wanted.square = RESULT(square, 2 * count)))
+        evaluate_even_parts(&wanted);
+    return finished(&buffers, 1);
+}
+
 static PyMethodDef methods[] = {
     {"balance", balance, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
     {"monodromy", monodromy, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
+    {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},
     {NULL, NULL, 0, NULL},
 };
 

@@ -10,10 +10,12 @@ import pytest
 from engine import compiled
 from engine.arrays import FloatArray, IntArray
 from engine.cycles import Cycles, energy_starts, find_cycles
+from engine.describing import explicit_cycles
 from engine.floquet import floquet, monodromy
 from engine.harmonic import Orbits, balance
 from engine.hybrid import ReducedModel, take
 from engine.newton import Options, Solution
+from engine.spec import Analysis, Closure
 from tests.builders import hybrid, source_line
 from tests.engine.test_harmonic import MODELS, random_orbits
 
@@ -76,6 +78,19 @@ def test_multipliers_are_those_of_the_numpy_form(name: str, both: pytest.MonkeyP
     assert known.any()
     for mine, theirs in zip(found[known], expected[known], strict=True):
         assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-11 * np.abs(theirs).max())
+
+
+def test_explicit_cycles_are_those_of_the_numpy_form(both: pytest.MonkeyPatch) -> None:
+    closure = Analysis(closure=Closure.PUBLISHED)
+    model = perturbed(hybrid(source_line(1, torsional_ratio=0.0308), 2, closure))
+    model, winds = take(model, np.repeat(np.arange(4), COPIES)), np.tile(np.linspace(3.0, 14.0, COPIES), 4)
+    found = explicit_cycles(model, winds)
+    both.setattr(compiled, "AVAILABLE", False)
+    expected = explicit_cycles(model, winds)
+    assert found.member.size > 4 * COPIES
+    assert found.member.tolist() == expected.member.tolist()
+    assert found.angle == pytest.approx(expected.angle, rel=1e-12)
+    assert found.angular_frequency == pytest.approx(expected.angular_frequency, rel=1e-12, nan_ok=True)
 
 
 def cycles_of(model: ReducedModel) -> Cycles:
