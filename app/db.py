@@ -14,6 +14,7 @@ from app.tables import UtcDateTime
 
 _BUSY_SECONDS = 30.0
 _THREADS = 40
+_CLOCK = "time by the database's clock"
 
 
 def make_engine(settings: Settings) -> Engine:
@@ -52,10 +53,18 @@ def session_factory(engine: Engine, *, read_only: bool = False) -> sessionmaker[
 
 
 def database_time(session: Session) -> datetime:
-    """Return the time in UTC by the database's clock, which workers on machines with differing clocks share."""
-    if session.get_bind().dialect.name == "postgresql":
-        return session.execute(select(func.clock_timestamp(type_=UtcDateTime))).scalar_one()
-    return datetime.now(UTC)
+    """Return the time in UTC by the database's clock, which workers on machines with differing clocks share.
+
+    A server is asked once a transaction, which is short.
+    """
+    if session.get_bind().dialect.name != "postgresql":
+        return datetime.now(UTC)
+    asked_in, moment = session.info.get(_CLOCK, (None, None))
+    if asked_in is None or asked_in is not session.get_transaction():
+        moment = session.execute(select(func.clock_timestamp(type_=UtcDateTime))).scalar_one()
+        session.info[_CLOCK] = session.get_transaction(), moment
+    found: datetime = moment
+    return found
 
 
 def _read_only_options(engine: Engine) -> dict[str, Any]:

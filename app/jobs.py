@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
@@ -10,7 +10,7 @@ from typing import Any
 from uuid import UUID
 
 from sqlalchemy import ColumnElement, Select, delete, select, tuple_
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, defer, sessionmaker
 from uuid_utils.compat import uuid7
 
 from app.auth import Caller
@@ -52,6 +52,8 @@ def create(
 ) -> Job:
     """Add an accepted job that is not yet dispatched, with its tags and first event, for one commit by the caller.
 
+    Nothing is written before the session is flushed, so that jobs made together are written together.
+
     Raises
     ------
     ValueError
@@ -62,14 +64,17 @@ def create(
         owner=caller.owner,
         created_at=database_time(session),
         status=JobStatus.ACCEPTED,
+        progress=0.0,
+        step="",
+        attempt=0,
+        cancel_requested=False,
         name=name,
         asset_id=asset_id,
         document=dict(document),
         input_hash=input_hash(document),
-        tags=[JobTag(key=key, value=value) for key, value in (tags or {}).items()],
+        tags=[JobTag(key=key, value=value) for key, value in sorted((tags or {}).items())],
     )
     session.add(job)
-    session.flush()
     record(session, job.id, JobEventKind.ACCEPTED)
     return job
 
@@ -89,6 +94,14 @@ def input_hash(document: Mapping[str, Any]) -> str:
 def get(session: Session, owner: str, job_id: UUID) -> Job | None:
     """Return a job with its tags, or None if the owner has none of that id."""
     return session.scalars(_of(owner, job_id)).one_or_none()
+
+
+def look_up(sessions: sessionmaker[Session], job_ids: Sequence[UUID]) -> list[Job | None]:
+    """Return the jobs of these ids, whoever owns them, with their tags and without their documents."""
+    statement = select(Job).where(Job.id.in_(job_ids)).options(defer(Job.document, raiseload=True))
+    with sessions() as session:
+        found = {job.id: job for job in session.scalars(statement)}
+    return [found.get(job_id) for job_id in job_ids]
 
 
 def page(

@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 from typing import Any
 
 from fastapi import FastAPI
@@ -11,7 +12,9 @@ from app import errors
 from app.access import Access
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
+from app.groups import Groups, committed_together
 from app.head import HeadAsGet
+from app.jobs import look_up
 from app.queue import Sender, celery_application
 from app.routes import aerodynamics, batch_results, batches, documentation, health, jobs, reference, results
 from app.settings import Settings, get_settings
@@ -50,6 +53,8 @@ def create_app(settings: Settings | None = None) -> Service:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         yield
+        for groups in (app.state.inbox, app.state.dispatcher, app.state.statuses):  # in the order of their work
+            await groups.close()
         app.state.sender.close()
         database.dispose()
 
@@ -66,6 +71,9 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
+    app.state.inbox = Groups("inbox", partial(committed_together, app.state.writers))
+    app.state.dispatcher = Groups("dispatcher", app.state.sender.send_together)
+    app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
     for module in (jobs, results, batches, batch_results, aerodynamics, reference, health):

@@ -121,6 +121,10 @@ class Sender:
             return False
         return True
 
+    def send_together(self, job_ids: Sequence[UUID]) -> list[bool]:
+        """Send the committed jobs of many requests; every one of them learns how it went."""
+        return [self.send(job_ids)] * len(job_ids)
+
     def close(self) -> None:
         """Close the connections to the broker."""
         self.application.close()

@@ -1,5 +1,6 @@
 """What several routes share: the state of the application, finding a job, and its status document."""
 
+from collections.abc import Callable
 from typing import Annotated, Any
 from uuid import UUID
 
@@ -9,9 +10,12 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import jobs
 from app.auth import LOCAL, Caller
 from app.errors import ProblemError, ProblemKind
+from app.groups import Groups
 from app.queue import Sender
 from app.settings import Settings
 from app.tables import Job, JobStatus
+
+Change = Callable[[Session], Any]
 
 PREFIX = "/v1"
 RETRY_SECONDS = "1"
@@ -21,22 +25,23 @@ _TABLE_LINKS = ("frequencies", "critical-wind-speeds", "limit-cycles")
 _PLOT_LINKS = ("amplitude", "orbit", "modes", "study")
 
 
-def _settings(request: Request) -> Settings:
+# The dependencies are coroutines, since a plain function would be called in a thread of its own at every request.
+async def _settings(request: Request) -> Settings:
     settings: Settings = request.app.state.settings
     return settings
 
 
-def _readers(request: Request) -> sessionmaker[Session]:
+async def _readers(request: Request) -> sessionmaker[Session]:
     factory: sessionmaker[Session] = request.app.state.readers
     return factory
 
 
-def _writers(request: Request) -> sessionmaker[Session]:
+async def _writers(request: Request) -> sessionmaker[Session]:
     factory: sessionmaker[Session] = request.app.state.writers
     return factory
 
 
-def _sender(request: Request) -> Sender:
+async def _sender(request: Request) -> Sender:
     sender: Sender = request.app.state.sender
     return sender
 
@@ -46,11 +51,43 @@ async def _caller(request: Request) -> Caller:
     return caller
 
 
+async def _inbox(request: Request) -> Groups[Change, Any]:
+    inbox: Groups[Change, Any] = request.app.state.inbox
+    return inbox
+
+
+async def _dispatcher(request: Request) -> Groups[UUID, bool]:
+    dispatcher: Groups[UUID, bool] = request.app.state.dispatcher
+    return dispatcher
+
+
+async def _statuses(request: Request) -> Groups[UUID, Job | None]:
+    statuses: Groups[UUID, Job | None] = request.app.state.statuses
+    return statuses
+
+
 SettingsOf = Annotated[Settings, Depends(_settings)]
 Readers = Annotated[sessionmaker[Session], Depends(_readers)]
 Writers = Annotated[sessionmaker[Session], Depends(_writers)]
 SenderOf = Annotated[Sender, Depends(_sender)]
+Inbox = Annotated[Groups[Change, Any], Depends(_inbox)]
+Dispatcher = Annotated[Groups[UUID, bool], Depends(_dispatcher)]
+Statuses = Annotated[Groups[UUID, Job | None], Depends(_statuses)]
 CallerOf = Annotated[Caller, Depends(_caller)]
+
+
+async def find_status(statuses: Groups[UUID, Job | None], caller: Caller, job_id: UUID) -> Job:
+    """Return a job of the caller's owner with all but its document.
+
+    Raises
+    ------
+    ProblemError
+        404 if the owner has none of that id, whoever else may have one.
+    """
+    job = await statuses.ask(job_id)
+    if job is None or job.owner != caller.owner:
+        raise _no_job(job_id)
+    return job
 
 
 def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
@@ -63,8 +100,12 @@ def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
     """
     job = jobs.get(session, caller.owner, job_id)
     if job is None:
-        raise ProblemError(ProblemKind.NOT_FOUND, f"There is no job {job_id}.")
+        raise _no_job(job_id)
     return job
+
+
+def _no_job(job_id: UUID) -> ProblemError:
+    return ProblemError(ProblemKind.NOT_FOUND, f"There is no job {job_id}.")
 
 
 def job_address(job_id: UUID) -> str:

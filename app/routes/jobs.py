@@ -1,14 +1,17 @@
 """Jobs: submitted, looked at, listed, cancelled."""
 
 from datetime import UTC, datetime
-from typing import Annotated
+from functools import partial
+from typing import Annotated, Any
 from urllib.parse import urlencode
 from uuid import UUID
 
+from anyio import to_thread
 from fastapi import APIRouter, Body, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
+from sqlalchemy.orm import Session
 
 from app import convert, jobs, paging, schemas
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
@@ -19,11 +22,14 @@ from app.routes.common import (
     PREFIX,
     RETRY_SECONDS,
     CallerOf,
+    Dispatcher,
+    Inbox,
     Readers,
-    SenderOf,
     SettingsOf,
+    Statuses,
     Writers,
     find_job,
+    find_status,
     job_address,
     job_document,
 )
@@ -102,24 +108,28 @@ class ListQuery(BaseModel):
         ),
     },
 )
-def submit(
+async def submit(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
     caller: CallerOf,
-    writers: Writers,
-    sender: SenderOf,
+    inbox: Inbox,
+    dispatcher: Dispatcher,
 ) -> JSONResponse:
     """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already."""
-    faults = convert.request_faults(document)
+    # Every point of a study is looked at, which may take a while; a line alone takes less than the way to a thread.
+    check = partial(convert.request_faults, document)
+    faults = check() if document.study is None else await to_thread.run_sync(check)
     if faults:
         raise invalid_document(faults)
     line = document.line
-    with writers.begin() as session:
-        kept = document.model_dump(mode="json", by_alias=True, exclude={"study"} if document.study is None else None)
+    kept = document.model_dump(mode="json", by_alias=True, exclude={"study"} if document.study is None else None)
+
+    def make(session: Session) -> tuple[UUID, dict[str, Any]]:
         job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
-        session.refresh(job, ["tags"])
-        status = job_document(job)
-    sender.send([job.id])
-    return JSONResponse(status, 202, headers={"Location": job_address(job.id), "Retry-After": RETRY_SECONDS})
+        return job.id, job_document(job)
+
+    job_id, accepted = await inbox.ask(make)
+    dispatcher.put(job_id)
+    return JSONResponse(accepted, 202, headers={"Location": job_address(job_id), "Retry-After": RETRY_SECONDS})
 
 
 @router.get(
@@ -127,12 +137,11 @@ def submit(
     response_model=JobDocument,
     responses={200: documentation.body("Status", ("application/json", documentation.FINISHED_JOB)), **_COMMON},
 )
-def status(job_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
+async def status(job_id: UUID, caller: CallerOf, statuses: Statuses) -> JSONResponse:
     """Tell how far a job is."""
-    with readers() as session:
-        job = find_job(session, caller, job_id)
-        headers = {} if job.status in ENDED else {"Retry-After": RETRY_SECONDS}
-        return JSONResponse(job_document(job), headers=headers)
+    job = await find_status(statuses, caller, job_id)
+    headers = {} if job.status in ENDED else {"Retry-After": RETRY_SECONDS}
+    return JSONResponse(job_document(job), headers=headers)
 
 
 @router.get(

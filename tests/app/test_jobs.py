@@ -76,6 +76,7 @@ def test_pages_hold_every_job_once_newest_first(sessions: sessionmaker[Session])
 def test_filters(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
         north = jobs.create(session, LOCAL, DOCUMENT, asset_id="L1", tags={"region": "north", "ice": "C"})
+    with sessions.begin() as session:
         south = jobs.create(session, LOCAL, DOCUMENT, asset_id="L2", tags={"region": "south", "ice": "C"})
     cancel(sessions, south.id)
 

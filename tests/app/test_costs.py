@@ -1,0 +1,104 @@
+"""What a request and a line cost in statements and messages: counts, which no clock and no machine changes."""
+
+import contextlib
+from collections.abc import Iterator
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import Engine, event
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import batch_results, batches, jobs, leases
+from app.auth import LOCAL
+from app.convert import PointResult
+from app.examples import example
+from app.groups import committed_together
+from app.intake import Incoming, Receipt, receive
+from app.settings import Settings
+from tests.app.lines import SHORT
+from tests.documents import point_result, short_request
+
+LINES = 400
+
+
+@contextlib.contextmanager
+def counted() -> Iterator[list[str]]:
+    """Give a list that gathers the statements of every engine, COPY apart, which is the driver's own."""
+    statements: list[str] = []
+
+    def note(_connection: Any, _cursor: Any, statement: str, *_: Any) -> None:
+        if not statement.startswith("BEGIN"):  # on PostgreSQL the driver sends it along with the first statement
+            statements.append(statement)
+
+    event.listen(Engine, "before_cursor_execute", note)
+    try:
+        yield statements
+    finally:
+        event.remove(Engine, "before_cursor_execute", note)
+
+
+def most_statements(settings: Settings, posts: int) -> int:
+    """Return how many statements posts may take that come together.
+
+    A server is asked for the time, and jobs, tags and events are a statement each. SQLite, which is in this process,
+    hands out the numbers of events one by one.
+    """
+    return 2 + posts if settings.database_url.startswith("sqlite") else 4
+
+
+def test_a_post_is_four_statements_however_many_come_together(
+    settings: Settings, sessions: sessionmaker[Session]
+) -> None:
+    def make(session: Session) -> UUID:
+        return jobs.create(session, LOCAL, short_request(), tags={"a": "b", "c": "d"}).id
+
+    for posts in (1, 40):
+        with counted() as statements:
+            made = committed_together(sessions, [make] * posts)
+        assert len(set(made)) == posts
+        written = {text.split()[2] for text in statements if text.startswith("INSERT")}
+        assert written == {"jobs", "job_tags", "job_events"}
+        assert len(statements) <= most_statements(settings, posts)
+
+
+def test_looks_at_jobs_are_two_statements_however_many_come_together(sessions: sessionmaker[Session]) -> None:
+    with sessions.begin() as session:
+        made = [jobs.create(session, LOCAL, short_request(), tags={"n": str(n)}).id for n in range(40)]
+    for ids in (made[:1], made):
+        with counted() as statements:
+            found = jobs.look_up(sessions, ids)
+        assert [job and job.id for job in found] == ids
+        assert len(statements) == 2
+        assert not any("document" in text for text in statements)
+
+
+def test_a_batch_is_a_few_statements_and_a_message_for_hundreds_of_lines(
+    settings: Settings, sessions: sessionmaker[Session]
+) -> None:
+    with counted() as statements:
+        receipt = received(settings, sessions)
+    assert len(receipt.chunk_ids) == 2  # 256 lines at most
+    assert len(statements) <= 10
+    with counted() as statements:
+        for chunk_id in receipt.chunk_ids:
+            work_off(sessions, chunk_id)
+    assert len(statements) <= 10 * len(receipt.chunk_ids)
+    with sessions() as session, counted() as statements:
+        assert len(list(batch_results.documents(session, receipt.batch_id))) == LINES
+    assert len(statements) <= 1 + LINES // 100
+
+
+def received(settings: Settings, sessions: sessionmaker[Session]) -> Receipt:
+    lines = ({**example("c11-twin"), "reference": f"r{n}"} for n in range(LINES))
+    return receive(sessions, settings, LOCAL, Incoming(SHORT, lines), atomic=False)
+
+
+def work_off(sessions: sessionmaker[Session], chunk_id: UUID) -> None:
+    """Claim a chunk, read its lines and store a result for each."""
+    with sessions.begin() as session:
+        held = leases.claim(session, chunk_id, "here", 60.0)
+        assert held is not None and held.batch_id is not None
+        _, lines = batches.lines_of_chunk(session, held.job_id, held.batch_id)
+    points: list[PointResult] = [point_result(line.number) for line in lines]
+    with sessions.begin() as session:
+        assert leases.finish(session, held, points)

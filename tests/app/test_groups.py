@@ -1,0 +1,116 @@
+import asyncio
+import threading
+from collections.abc import Sequence
+from uuid import UUID
+
+import pytest
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import jobs
+from app.auth import LOCAL
+from app.groups import Groups, committed_together
+from app.jobs import JobFilters
+from app.tables import Job
+from tests.documents import add_job, history
+
+
+def test_what_is_asked_meanwhile_is_answered_as_one_group() -> None:
+    sizes: list[int] = []
+    first_may_end = threading.Event()
+
+    def answer(questions: Sequence[int]) -> list[int]:
+        sizes.append(len(questions))
+        assert first_may_end.wait(30.0)
+        return [2 * question for question in questions]
+
+    async def ask() -> list[int]:
+        groups = Groups("test", answer)
+        asked = [asyncio.ensure_future(groups.ask(number)) for number in range(150)]
+        await asyncio.sleep(0)
+        first_may_end.set()
+        found = await asyncio.gather(*asked)
+        await groups.close()
+        return found
+
+    assert asyncio.run(ask()) == [2 * number for number in range(150)]
+    assert sum(sizes) == 150
+    assert len(sizes) <= 3
+    assert max(sizes) == 100
+
+
+def test_an_exception_reaches_whoever_asked() -> None:
+    def answer(questions: Sequence[int]) -> list[int | Exception]:
+        if 13 in questions:
+            raise OSError("the whole group")
+        return [ValueError(f"{question}") if question < 0 else question for question in questions]
+
+    async def ask() -> None:
+        groups = Groups("test", answer)
+        assert await groups.ask(1) == 1
+        with pytest.raises(ValueError, match="-1"):
+            await groups.ask(-1)
+        with pytest.raises(OSError, match="whole group"):
+            await groups.ask(13)
+        assert await groups.ask(2) == 2
+        await groups.close()
+
+    asyncio.run(ask())
+
+
+def test_who_has_gone_holds_up_nobody_and_closing_waits_for_the_rest() -> None:
+    answered: list[int] = []
+
+    def answer(questions: Sequence[int]) -> Sequence[int]:
+        answered.extend(questions)
+        return questions
+
+    async def ask() -> None:
+        groups = Groups("test", answer)
+        gone, stays = asyncio.ensure_future(groups.ask(1)), groups.put(2)
+        await asyncio.sleep(0)
+        gone.cancel()
+        assert await stays == 2
+        groups.put(3)
+        await groups.close()
+
+    asyncio.run(ask())
+    assert sorted(answered) == [1, 2, 3]
+
+
+def test_work_of_many_is_committed_together(sessions: sessionmaker[Session]) -> None:
+    def make(session: Session) -> UUID:
+        return jobs.create(session, LOCAL, {"line": {}}).id
+
+    made = committed_together(sessions, [make] * 20)
+    with sessions() as session:
+        found = jobs.page(session, LOCAL.owner, JobFilters(), None, 100)
+    assert {job.id for job in found} == set(made)
+    assert len({job.created_at for job in found}) == (1 if sessions.kw["bind"].dialect.name == "postgresql" else 20)
+    assert history(sessions, found[0].id) == [("accepted", 0)]
+
+
+def test_work_that_fails_leaves_the_others_alone(sessions: sessionmaker[Session]) -> None:
+    there = add_job(sessions)
+
+    def make(session: Session) -> str:
+        return str(jobs.create(session, LOCAL, {"line": {}}).id)
+
+    def make_again(session: Session) -> str:
+        session.add(Job(**_columns(session, there)))
+        return "never"
+
+    def refuse(session: Session) -> str:
+        make(session)
+        raise ValueError("refused")
+
+    first, refused, repeated, last = committed_together(sessions, [make, refuse, make_again, make])
+    assert isinstance(refused, ValueError) and isinstance(repeated, Exception)
+    with sessions() as session:
+        found = {str(job.id) for job in jobs.page(session, LOCAL.owner, JobFilters(), None, 100)}
+    assert found == {str(there), first, last}
+
+
+def _columns(session: Session, job_id: UUID) -> dict[str, object]:
+    with Session(session.get_bind()) as other:
+        job = other.get_one(Job, job_id)
+        return {column.name: getattr(job, column.name) for column in Job.__table__.columns}
