@@ -12,7 +12,9 @@ from app import convert
 from app.results import PEAKS, STATIC, tables_of, unpacked
 from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
 
-BatchTable = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations", "summary"]
+BatchTable = Literal[
+    "frequencies", "internal_resonances", "critical_wind_speeds", "limit_cycles", "bifurcations", "summary"
+]
 
 _LINES_A_FETCH = 200
 _LABELS = ("number", "reference", "asset_id")
@@ -34,7 +36,7 @@ def rows(session: Session, batch_id: UUID, table: BatchTable) -> Iterator[dict[s
             yield _summary(item)
         elif _is_solved(item):
             labels = _labels(item)
-            for row in tables_of(item.tables)[table]:
+            for row in tables_of(item.tables).get(table, ()):
                 yield {**labels, **row}
 
 

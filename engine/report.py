@@ -7,6 +7,7 @@ from engine.hybrid import Discretization
 from engine.modes import DirectionalShapes
 from engine.outcome import Outcome
 from engine.profile import mean_mass
+from engine.resonance import resonance_rows
 from engine.result import DenHartog, LimitCycleRow, Orbit, Result, StaticState
 from engine.rows import Found, FrequencyTable, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
 from engine.spec import AirflowSpoiler, Analysis, Line
@@ -49,11 +50,13 @@ def assembled(
         outside = sum(cycle.outcome.value == "outside_fit" for cycle in cycles)
         fit = [f"{outside} cycles leave the range of angles to which the coefficients were fitted."] if outside else []
         said = line_warnings(line) + _twist_warnings(made, i)
+        natural = tuple(row for table in frequencies for row in table[i])
         results.append(
             Result(
                 static=_static_state(made, i),
                 den_hartog=_den_hartog(made, i),
-                frequencies=tuple(row for table in frequencies for row in table[i]),
+                frequencies=natural,
+                internal_resonances=resonance_rows(natural),
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 limit_cycles=cycles,
                 bifurcations=(),

@@ -44,6 +44,22 @@ class FrequencyRow:
 
 
 @dataclass(frozen=True, slots=True)
+class InternalResonanceRow:
+    """How near two natural frequencies without wind are to a ratio of small integers.
+
+    directions and nearest_ratio stand in the same order, such as "torsional:vertical" and "2:1"; detuning is
+    frequency_ratio over the nearest ratio, less 1.
+    """
+
+    model: Model
+    loops: int
+    directions: str
+    frequency_ratio: float
+    nearest_ratio: str
+    detuning: float
+
+
+@dataclass(frozen=True, slots=True)
 class CriticalWindSpeedRow:
     """One crossing of the imaginary axis by eigenvalues of the static state, theory section 6."""
 
@@ -59,7 +75,10 @@ class CriticalWindSpeedRow:
 
 @dataclass(frozen=True, slots=True)
 class LimitCycleRow:
-    """One motion at one wind speed: the equilibrium or a cycle; amplitudes are half of peak-to-peak (section 8)."""
+    """One motion at one wind speed: the equilibrium or a cycle; amplitudes are half of peak-to-peak (section 8).
+
+    The shares divide the mean kinetic energy between the directions; they are None where nothing moves.
+    """
 
     model: Model
     loops: int
@@ -79,6 +98,9 @@ class LimitCycleRow:
     vertical_ratio: float | None
     horizontal_ratio: float | None
     reduced_wind_speed: float | None
+    vertical_share: float | None
+    horizontal_share: float | None
+    torsional_share: float | None
     outcome: Outcome
 
 
@@ -117,6 +139,7 @@ class Result:
     static: StaticState
     den_hartog: DenHartog
     frequencies: tuple[FrequencyRow, ...]
+    internal_resonances: tuple[InternalResonanceRow, ...]
     critical_wind_speeds: tuple[CriticalWindSpeedRow, ...]
     limit_cycles: tuple[LimitCycleRow, ...]
     bifurcations: tuple[BifurcationRow, ...]

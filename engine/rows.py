@@ -14,6 +14,7 @@ from engine.hybrid import Discretization, ReducedModel, observation, take
 from engine.modes import assign, solve_symmetric
 from engine.outcome import Outcome, Stability
 from engine.profile import horizontal_position
+from engine.resonance import motion_shares
 from engine.result import CriticalWindSpeedRow, Direction, FrequencyRow, LimitCycleRow
 from engine.spec import Model
 from engine.stability import Crossings, at_wind, state_matrices, unstable_pairs
@@ -181,6 +182,8 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
         seen = observation(made, shapes[here], int(k))
         series[here] = seen.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
     amplitude = half_peak_to_peak(series)
+    mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[cycles.member]
+    shares = motion_shares(mass, cycles.orbits.coefficients, found.model.direction)
     outside = _outside_fit(found, made.sections.fitted_range[line])
     branch = _branch_numbers(found)
     for i in range(cycles.member.size):
@@ -190,6 +193,7 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
             cycles.floquet.stability[i],
             Outcome.OUTSIDE_FIT if outside[i] else Outcome.CONVERGED,
             amplitude=tuple(amplitude[i].tolist()),
+            shares=tuple(shares[i].tolist()),
             frequency=float(cycles.orbits.angular_frequency[i] / (2.0 * np.pi)),
             branch=int(branch[i]),
         )
@@ -208,18 +212,23 @@ class _Place:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """What was found there; amplitude holds V, W [m] and Theta [rad], frequency is in Hz."""
+    """What was found there; amplitude holds V, W [m] and Theta [rad], shares their part in the kinetic energy.
+
+    frequency is in Hz.
+    """
 
     kind: Literal["equilibrium", "periodic"]
     stability: Stability
     outcome: Outcome = Outcome.CONVERGED
     amplitude: tuple[float | None, ...] = (None, None, None)
+    shares: tuple[float | None, ...] = (None, None, None)
     frequency: float | None = None
     branch: int | None = None
 
 
 def _row(place: _Place, scales: _Scales, state: _State) -> LimitCycleRow:
     vertical, horizontal, torsional = state.amplitude
+    vertical_share, horizontal_share, torsional_share = state.shares
     sag, speed = float(scales.sag[place.line]), float(scales.speed[place.line])
     return LimitCycleRow(
         model=place.model,
@@ -240,6 +249,9 @@ def _row(place: _Place, scales: _Scales, state: _State) -> LimitCycleRow:
         vertical_ratio=None if vertical is None else vertical / sag,
         horizontal_ratio=None if horizontal is None else horizontal / sag,
         reduced_wind_speed=place.wind_speed / speed if np.isfinite(speed) else None,
+        vertical_share=vertical_share,
+        horizontal_share=horizontal_share,
+        torsional_share=torsional_share,
         outcome=state.outcome,
     )
 

@@ -13,11 +13,19 @@ from app.convert import study
 from app.convert.assemble import SoundParts, gather
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
-from engine.result import BifurcationRow, CriticalWindSpeedRow, FrequencyRow, LimitCycleRow, Result
+from engine.result import (
+    BifurcationRow,
+    CriticalWindSpeedRow,
+    FrequencyRow,
+    InternalResonanceRow,
+    LimitCycleRow,
+    Result,
+)
 
-Table = Literal["frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations"]
+Table = Literal["frequencies", "internal_resonances", "critical_wind_speeds", "limit_cycles", "bifurcations"]
 _ROW_TYPES: Mapping[Table, type[Any]] = {
     "frequencies": FrequencyRow,
+    "internal_resonances": InternalResonanceRow,
     "critical_wind_speeds": CriticalWindSpeedRow,
     "limit_cycles": LimitCycleRow,
     "bifurcations": BifurcationRow,

@@ -80,6 +80,7 @@ RESULT: dict[str, Any] = {
     "warnings": [],
     "engine_version": "0.1.0",
     "frequencies": [],
+    "internal_resonances": [],
     "critical_wind_speeds": [],
     "limit_cycles": [],
     "bifurcations": [],

@@ -21,13 +21,16 @@ from app.schemas.batch import BatchErrors
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
 BatchFormat = Literal["ndjson", "csv"]
-TableName = Literal["limit-cycles", "critical-wind-speeds", "frequencies", "bifurcations", "summary"]
+TableName = Literal[
+    "limit-cycles", "critical-wind-speeds", "frequencies", "internal-resonances", "bifurcations", "summary"
+]
 
 _MEDIA_TYPES: dict[BatchFormat, str] = {"ndjson": "application/x-ndjson", "csv": "text/csv"}
 _TABLES: dict[TableName, BatchTable] = {
     "limit-cycles": "limit_cycles",
     "critical-wind-speeds": "critical_wind_speeds",
     "frequencies": "frequencies",
+    "internal-resonances": "internal_resonances",
     "bifurcations": "bifurcations",
     "summary": "summary",
 }

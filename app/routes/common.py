@@ -21,7 +21,7 @@ PREFIX = "/v1"
 RETRY_SECONDS = "1"
 ENDED = frozenset({JobStatus.SUCCESSFUL, JobStatus.FAILED, JobStatus.DISMISSED})
 
-_TABLE_LINKS = ("frequencies", "critical-wind-speeds", "limit-cycles")
+_TABLE_LINKS = ("frequencies", "internal-resonances", "critical-wind-speeds", "limit-cycles")
 _PLOT_LINKS = ("amplitude", "orbit", "modes", "study")
 
 

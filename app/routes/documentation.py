@@ -40,6 +40,9 @@ _RESULT_CYCLE: dict[str, Any] = {
     "vertical_ratio": 0.1018,
     "horizontal_ratio": 0.0064,
     "reduced_wind_speed": 0.066,
+    "vertical_share": 0.9927,
+    "horizontal_share": 0.0034,
+    "torsional_share": 0.0039,
     "outcome": "converged",
 }
 _FREQUENCY: dict[str, Any] = {
@@ -49,6 +52,14 @@ _FREQUENCY: dict[str, Any] = {
     "horizontal_hz": 0.4460,
     "torsional_hz": 0.6343,
     "outcome": "converged",
+}
+_RESONANCE: dict[str, Any] = {
+    "model": "hybrid",
+    "loops": 1,
+    "directions": "horizontal:vertical",
+    "frequency_ratio": 0.9261,
+    "nearest_ratio": "1:1",
+    "detuning": -0.0739,
 }
 _CRITICAL: dict[str, Any] = {
     "model": "hybrid",
@@ -110,6 +121,7 @@ RESULT: dict[str, Any] = {
     },
     "den_hartog": {"coefficient": -0.1667, "unstable": True},
     "frequencies": [_FREQUENCY],
+    "internal_resonances": [_RESONANCE],
     "critical_wind_speeds": [_CRITICAL],
     "limit_cycles": [_RESULT_CYCLE],
     "bifurcations": [],
@@ -120,6 +132,7 @@ RESULT: dict[str, Any] = {
 }
 TABLE_EXAMPLES: dict[str, dict[str, Any]] = {
     "frequencies": _FREQUENCY,
+    "internal_resonances": _RESONANCE,
     "critical_wind_speeds": _CRITICAL,
     "limit_cycles": _RESULT_CYCLE,
 }

@@ -27,6 +27,7 @@ Pieces = Callable[[Session], Iterator[str]]
 
 _TABLES: dict[str, Table] = {
     "frequencies": "frequencies",
+    "internal-resonances": "internal_resonances",
     "critical-wind-speeds": "critical_wind_speeds",
     "limit-cycles": "limit_cycles",
 }
@@ -70,7 +71,7 @@ def whole(job_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse
 )
 def table(
     job_id: UUID,
-    table: Literal["frequencies", "critical-wind-speeds", "limit-cycles"],
+    table: Literal["frequencies", "internal-resonances", "critical-wind-speeds", "limit-cycles"],
     request: Request,
     caller: CallerOf,
     readers: Readers,

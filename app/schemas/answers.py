@@ -33,6 +33,15 @@ class Frequency(Row):
     outcome: Outcome = told("How the computation ended", "converged")
 
 
+class InternalResonance(Row):
+    """How near two natural frequencies without wind are to a ratio of small integers."""
+
+    directions: str = told("Whose frequencies are compared, in this order", "horizontal:vertical")
+    frequency_ratio: float = told("The first frequency over the second [1]", 0.9261)
+    nearest_ratio: str = told("Nearest ratio of integers up to 3", "1:1")
+    detuning: float = told("Frequency ratio over the nearest one, less 1 [1]", -0.0739)
+
+
 class CriticalWindSpeed(Row):
     """A wind speed at which the resting span loses or regains stability."""
 
@@ -65,6 +74,9 @@ class LimitCycle(Row):
     vertical_ratio: Number = told("Vertical amplitude over the static sag [1]", 0.1018)
     horizontal_ratio: Number = told("Horizontal amplitude over the static sag [1]", 0.0064)
     reduced_wind_speed: Number = told("Wind speed over frequency and span [1]", 0.066)
+    vertical_share: Number = told("Vertical share of the mean kinetic energy; null at rest [1]", 0.9927)
+    horizontal_share: Number = told("Horizontal share of the mean kinetic energy; null at rest [1]", 0.0034)
+    torsional_share: Number = told("Torsional share of the mean kinetic energy; null at rest [1]", 0.0039)
     outcome: Outcome = told("How the computation ended", "converged")
 
 
@@ -126,6 +138,9 @@ class ResultDocument(Answer):
     static: StaticState | list[StaticState] | None = told("Static state of the span", example_of(StaticState))
     den_hartog: DenHartog | list[DenHartog] | None = told("Den Hartog's criterion", example_of(DenHartog))
     frequencies: list[Frequency] = told("Natural frequencies", [example_of(Frequency)])
+    internal_resonances: list[InternalResonance] = told(
+        "Ratios of the natural frequencies", [example_of(InternalResonance)]
+    )
     critical_wind_speeds: list[CriticalWindSpeed] = told(
         "Wind speeds at which the resting span loses or regains stability", [example_of(CriticalWindSpeed)]
     )

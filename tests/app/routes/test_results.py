@@ -18,6 +18,7 @@ from tests.documents import point_result, short_request
 
 TABLES = {
     "frequencies": "frequencies",
+    "internal-resonances": "internal_resonances",
     "critical-wind-speeds": "critical_wind_speeds",
     "limit-cycles": "limit_cycles",
 }
