@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import FloatArray, merged
+from engine.competition import loop_competitions
 from engine.cycles import Cycles, explicit_starts, find_cycles
 from engine.family import Starts
 from engine.fem import FIELDS
@@ -16,15 +17,16 @@ from engine.hybrid import (
     discretize,
     finite_element_model,
     hybrid_model,
+    joint_model,
     take,
     with_published_load,
 )
 from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.outcome import Fault, InvalidSpec
 from engine.report import assembled
-from engine.result import Progress, Result
+from engine.result import LoopCompetitionRow, Progress, Result
 from engine.rows import Found, FrequencyTable, coupled_squares
-from engine.spec import Analysis, Line, Model, check_compatible
+from engine.spec import Analysis, Line, LoopCompetition, Model, check_compatible
 from engine.stability import critical_wind_speeds
 
 
@@ -86,7 +88,8 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
         if analysis.finite_element_loops:
             found.append((yield from _finite_element(prepared, prepared.modes, hybrid, analysis)))
     yield Progress(0.95, "result rows")
-    results = assembled(prepared.made, prepared.shapes, tuple(squares), tuple(found), analysis)
+    competitions = _competitions(prepared, hybrid, analysis)
+    results = assembled(prepared.made, prepared.shapes, tuple(squares), tuple(found), analysis, competitions)
     yield Progress(1.0, "done")
     return results
 
@@ -146,6 +149,14 @@ def _finite_element(
         cycles=find_cycles(model, winds, starts, analysis.harmonics),
         winds=winds,
     )
+
+
+def _competitions(prepared: _Prepared, hybrid: Found, analysis: Analysis) -> list[list[LoopCompetitionRow]]:
+    """Hold the stable cycles of the hybrid model against one another's loops, if that is asked for."""
+    if analysis.loop_competition is LoopCompetition.NEGLECTED:
+        return [[] for _ in prepared.made.lines]
+    joint = joint_model(prepared.made, prepared.shapes, analysis.loops, analysis)
+    return loop_competitions(prepared.made, joint, hybrid, analysis.loops)
 
 
 def _full_squares(modes: FullModes) -> FrequencyTable:

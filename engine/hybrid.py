@@ -84,7 +84,7 @@ def hybrid_model(
     -------
     ReducedModel
     """
-    mass, stiffness = _condensed(made.matrices, shapes, analysis.longitudinal_inertia)
+    mass, stiffness = _condensed(made.matrices, shapes.nodal[:, :, :, None], analysis.longitudinal_inertia)
     one_loop = np.diagonal(stiffness, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
     one_loop = one_loop / np.diagonal(mass, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
     picked = [shapes.loops.index(k) for k in loops]
@@ -98,6 +98,35 @@ def hybrid_model(
     nodal = _diagonal_fields(shapes.nodal[:, picked, 1:])
     load = _hybrid_load(made, nodal, analysis)
     return ReducedModel(mass, damping, stiffness, load, nodal, np.arange(3), unstable)
+
+
+def joint_model(
+    made: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
+) -> ReducedModel:
+    """Reduce to the hybrid model's shapes of several loops that may move together, with the exact load.
+
+    Parameters are those of `hybrid_model`; leading axis (lines,). The co-ordinates are f_v of each number of loops,
+    then f_w, then f_theta; damping is that which each has alone.
+    """
+    alone = hybrid_model(made, shapes, loops, analysis)
+    picked = [shapes.loops.index(k) for k in loops]
+    together = np.moveaxis(shapes.nodal[:, picked], 1, 2)[:, None]
+    mass, stiffness = (matrix[:, 0] for matrix in _condensed(made.matrices, together, analysis.longitudinal_inertia))
+    rates = np.diagonal(alone.damping, axis1=-2, axis2=-1).swapaxes(-1, -2)
+    nodal = np.moveaxis(alone.shapes, 1, 2).reshape(len(made.lines), -1, *alone.shapes.shape[-2:])
+    values = at_points(made.matrices, nodal)
+    load = span_load(made.lines, made.sections, made.matrices.weight, values[:, None], analysis.aerodynamic_model)
+    return ReducedModel(
+        mass=mass,
+        damping=_diagonal(rates.reshape(len(made.lines), -1)),
+        stiffness=stiffness,
+        load=take_load(load, (slice(None), 0)),
+        shapes=nodal,
+        direction=np.repeat(np.arange(3), len(loops)),
+        statically_unstable=np.asarray(
+            alone.statically_unstable.any(axis=1) | (np.linalg.eigvalsh(stiffness)[:, 0] <= 0.0)
+        ),
+    )
 
 
 def with_published_load(made: Discretization, model: ReducedModel) -> ReducedModel:
@@ -160,20 +189,22 @@ def observation(made: Discretization, shapes: FloatArray, loops: int) -> FloatAr
     return np.asarray(shapes[..., 2 * element : 2 * element + 3] @ values)
 
 
-def _condensed(
-    system: Matrices, shapes: DirectionalShapes, inertia: LongitudinalInertia
-) -> tuple[FloatArray, FloatArray]:
-    """Project onto f_u, f_v, f_w, f_theta and condense f_u: M and K (lines, loops, 3, 3), eqs. (18)-(20)."""
-    lines, loops, _, nodes = shapes.nodal.shape
-    spread = shapes.nodal[..., None] * np.eye(FIELDS)[:, None, :]
-    basis = spread.reshape(lines, loops, FIELDS, nodes * FIELDS)
+def _condensed(system: Matrices, nodal: FloatArray, inertia: LongitudinalInertia) -> tuple[FloatArray, FloatArray]:
+    """Project onto f_u, f_v, f_w, f_theta and condense f_u, eqs. (18)-(20).
+
+    nodal: (lines, groups, 4, k, nodes), k shapes of each direction that may move together; returns M and K
+    (lines, groups, 3 k, 3 k).
+    """
+    lines, groups, _, k, nodes = nodal.shape
+    spread = nodal[..., None] * np.eye(FIELDS)[:, None, None, :]
+    basis = spread.reshape(lines, groups, FIELDS * k, nodes * FIELDS)
     stiffness = basis @ system.stiffness[:, None] @ basis.swapaxes(-1, -2)
     mass = basis @ system.mass[:, None] @ basis.swapaxes(-1, -2)
-    follow = -stiffness[..., :1, 1:] / stiffness[..., :1, :1]
-    condensed = stiffness[..., 1:, 1:] + stiffness[..., 1:, :1] * follow
-    reduced = mass[..., 1:, 1:]
+    follow = -np.linalg.solve(stiffness[..., :k, :k], stiffness[..., :k, k:])
+    condensed = stiffness[..., k:, k:] + stiffness[..., k:, :k] @ follow
+    reduced = mass[..., k:, k:]
     if inertia is LongitudinalInertia.CONDENSED:
-        reduced = reduced + mass[..., :1, :1] * follow.swapaxes(-1, -2) * follow
+        reduced = reduced + follow.swapaxes(-1, -2) @ mass[..., :k, :k] @ follow
     return reduced, condensed
 
 

@@ -3,12 +3,13 @@
 import numpy as np
 
 from engine import ENGINE_VERSION
+from engine.comparison import model_comparisons
 from engine.hybrid import Discretization
 from engine.modes import DirectionalShapes
 from engine.outcome import Outcome
 from engine.profile import mean_mass
 from engine.resonance import resonance_rows
-from engine.result import DenHartog, LimitCycleRow, Orbit, Result, StaticState
+from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
 from engine.rows import Found, FrequencyTable, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
 from engine.spec import AirflowSpoiler, Analysis, Line
 
@@ -21,6 +22,7 @@ def assembled(
     squares: tuple[FrequencyTable, ...],
     found: tuple[Found, ...],
     analysis: Analysis,
+    competitions: list[list[LoopCompetitionRow]],
 ) -> list[Result]:
     """Write the result of each line.
 
@@ -33,6 +35,8 @@ def assembled(
     found : tuple of Found
         One for each model whose motions are asked for.
     analysis : Analysis
+    competitions : list of lists of LoopCompetitionRow
+        A list a line.
 
     Returns
     -------
@@ -60,6 +64,8 @@ def assembled(
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 limit_cycles=cycles,
                 bifurcations=(),
+                model_comparisons=model_comparisons(cycles),
+                loop_competitions=tuple(competitions[i]),
                 orbits=orbits,
                 warnings=(*said, *fit, *(text for table in dropped for text in table[i])),
                 engine_version=ENGINE_VERSION,

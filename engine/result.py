@@ -119,6 +119,48 @@ class BifurcationRow:
 
 
 @dataclass(frozen=True, slots=True)
+class ModelComparisonRow:
+    """A stable cycle of the hybrid model beside the nearest of the finite element model with as many loops.
+
+    The columns of the finite element model are None if it has no cycle of these loops; the difference is that of the
+    amplitudes sqrt(V^2 + W^2), over the hybrid model's.
+    """
+
+    loops: int
+    wind_speed_m_per_s: float
+    branch: int | None
+    hybrid_vertical_m: float
+    hybrid_horizontal_m: float
+    hybrid_torsional_rad: float
+    finite_element_branch: int | None
+    finite_element_stability: Stability | None
+    finite_element_vertical_m: float | None
+    finite_element_horizontal_m: float | None
+    finite_element_torsional_rad: float | None
+    amplitude_difference: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class LoopCompetitionRow:
+    """A cycle of the hybrid model that is stable alone, when the other loops asked for may move too.
+
+    growing_loops: loops of the motion that grows fastest, or decays slowest; growth_per_cycle: its factor a cycle, the
+    largest modulus of the Floquet multipliers beside the trivial one. Both are None where the stability is unknown.
+    """
+
+    loops: int
+    wind_speed_m_per_s: float
+    branch: int
+    stability: Stability
+    growing_loops: int | None
+    growth_per_cycle: float | None
+    vertical_m: float | None
+    horizontal_m: float | None
+    torsional_rad: float | None
+    outcome: Outcome
+
+
+@dataclass(frozen=True, slots=True)
 class Orbit:
     """Fourier coefficients of a cycle where it is observed, for pictures.
 
@@ -143,6 +185,8 @@ class Result:
     critical_wind_speeds: tuple[CriticalWindSpeedRow, ...]
     limit_cycles: tuple[LimitCycleRow, ...]
     bifurcations: tuple[BifurcationRow, ...]
+    model_comparisons: tuple[ModelComparisonRow, ...]
+    loop_competitions: tuple[LoopCompetitionRow, ...]
     orbits: tuple[Orbit, ...]
     warnings: tuple[str, ...]
     engine_version: str

@@ -121,6 +121,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         harmonics=part.harmonics,
         finite_element_loops=tuple(part.finite_element_loops),
         static_twist=spec.StaticTwist(part.static_twist),
+        loop_competition=spec.LoopCompetition(part.loop_competition),
     )
 
 

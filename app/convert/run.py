@@ -19,16 +19,28 @@ from engine.result import (
     FrequencyRow,
     InternalResonanceRow,
     LimitCycleRow,
+    LoopCompetitionRow,
+    ModelComparisonRow,
     Result,
 )
 
-Table = Literal["frequencies", "internal_resonances", "critical_wind_speeds", "limit_cycles", "bifurcations"]
+Table = Literal[
+    "frequencies",
+    "internal_resonances",
+    "critical_wind_speeds",
+    "limit_cycles",
+    "bifurcations",
+    "model_comparisons",
+    "loop_competitions",
+]
 _ROW_TYPES: Mapping[Table, type[Any]] = {
     "frequencies": FrequencyRow,
     "internal_resonances": InternalResonanceRow,
     "critical_wind_speeds": CriticalWindSpeedRow,
     "limit_cycles": LimitCycleRow,
     "bifurcations": BifurcationRow,
+    "model_comparisons": ModelComparisonRow,
+    "loop_competitions": LoopCompetitionRow,
 }
 TABLES: tuple[Table, ...] = tuple(_ROW_TYPES)
 _NO_ROWS = orjson.dumps({name: [] for name in TABLES})

@@ -84,6 +84,8 @@ RESULT: dict[str, Any] = {
     "critical_wind_speeds": [],
     "limit_cycles": [],
     "bifurcations": [],
+    "model_comparisons": [],
+    "loop_competitions": [],
 }
 RESULTS_ANSWER: dict[str, Any] = {
     "description": "NDJSON with one object a line, or rows of a table",

@@ -125,6 +125,8 @@ RESULT: dict[str, Any] = {
     "critical_wind_speeds": [_CRITICAL],
     "limit_cycles": [_RESULT_CYCLE],
     "bifurcations": [],
+    "model_comparisons": [],
+    "loop_competitions": [],
     "warnings": [],
     "failures": [],
     "failure": None,

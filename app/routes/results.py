@@ -25,11 +25,21 @@ PictureFormat = Literal["svg", "png"]
 Rows = Iterator[dict[str, object]]
 Pieces = Callable[[Session], Iterator[str]]
 
-_TABLES: dict[str, Table] = {
+TableName = Literal[
+    "frequencies",
+    "internal-resonances",
+    "critical-wind-speeds",
+    "limit-cycles",
+    "model-comparisons",
+    "loop-competitions",
+]
+_TABLES: dict[TableName, Table] = {
     "frequencies": "frequencies",
     "internal-resonances": "internal_resonances",
     "critical-wind-speeds": "critical_wind_speeds",
     "limit-cycles": "limit_cycles",
+    "model-comparisons": "model_comparisons",
+    "loop-competitions": "loop_competitions",
 }
 _PROBLEMS = documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED)
 _TABLE_PROBLEMS = documentation.problems(
@@ -71,7 +81,7 @@ def whole(job_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse
 )
 def table(
     job_id: UUID,
-    table: Literal["frequencies", "internal-resonances", "critical-wind-speeds", "limit-cycles"],
+    table: TableName,
     request: Request,
     caller: CallerOf,
     readers: Readers,

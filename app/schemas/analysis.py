@@ -101,6 +101,11 @@ class Analysis(Document):
         description="Whether eccentric ice turns the sections at rest; solved, mass, weight and tables turn with them",
         examples=["neglected"],
     )
+    loop_competition: Literal["neglected", "checked"] = Field(
+        default="neglected",
+        description="Whether stable cycles of the hybrid model are held against motions of the other loops asked for",
+        examples=["checked"],
+    )
 
     @model_validator(mode="after")
     def _distinct(self) -> Self:

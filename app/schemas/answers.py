@@ -91,6 +91,42 @@ class Bifurcation(Row):
     uncertainty_m_per_s: float = told("How well the place is known [m/s]", 0.01)
 
 
+class ModelComparison(Answer):
+    """A stable cycle of the hybrid model beside the nearest of the finite element model with as many loops."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    loops: int = told("Loops per span [1]", 2)
+    wind_speed_m_per_s: float = told("Wind speed [m/s]", 4.0)
+    branch: int | None = told("Family of the hybrid model's cycle", 0)
+    hybrid_vertical_m: float = told("Vertical amplitude of the hybrid model [m]", 0.0994)
+    hybrid_horizontal_m: float = told("Horizontal amplitude of the hybrid model [m]", 0.3592)
+    hybrid_torsional_rad: float = told("Torsional amplitude of the hybrid model [rad]", 0.0145)
+    finite_element_branch: int | None = told("Family of the other cycle; null if there is none of these loops", 2)
+    finite_element_stability: Literal["stable", "unstable", "unknown"] | None = told("Whether it lasts", "stable")
+    finite_element_vertical_m: Number = told("Vertical amplitude of the finite element model [m]", 0.0776)
+    finite_element_horizontal_m: Number = told("Horizontal amplitude of the finite element model [m]", 0.3038)
+    finite_element_torsional_rad: Number = told("Torsional amplitude of the finite element model [rad]", 0.0121)
+    amplitude_difference: Number = told("Of sqrt(vertical^2 + horizontal^2), over the hybrid model's [1]", -0.159)
+
+
+class LoopCompetition(Answer):
+    """A cycle of the hybrid model that is stable alone, when the other loops asked for may move too."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    loops: int = told("Loops per span [1]", 1)
+    wind_speed_m_per_s: float = told("Wind speed [m/s]", 4.0)
+    branch: int | None = told("Family of the cycle", 0)
+    stability: Literal["stable", "unstable", "unknown"] = told("Whether it survives the other loops", "unstable")
+    growing_loops: int | None = told("Loops of what grows fastest or decays slowest; null if unknown [1]", 2)
+    growth_per_cycle: Number = told("Factor of that motion a cycle; null if unknown [1]", 1.0008)
+    vertical_m: Number = told("Vertical amplitude among the other loops [m]", 0.1303)
+    horizontal_m: Number = told("Horizontal amplitude among the other loops [m]", 0.0101)
+    torsional_rad: Number = told("Torsional amplitude among the other loops [rad]", 0.0895)
+    outcome: Outcome = told("How the computation ended", "converged")
+
+
 class StaticState(Answer):
     """Static state of the span; in a study one row a point, after the values of the axes."""
 
@@ -149,6 +185,12 @@ class ResultDocument(Answer):
     )
     bifurcations: list[Bifurcation] = told(
         "Changes of the motions over the wind speed; always empty yet", [example_of(Bifurcation)]
+    )
+    model_comparisons: list[ModelComparison] = told(
+        "Stable cycles of the hybrid model beside the finite element model's", [example_of(ModelComparison)]
+    )
+    loop_competitions: list[LoopCompetition] = told(
+        "Stable cycles against the other loops; empty unless loop_competition is checked", [example_of(LoopCompetition)]
     )
     warnings: list[str] = told("What to bear in mind, in sentences", ["The angle of attack leaves the fitted range."])
     failures: list[PointFailure] = told("Points that failed", [example_of(PointFailure)])

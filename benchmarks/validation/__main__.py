@@ -3,7 +3,14 @@
 import argparse
 from collections.abc import Callable, Iterator, Mapping
 
-from benchmarks.validation import critical_wind_speeds, direct_integration, frequencies, limit_cycles, static_twist
+from benchmarks.validation import (
+    critical_wind_speeds,
+    direct_integration,
+    frequencies,
+    limit_cycles,
+    model_comparison,
+    static_twist,
+)
 from benchmarks.validation.common import ROOT
 
 PAGE = ROOT / "docs" / "validation.md"
@@ -19,6 +26,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "critical_wind_speeds": critical_wind_speeds.section,
     "limit_cycles": limit_cycles.section,
     "direct_integration": direct_integration.section,
+    "model_comparison": model_comparison.section,
     "static_twist": static_twist.section,
 }
 

@@ -47,6 +47,13 @@ class StaticTwist(StrEnum):
     SOLVED = "solved"
 
 
+class LoopCompetition(StrEnum):
+    """Whether stable cycles of the hybrid model are held against small motions of the other loops asked for."""
+
+    NEGLECTED = "neglected"
+    CHECKED = "checked"
+
+
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model.
@@ -64,6 +71,7 @@ class Analysis:
     harmonics: int = 5
     finite_element_loops: tuple[int, ...] = (1, 2, 3)
     static_twist: StaticTwist = StaticTwist.NEGLECTED
+    loop_competition: LoopCompetition = LoopCompetition.NEGLECTED
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
