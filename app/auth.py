@@ -1,8 +1,13 @@
 """Who asks, and what they may do."""
 
+import re
 from dataclasses import dataclass
 from enum import StrEnum
+from ipaddress import ip_address
 from uuid import UUID
+
+OWNER_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,63}")
+"""What the name of an owner looks like."""
 
 
 class Scope(StrEnum):
@@ -24,3 +29,11 @@ class Caller:
 
 LOCAL = Caller("local", frozenset(Scope))
 """The caller of a service without keys, which is open to its own machine only."""
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether a name or an address means this machine to itself."""
+    try:
+        return host.lower() == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False

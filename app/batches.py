@@ -14,11 +14,12 @@ from sqlalchemy import ColumnElement, Select, and_, delete, func, insert, select
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
+from app import audit
 from app.auth import Caller
 from app.convert import NumberedLine
 from app.db import database_time
 from app.jobs import CancelOutcome, input_hash
-from app.tables import Batch, BatchItem, Job, JobEvent, JobEventKind, JobStatus, PointRow
+from app.tables import AuditAction, Batch, BatchItem, Job, JobEvent, JobEventKind, JobStatus, PointRow
 
 _ABANDONED = timedelta(hours=6)
 
@@ -81,6 +82,8 @@ def accept(session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Ch
     received = update(Batch).where(Batch.id == batch_id).values(received_at=now, rejected_lines=rejected_lines)
     session.execute(received)
     _add_chunks(session, caller, batch_id, chunks, now)
+    lines = sum(chunk.lines for chunk in chunks)
+    audit.record(session, caller, AuditAction.BATCH_SUBMITTED, batch_id, f"{lines} lines", at=now)
 
 
 def discard(session: Session, batch_id: UUID) -> None:
@@ -128,12 +131,14 @@ def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
     if not before.accepted + before.running:
         session.execute(delete(Job).where(Job.batch_id == batch_id))
         session.execute(delete(Batch).where(Batch.id == batch_id))
+        audit.record(session, caller, AuditAction.BATCH_REMOVED, batch_id)
         return CancelOutcome.REMOVED
     # Locked first, so that no chunk can pass from one state to the other between the two changes.
     still_open = Job.batch_id == batch_id, Job.status.in_((JobStatus.ACCEPTED, JobStatus.RUNNING))
     session.execute(select(Job.id).where(*still_open).order_by(Job.id).with_for_update())
     _dismiss_waiting(session, batch_id)
     running = _ask_running(session, batch_id)
+    audit.record(session, caller, AuditAction.BATCH_CANCELLED, batch_id)
     return CancelOutcome.REQUESTED if running else CancelOutcome.DISMISSED
 
 
@@ -157,6 +162,8 @@ def resubmit(session: Session, caller: Caller, batch_id: UUID, chunk_lines: int)
         belongs = BatchItem.batch_id == batch_id, BatchItem.number.in_(moved)
         session.execute(update(BatchItem).where(*belongs).values(chunk_id=chunks[-1].id))
     _add_chunks(session, caller, batch_id, chunks, database_time(session))
+    if chunks:
+        audit.record(session, caller, AuditAction.BATCH_RESUBMITTED, batch_id, f"{len(numbers)} lines")
     return [chunk.id for chunk in chunks]
 
 

@@ -1,4 +1,4 @@
-"""A limit on request bodies that holds while they come in, and lets the client read why it was refused."""
+"""A limit on request bodies that holds while they come in, and lets clients read why theirs was refused unread."""
 
 import asyncio
 import contextlib
@@ -41,11 +41,12 @@ class BodyLimit:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        announced = dict(scope["headers"]).get(b"content-length", b"0")
+        headers = dict(scope["headers"])
+        announced = headers.get(b"content-length", b"0")
         limit = self.limits.get(scope["path"], self.limits[""])
-        exchange = _Exchange(receive, send, limit.most_bytes, limit.too_large)
+        empty = announced.strip(b"0") == b"" and b"transfer-encoding" not in headers
+        exchange = _Exchange(receive, send, limit.most_bytes, limit.too_large, ended=empty)
         if announced.isdigit() and int(announced[:20]) > limit.most_bytes:
-            exchange.exceeded = True
             answer = await self.refuse(Request(scope), limit.too_large)
             await answer(scope, receive, exchange.send_lingering)
         else:
@@ -58,21 +59,19 @@ class _Exchange:
     send: Send
     most_bytes: int
     too_large: HTTPException
+    ended: bool
     taken: int = 0
-    exceeded: bool = False
-    ended: bool = False
 
     async def receive_counting(self) -> Message:
         message = await self._next()
         self.taken += len(message.get("body", b""))
         if self.taken > self.most_bytes:
-            self.exceeded = True
             raise self.too_large
         return message
 
     async def send_lingering(self, message: Message) -> None:
         last = message["type"] == "http.response.body" and not message.get("more_body", False)
-        if not (self.exceeded and last):
+        if self.ended or not last:
             await self.send(message)
             return
         await self.send({**message, "more_body": True})

@@ -32,16 +32,17 @@ class Refused(ServiceError):
 
 
 @contextmanager
-def connect(url: str) -> Iterator[httpx.Client]:
-    """Open a client of the service.
+def connect(url: str, key: str | None = None) -> Iterator[httpx.Client]:
+    """Open a client of the service, with a key if it asks for one.
 
     Raises
     ------
     ServiceError
         If the address is none, or the service does not answer while it is used.
     """
+    headers = {"Authorization": f"Bearer {key}"} if key else {}
     try:
-        with httpx.Client(base_url=url, timeout=30.0) as service:
+        with httpx.Client(base_url=url, headers=headers, timeout=30.0) as service:
             yield service
     except (httpx.HTTPError, httpx.InvalidURL, ValueError) as error:
         raise ServiceError(f"the service at {url} does not answer: {error}") from error

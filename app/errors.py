@@ -26,6 +26,8 @@ class ProblemKind(Enum):
     """What can be wrong: slug of its page, status, title and a sentence for the page."""
 
     INVALID_PARAMETER = ("invalid-parameter", 400, "Invalid parameter", "A query parameter cannot be taken.")
+    UNAUTHENTICATED = ("unauthenticated", 401, "Unauthenticated", "The request needs a key that is known and good.")
+    FORBIDDEN = ("forbidden", 403, "Forbidden", "The key does not have the scope that this method needs.")
     NOT_FOUND = ("not-found", 404, "Not found", "There is nothing at this address, or no longer.")
     METHOD_NOT_ALLOWED = ("method-not-allowed", 405, "Method not allowed", "The address does not take this method.")
     NOT_ACCEPTABLE = ("not-acceptable", 406, "Not acceptable", "None of the media types asked for can be made.")
@@ -39,6 +41,12 @@ class ProblemKind(Enum):
         "The body is of another type than taken.",
     )
     INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is no JSON, or fields of it are wrong.")
+    TOO_MANY_REQUESTS = (
+        "too-many-requests",
+        429,
+        "Too many requests",
+        "The quota of the minute is used up; Retry-After says when to go on.",
+    )
     INTERNAL = ("internal", 500, "Internal error", "A defect of the service; the operator's log has the details.")
     UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it depends on; try again later.")
 
@@ -89,13 +97,13 @@ def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequ
 
 def install(app: FastAPI, max_body_bytes: Mapping[str, int]) -> None:
     """Let an application answer every fault with a problem, and limit its bodies by path, "" being all others."""
-    app.add_exception_handler(ProblemError, _on_problem)
+    app.add_exception_handler(ProblemError, answer)
     app.add_exception_handler(HTTPException, _on_http)
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(OperationalError, _on_database)
     app.add_exception_handler(Exception, _on_defect)
     limits = {path: Limit(most_bytes, _too_large(most_bytes)) for path, most_bytes in max_body_bytes.items()}
-    app.add_middleware(BodyLimit, limits=limits, refuse=_on_problem)
+    app.add_middleware(BodyLimit, limits=limits, refuse=answer)
 
 
 def _too_large(most_bytes: int) -> ProblemError:
@@ -150,7 +158,8 @@ def _respond(request: Request, problem: ProblemError) -> JSONResponse:
     return JSONResponse(document, problem.status_code, headers=problem.headers, media_type=MEDIA_TYPE)
 
 
-async def _on_problem(request: Request, error: Exception) -> Response:
+async def answer(request: Request, error: Exception) -> Response:
+    """Answer with a problem that was raised."""
     assert isinstance(error, ProblemError)
     return _respond(request, error)
 
@@ -186,9 +195,13 @@ async def _on_validation(request: Request, error: Exception) -> Response:
 
 
 async def _on_database(request: Request, error: Exception) -> Response:
+    return _respond(request, database_fault(error))
+
+
+def database_fault(error: Exception) -> ProblemError:
+    """Return the problem of a database that does not answer, and log it."""
     _logger.error("the database does not answer: %s", error)
-    problem = ProblemError(ProblemKind.UNAVAILABLE, "The database does not answer.", headers={"Retry-After": "5"})
-    return _respond(request, problem)
+    return ProblemError(ProblemKind.UNAVAILABLE, "The database does not answer.", headers={"Retry-After": "5"})
 
 
 async def _on_defect(request: Request, error: Exception) -> Response:

@@ -13,9 +13,10 @@ from sqlalchemy import ColumnElement, Select, delete, select, tuple_
 from sqlalchemy.orm import Session, defer, sessionmaker
 from uuid_utils.compat import uuid7
 
+from app import audit
 from app.auth import Caller
 from app.db import database_time
-from app.tables import BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
+from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
 
 class CancelOutcome(StrEnum):
@@ -76,6 +77,7 @@ def create(
     )
     session.add(job)
     record(session, job.id, JobEventKind.ACCEPTED)
+    audit.record(session, caller, AuditAction.JOB_SUBMITTED, job.id, at=job.created_at)
     return job
 
 
@@ -125,15 +127,18 @@ def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
         return CancelOutcome.MISSING
     if job.status is JobStatus.ACCEPTED:
         job.status, job.finished_at = JobStatus.DISMISSED, database_time(session)
+        audit.record(session, caller, AuditAction.JOB_CANCELLED, job_id)
         record(session, job_id, JobEventKind.DISMISSED, attempt=job.attempt)
         return CancelOutcome.DISMISSED
     if job.status is JobStatus.RUNNING:
         if not job.cancel_requested:
             job.cancel_requested = True
+            audit.record(session, caller, AuditAction.JOB_CANCELLED, job_id)
             record(session, job_id, JobEventKind.CANCEL_REQUESTED, attempt=job.attempt)
         return CancelOutcome.REQUESTED
     session.execute(delete(BatchItem).where(BatchItem.chunk_id == job_id))
     session.execute(delete(Job).where(Job.id == job_id))
+    audit.record(session, caller, AuditAction.JOB_REMOVED, job_id)
     return CancelOutcome.REMOVED
 
 

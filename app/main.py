@@ -12,10 +12,13 @@ from app import errors
 from app.access import Access
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
+from app.gate import Gate
 from app.groups import Groups, committed_together
 from app.head import HeadAsGet
+from app.headers import SecurityHeaders
 from app.jobs import look_up
 from app.queue import Sender, celery_application
+from app.rates import Meter
 from app.routes import aerodynamics, batch_results, batches, documentation, health, jobs, reference, results
 from app.settings import Settings, get_settings
 
@@ -31,12 +34,12 @@ class Service(FastAPI):
     def openapi(self) -> dict[str, Any]:
         """Return the OpenAPI document."""
         if not self.openapi_schema:
-            self.openapi_schema = documentation.with_nulls(super().openapi())
+            self.openapi_schema = documentation.guarded(documentation.with_nulls(super().openapi()))
         return self.openapi_schema
 
     def build_middleware_stack(self) -> ASGIApp:
-        """Return the application with its middleware, all of it inside of `Access`."""
-        return Access(super().build_middleware_stack())
+        """Return the application inside of what must hold even for the answer to a defect."""
+        return Access(SecurityHeaders(super().build_middleware_stack()))
 
 
 def create_app(settings: Settings | None = None) -> Service:
@@ -55,6 +58,7 @@ def create_app(settings: Settings | None = None) -> Service:
         yield
         for groups in (app.state.inbox, app.state.dispatcher, app.state.statuses):  # in the order of their work
             await groups.close()
+        await meter.close()
         app.state.sender.close()
         database.dispose()
 
@@ -74,6 +78,8 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.inbox = Groups("inbox", partial(committed_together, app.state.writers))
     app.state.dispatcher = Groups("dispatcher", app.state.sender.send_together)
     app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
+    meter = Meter(settings)
+    app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
     for module in (jobs, results, batches, batch_results, aerodynamics, reference, health):

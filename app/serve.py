@@ -4,15 +4,18 @@ import logging
 import os
 import signal
 import sys
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import uvicorn
 from alembic import command
 from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, text
 
-from app import logs, processes
-from app.db import make_engine
+from app import keys, logs, processes
+from app.auth import is_loopback
+from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
 
 _MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
@@ -20,6 +23,10 @@ _STOP_SECONDS = 10.0
 _LOOK_SECONDS = 0.5
 
 _logger = logging.getLogger(__name__)
+
+
+class Unguarded(Exception):
+    """Raised when a service would be open to everybody."""
 
 
 def migrate(settings: Settings) -> int:
@@ -48,6 +55,12 @@ def alembic_config(connection: Connection) -> Config:
     return config
 
 
+def is_newest(connection: Connection) -> bool:
+    """Tell whether a database has the newest schema."""
+    present = MigrationContext.configure(connection).get_current_heads()
+    return set(present) == set(ScriptDirectory.from_config(alembic_config(connection)).get_heads())
+
+
 def worker(settings: Settings) -> NoReturn:
     """Become a worker: a new program in this process, since the BLAS library reads its settings as it loads."""
     os.execve(sys.executable, [sys.executable, "-m", "worker"], processes.environment(settings))
@@ -60,7 +73,8 @@ def api(settings: Settings, host: str, port: int) -> int:
     """
     logs.configure(settings)
     # Our own log of requests is in the place of uvicorn's.
-    uvicorn.run("app.main:create_app", factory=True, host=host, port=port, log_config=None, access_log=False)
+    quiet: dict[str, Any] = {"log_config": None, "access_log": False, "server_header": False}
+    uvicorn.run("app.main:create_app", factory=True, host=host, port=port, **quiet)
     return 0
 
 
@@ -69,9 +83,16 @@ def serve(settings: Settings, host: str, port: int) -> int:
 
     A worker that ends by itself is started again; if the API does, the service ends with its code. Both end with this
     process even if it is killed, and whatever they left undone is taken up by the next start.
+
+    Raises
+    ------
+    Unguarded
+        If others than this machine could reach a service that has no key.
     """
     logs.configure(settings)
     migrate(settings)
+    if not is_loopback(host) and not _has_keys(settings):
+        raise Unguarded(f"{host} can be reached by others, and there is no key yet: `galloping keys create` makes one")
     with processes.until_stopped() as wait:
         api_process = processes.start(settings, "app.serve", host, str(port))
         worker_process = processes.start(settings, "worker")
@@ -82,6 +103,15 @@ def serve(settings: Settings, host: str, port: int) -> int:
         code = api_process.poll()
         processes.stop([api_process, worker_process], signal.SIGTERM, settings.shutdown_seconds + _STOP_SECONDS)
     return code or 0
+
+
+def _has_keys(settings: Settings) -> bool:
+    engine = make_engine(settings)
+    try:
+        with session_factory(engine, read_only=True)() as session:
+            return keys.any_exist(session)
+    finally:
+        engine.dispose()
 
 
 def _take_turns(connection: Connection) -> None:

@@ -2,7 +2,7 @@
 
 import typer
 
-from app.cli import lines, service
+from app.cli import keys, lines, service
 
 app = typer.Typer(
     help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
@@ -21,6 +21,7 @@ for command in (
     lines.ellipse,
 ):
     app.command()(command)
+app.add_typer(keys.commands, name="keys")
 
 
 def main() -> None:

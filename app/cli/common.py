@@ -3,7 +3,7 @@
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 if TYPE_CHECKING:
+    from sqlalchemy.orm import Session, sessionmaker
+
     from app.faults import Fault
     from app.settings import Settings
 
@@ -25,6 +27,7 @@ StudyFile = Annotated[Path | None, typer.Option("--study", metavar="STUDY.json",
 OutputFile = Annotated[
     Path | None, typer.Option("--output", metavar="RESULT.json", help="Where the result goes; else standard output.")
 ]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 DataDirectory = Annotated[Path | None, typer.Option("--data-dir", help="Directory of all files of the service.")]
 
 
@@ -87,6 +90,42 @@ def operator_told() -> Iterator[None]:
         end(f"the database of GALLOPING_DATABASE_URL cannot be used: {said[0] if said else error!r}", BAD_INPUT)
     except OSError as error:
         end(f"{error.filename or 'a file of the service'} cannot be used: {error.strerror or error}", BAD_INPUT)
+
+
+@contextmanager
+def using_database(settings: "Settings") -> Iterator["sessionmaker[Session]"]:
+    """Give sessions on a database of this version; end with one sentence where there is none."""
+    from app.db import make_engine, session_factory
+    from app.serve import is_newest
+
+    with operator_told():
+        engine = make_engine(settings)
+        try:
+            with engine.connect() as connection:
+                newest = is_newest(connection)
+            if not newest:
+                end("the database is not of this version: `galloping migrate` brings it there", BAD_INPUT)
+            yield session_factory(engine)
+        finally:
+            engine.dispose()
+
+
+def print_table(columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print rows as a table for people."""
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(*(name.removesuffix("_at").replace("_", " ") for name in columns), box=SIMPLE_HEAD)
+    for row in rows:
+        table.add_row(*(_shown(row[name]) for name in columns))
+    Console().print(table)
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, list):
+        return " ".join(map(str, value))
+    return "-" if value is None else str(value)
 
 
 def write(document: Any, output: Path | None) -> None:

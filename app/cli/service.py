@@ -1,11 +1,13 @@
 """Commands that run the service, and the one that sends it a line: `serve`, `api`, `worker`, `migrate`, `submit`."""
 # ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
 
+import os
 from typing import Annotated
 
 import typer
 
 from app.cli.common import (
+    BAD_INPUT,
     FAILED,
     AnalysisFile,
     DataDirectory,
@@ -31,10 +33,14 @@ def serve(
     data_dir: DataDirectory = None,
 ) -> None:
     """Run the service with its embedded database, broker and worker; SIGTERM ends it cleanly."""
+    from app.serve import Unguarded
     from app.serve import serve as run
 
-    with operator_told():
-        code = run(read_settings(data_dir), host, port)
+    try:
+        with operator_told():
+            code = run(read_settings(data_dir), host, port)
+    except Unguarded as error:
+        end(str(error), BAD_INPUT)
     raise typer.Exit(code)
 
 
@@ -70,12 +76,12 @@ def submit(
     wait: Annotated[bool, typer.Option("--wait", help="Wait for the end and print the result.")] = False,
     output: OutputFile = None,
 ) -> None:
-    """Send a line to a service; print the job's status, or with --wait its result."""
+    """Send a line to a service; print the job's status, or with --wait its result. GALLOPING_KEY holds the key."""
     from app import client
 
     document = read_request(line, analysis, study)
     try:
-        with client.connect(url) as service:
+        with client.connect(url, os.environ.get("GALLOPING_KEY")) as service:
             job = client.submit(service, document)
             if not wait:
                 write(job, output)

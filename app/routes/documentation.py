@@ -225,6 +225,18 @@ def with_nulls(document: Any) -> Any:
     return None if document == _NULL else document
 
 
+def guarded(document: dict[str, Any]) -> dict[str, Any]:
+    """Return an OpenAPI document in which whatever is under /v1 asks for a key, and says how it refuses."""
+    scheme = {"type": "http", "scheme": "bearer", "description": "A key of `galloping keys create`; none without keys"}
+    document["components"]["securitySchemes"] = {"key": scheme}
+    refusals = problems(ProblemKind.UNAUTHENTICATED, ProblemKind.FORBIDDEN, ProblemKind.TOO_MANY_REQUESTS)
+    for path, operations in document["paths"].items():
+        for operation in operations.values() if path.startswith("/v1/") else ():
+            operation["security"] = [{"key": []}]
+            operation["responses"] |= {str(status): answer for status, answer in refusals.items()}
+    return document
+
+
 def body(description: str, *media_types: tuple[str, Any]) -> dict[str, Any]:
     """Return the entry of OpenAPI for a good answer with an example for each media type."""
     content = {name: {"example": _marked(value)} for name, value in media_types}

@@ -1,11 +1,15 @@
-"""The tables: jobs with tags and events, batches of lines, and results. One schema for both databases."""
+"""The tables: jobs with tags and events, batches of lines, results, keys and audit. One schema for both databases."""
 
+from app.tables.access import ApiKey, AuditAction, AuditEvent
 from app.tables.base import Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
 from app.tables.batches import Batch, BatchItem
 from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.results import PointRow
 
 __all__ = [
+    "ApiKey",
+    "AuditAction",
+    "AuditEvent",
     "Base",
     "Batch",
     "BatchItem",

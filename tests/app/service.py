@@ -56,3 +56,9 @@ def finished(client: httpx.Client, settings: Settings, document: dict[str, Any] 
     status = submit(client, document)
     run_job(settings, UUID(status["id"]), "test")
     return f"/v1/jobs/{status['id']}"
+
+
+def submit_as(client: httpx.Client, header: dict[str, str]) -> str:
+    """Post a request with a key, and return the job's id."""
+    job: str = client.post("/v1/jobs", json=short_request(), headers=header).raise_for_status().json()["id"]
+    return job

@@ -1,0 +1,98 @@
+"""`galloping keys`: makes, lists and revokes the keys of the API."""
+# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from app.auth import OWNER_PATTERN, Scope
+from app.cli.common import BAD_INPUT, AsJson, DataDirectory, end, print_table, read_settings, using_database, write
+
+if TYPE_CHECKING:
+    from app.tables import ApiKey
+
+commands = typer.Typer(help="Makes, lists and revokes the keys of the API.", no_args_is_help=True)
+
+_COLUMNS = ("prefix", "owner", "name", "scopes", "state", "created_at", "expires_at", "used_at")
+
+
+@commands.command()
+def create(
+    owner: Annotated[str, typer.Option(help="Whose jobs and batches its bearer sees; letters, digits and . _ @ -")],
+    scope: Annotated[list[Scope] | None, typer.Option(help="What it allows; may be repeated; all if absent.")] = None,
+    name: Annotated[str | None, typer.Option(help="What it is for.")] = None,
+    days: Annotated[
+        int | None, typer.Option(min=1, max=36_500, help="Days that it holds; without end if absent.")
+    ] = None,
+    json: AsJson = False,
+    data_dir: DataDirectory = None,
+) -> None:
+    """Make a key and print it; it cannot be shown again. From the first key on the service asks for one."""
+    from app import keys
+
+    if not OWNER_PATTERN.fullmatch(owner):
+        end(f"--owner: must be 1 to 64 letters, digits and . _ @ -, got {owner!r}", BAD_INPUT)
+    expires_at = datetime.now(UTC) + timedelta(days=days) if days else None
+    with using_database(read_settings(data_dir)) as sessions, sessions.begin() as session:
+        key, text = keys.create(session, owner, scope or list(Scope), name, expires_at)
+    if json:
+        write({"key": text, **_document(key)}, None)
+        return
+    typer.echo(text)
+    typer.echo(f"Keep it: it is not shown again. It belongs to {owner} and allows {', '.join(key.scopes)}.", err=True)
+
+
+@commands.command("list")
+def list_keys(
+    owner: Annotated[str | None, typer.Option(help="Only this owner's keys.")] = None,
+    json: AsJson = False,
+    data_dir: DataDirectory = None,
+) -> None:
+    """List the keys, oldest first, by what may be shown of them."""
+    from app import keys
+
+    with using_database(read_settings(data_dir)) as sessions, sessions() as session:
+        documents = [_document(key) for key in keys.listed(session, owner)]
+    if json:
+        write({"keys": documents}, None)
+    else:
+        print_table(_COLUMNS, documents)
+
+
+@commands.command()
+def revoke(
+    key: Annotated[str, typer.Argument(help="The key, its beginning as the list shows it, or its id.")],
+    data_dir: DataDirectory = None,
+) -> None:
+    """Revoke a key; running services refuse it after GALLOPING_KEY_CACHE_SECONDS at most."""
+    from app import keys
+
+    settings = read_settings(data_dir)
+    try:
+        with using_database(settings) as sessions, sessions.begin() as session:
+            revoked = keys.revoke(session, key)
+    except keys.NotOneKey as error:
+        end(str(error), BAD_INPUT)
+    typer.echo(
+        f"{revoked.prefix} of {revoked.owner} is revoked; services refuse it within {settings.key_cache_seconds:g} s."
+    )
+
+
+def _document(key: "ApiKey") -> dict[str, Any]:
+    moments = {name: getattr(key, name) for name in ("created_at", "expires_at", "revoked_at", "used_at")}
+    return {
+        "id": str(key.id),
+        "prefix": key.prefix,
+        "owner": key.owner,
+        "name": key.name,
+        "scopes": key.scopes,
+        "state": _state(key),
+        **{name: moment and moment.isoformat(timespec="seconds") for name, moment in moments.items()},
+    }
+
+
+def _state(key: "ApiKey") -> str:
+    if key.revoked_at is not None:
+        return "revoked"
+    return "expired" if key.expires_at is not None and key.expires_at <= datetime.now(UTC) else "good"

@@ -1,0 +1,64 @@
+"""API keys, and the record of who changed what."""
+
+from datetime import datetime
+from enum import StrEnum
+from uuid import UUID
+
+from sqlalchemy import Enum, String, Text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.tables.base import Base
+
+
+class AuditAction(StrEnum):
+    """What is recorded."""
+
+    KEY_CREATED = "key_created"
+    KEY_REVOKED = "key_revoked"
+    KEY_REFUSED = "key_refused"
+    JOB_SUBMITTED = "job_submitted"
+    JOB_CANCELLED = "job_cancelled"
+    JOB_REMOVED = "job_removed"
+    BATCH_SUBMITTED = "batch_submitted"
+    BATCH_RESUBMITTED = "batch_resubmitted"
+    BATCH_CANCELLED = "batch_cancelled"
+    BATCH_REMOVED = "batch_removed"
+    PRUNED = "pruned"
+
+
+# Words without a CHECK constraint: a new action is no reason to make the largest table of SQLite anew.
+_ACTION = Enum(AuditAction, native_enum=False, length=32, values_callable=lambda kind: [word.value for word in kind])
+
+
+class ApiKey(Base):
+    """A key by the SHA-256 of its text, which is kept nowhere; `prefix` is what may be shown of it."""
+
+    __tablename__ = "api_keys"
+
+    id: Mapped[UUID] = mapped_column(primary_key=True)
+    created_at: Mapped[datetime]
+    expires_at: Mapped[datetime | None]
+    revoked_at: Mapped[datetime | None]
+    used_at: Mapped[datetime | None]
+    owner: Mapped[str] = mapped_column(String(64))
+    name: Mapped[str | None] = mapped_column(Text)
+    prefix: Mapped[str] = mapped_column(String(32))
+    digest: Mapped[str] = mapped_column(String(64), unique=True)
+    scopes: Mapped[list[str]]
+
+
+class AuditEvent(Base):
+    """One change and who made it; it outlives what was changed and the key, and so refers to neither.
+
+    The ids are in the order of time. key_id is null for the operator and for the caller of a service without keys.
+    """
+
+    __tablename__ = "audit_events"
+
+    id: Mapped[UUID] = mapped_column(primary_key=True)
+    at: Mapped[datetime]
+    owner: Mapped[str] = mapped_column(String(64))
+    key_id: Mapped[UUID | None]
+    action: Mapped[AuditAction] = mapped_column(_ACTION)
+    subject: Mapped[UUID | None]
+    detail: Mapped[str | None] = mapped_column(Text)
