@@ -8,9 +8,14 @@ from typing import Any, Literal, TypeVar
 import orjson
 
 Row = Mapping[str, Any]
-Format = Literal["json", "csv"]
+Format = Literal["json", "csv", "parquet"]
 Name = TypeVar("Name", bound=str)
-MEDIA_TYPES: Mapping[Format, str] = {"json": "application/json", "csv": "text/csv; charset=utf-8"}
+PARQUET = "application/vnd.apache.parquet"
+MEDIA_TYPES: Mapping[Format, str] = {
+    "json": "application/json",
+    "csv": "text/csv; charset=utf-8",
+    "parquet": PARQUET,
+}
 
 # The wide forms count, too: spreadsheets of East Asian settings read them as the narrow ones.
 _FORMULA_STARTS = (*"=+-@\t\r\n", *"\uff1d\uff0b\uff0d\uff20")
@@ -19,7 +24,7 @@ _CHARACTERS_A_BLOCK = 65_536
 
 def preferred_format(accept: str) -> Format | None:
     """Choose the format that an Accept header likes best, JSON in doubt; None if it takes neither."""
-    return preferred(accept, {"json": "application/json", "csv": "text/csv"})
+    return preferred(accept, {"json": "application/json", "csv": "text/csv", "parquet": PARQUET})
 
 
 def preferred(accept: str, media_types: Mapping[Name, str]) -> Name | None:

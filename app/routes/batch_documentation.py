@@ -4,6 +4,7 @@ import json
 from typing import Any
 
 from app.examples import example
+from app.export import PARQUET
 from app.schemas.batch import BatchRequest
 
 _BATCH = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"
@@ -96,6 +97,7 @@ RESULTS_ANSWER: dict[str, Any] = {
             "example": "number,reference,asset_id,model,loops,vertical_hz,horizontal_hz,torsional_hz,outcome\r\n"
             "1,row-1,L204-S017,hybrid,1,0.4816,0.446,0.6343,converged\r\n",
         },
+        PARQUET: {"schema": {"type": "string", "format": "binary"}},
     },
 }
 

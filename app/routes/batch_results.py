@@ -1,6 +1,6 @@
-"""Results of a batch, streamed as NDJSON or CSV, and the faults of the lines that were rejected."""
+"""Results of a batch, streamed as NDJSON, CSV or Parquet, and the faults of the lines that were rejected."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Annotated, Literal
 from uuid import UUID
 
@@ -12,20 +12,25 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import batch_results, batches, export
 from app.auth import Caller
 from app.batch_results import BatchTable
+from app.columns import columns_of
 from app.errors import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import batch_address, find_batch
-from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, CallerOf, Readers
+from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, CallerOf, Readers, streamed
 from app.schemas.batch import BatchErrors
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
-BatchFormat = Literal["ndjson", "csv"]
+BatchFormat = Literal["ndjson", "csv", "parquet"]
 TableName = Literal[
     "limit-cycles", "critical-wind-speeds", "frequencies", "internal-resonances", "bifurcations", "summary"
 ]
 
-_MEDIA_TYPES: dict[BatchFormat, str] = {"ndjson": "application/x-ndjson", "csv": "text/csv"}
+_MEDIA_TYPES: dict[BatchFormat, str] = {
+    "ndjson": "application/x-ndjson",
+    "csv": "text/csv",
+    "parquet": export.PARQUET,
+}
 _TABLES: dict[TableName, BatchTable] = {
     "limit-cycles": "limit_cycles",
     "critical-wind-speeds": "critical_wind_speeds",
@@ -39,7 +44,9 @@ _TABLES: dict[TableName, BatchTable] = {
 class ResultsQuery(BaseModel):
     """Which results of a batch, and in which form."""
 
-    table: TableName | None = Field(default=None, description="One table of flat rows; CSV is the summary if absent")
+    table: TableName | None = Field(
+        default=None, description="One table of flat rows; CSV and Parquet are the summary if absent"
+    )
     format: BatchFormat | None = Field(default=None, description="Wins over the Accept header")
     partial: bool = Field(default=False, description="Also while lines are waiting or running")
 
@@ -67,18 +74,24 @@ def results(
     """
     form = asked.format or export.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
     if form is None:
-        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, "Results are application/x-ndjson or text/csv.")
+        raise ProblemError(
+            ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {export.PARQUET}."
+        )
     _require(readers, caller, batch_id, ended=not asked.partial)
     name: BatchTable = _TABLES[asked.table or "summary"]
 
-    def pieces(session: Session) -> Iterator[str]:
-        if form == "csv":
-            return export.csv_text(batch_results.columns(name), batch_results.rows(session, batch_id, name))
-        if asked.table is None:
-            return (text + "\n" for text in batch_results.documents(session, batch_id))
-        return export.ndjson_text(batch_results.rows(session, batch_id, name))
+    def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
+        if form == "ndjson" and asked.table is None:
+            return export.in_blocks(text + "\n" for text in batch_results.documents(session, batch_id))
+        rows = batch_results.rows(session, batch_id, name)
+        if form == "parquet":
+            from app import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
-    return _streamed(readers, pieces, _MEDIA_TYPES[form])
+            return parquet.parquet_bytes(columns_of(name, batch_results.columns(name)), rows)
+        text = export.csv_text(batch_results.columns(name), rows) if form == "csv" else export.ndjson_text(rows)
+        return export.in_blocks(text)
+
+    return streamed(readers, pieces, _MEDIA_TYPES[form])
 
 
 @router.get(
@@ -95,9 +108,11 @@ def results(
 def errors(batch_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
     """Return all faults of the lines that were rejected when the batch came in."""
     _require(readers, caller, batch_id, ended=False)
-    return _streamed(
-        readers, lambda session: export.json_text("errors", batch_results.errors(session, batch_id)), "application/json"
-    )
+
+    def pieces(session: Session) -> Iterator[str]:
+        return export.in_blocks(export.json_text("errors", batch_results.errors(session, batch_id)))
+
+    return streamed(readers, pieces, "application/json")
 
 
 def _require(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, ended: bool) -> None:
@@ -111,13 +126,3 @@ def _require(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, 
             links=[{"rel": "status", "href": batch_address(batch_id)}],
             headers={"Retry-After": RETRY_SECONDS},
         )
-
-
-def _streamed(
-    readers: sessionmaker[Session], pieces: Callable[[Session], Iterator[str]], media_type: str
-) -> StreamingResponse:
-    def stream() -> Iterator[str]:
-        with readers() as session:
-            yield from export.in_blocks(pieces(session))
-
-    return StreamingResponse(stream(), media_type=media_type, headers={"Vary": "Accept"})

@@ -1,10 +1,11 @@
 """What several routes share: the state of the application, finding a job, and its status document."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Annotated, Any
 from uuid import UUID
 
 from fastapi import Depends, Request
+from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs
@@ -88,6 +89,18 @@ async def find_status(statuses: Groups[UUID, Job | None], caller: Caller, job_id
     if job is None or job.owner != caller.owner:
         raise _no_job(job_id)
     return job
+
+
+def streamed(
+    readers: sessionmaker[Session], pieces: Callable[[Session], Iterator[str] | Iterator[bytes]], media_type: str
+) -> StreamingResponse:
+    """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
+
+    def stream() -> Iterator[str | bytes]:
+        with readers() as session:
+            yield from pieces(session)
+
+    return StreamingResponse(stream(), media_type=media_type, headers={"Vary": "Accept"})
 
 
 def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:

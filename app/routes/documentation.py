@@ -4,6 +4,7 @@ from typing import Any
 
 from app.errors import MEDIA_TYPE, ProblemKind, problem_document
 from app.examples import EXAMPLE_NAMES, example
+from app.export import PARQUET
 from app.faults import Fault
 from app.schemas.answers import Problem
 
@@ -156,6 +157,7 @@ TABLE_ANSWER: dict[str, Any] = {
             "example": "model,loops,vertical_hz,horizontal_hz,torsional_hz,outcome\r\n"
             "hybrid,1,0.4816,0.446,0.6343,converged\r\n",
         },
+        PARQUET: {"schema": {"type": "string", "format": "binary"}},
     },
 }
 PICTURE_ANSWER: dict[str, Any] = {

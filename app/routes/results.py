@@ -1,6 +1,6 @@
-"""Results of a job: the whole document, single tables as JSON or CSV, and pictures. Everything is streamed."""
+"""Results of a job: the whole document, single tables as JSON, CSV or Parquet, and pictures. Everything is streamed."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
@@ -10,11 +10,12 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import batches, convert, export, results
 from app.auth import Caller
+from app.columns import axis_columns, columns_of
 from app.convert import Table
 from app.errors import ProblemError, ProblemKind
 from app.export import Format
 from app.routes import documentation
-from app.routes.common import PREFIX, RETRY_SECONDS, CallerOf, Readers, failure_of, find_job, job_address
+from app.routes.common import PREFIX, RETRY_SECONDS, CallerOf, Readers, failure_of, find_job, job_address, streamed
 from app.schemas.answers import ResultDocument
 from app.tables import Job, JobStatus
 
@@ -23,7 +24,6 @@ router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
 Picture = Literal["amplitude", "orbit", "modes"]
 PictureFormat = Literal["svg", "png"]
 Rows = Iterator[dict[str, object]]
-Pieces = Callable[[Session], Iterator[str]]
 
 TableName = Literal[
     "frequencies",
@@ -69,9 +69,9 @@ def whole(job_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse
     def pieces(session: Session) -> Iterator[str]:
         points = list(results.points(session, job_id))
         tables: dict[str, Rows] = {name: results.rows(session, job_id, name) for name in convert.TABLES}
-        return export.result_text(job.document, points, tables, failure_of(job))
+        return export.in_blocks(export.result_text(job.document, points, tables, failure_of(job)))
 
-    return _streamed(readers, pieces, "json")
+    return streamed(readers, pieces, export.MEDIA_TYPES["json"])
 
 
 @router.get(
@@ -87,21 +87,22 @@ def table(
     readers: Readers,
     format: Annotated[Format | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
 ) -> StreamingResponse:
-    """Return one table of flat rows, as JSON or CSV by `?format=` or the Accept header."""
+    """Return one table of flat rows, as JSON, CSV or Parquet by `?format=` or the Accept header."""
     chosen = format or export.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
-        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, "Tables are application/json or text/csv.")
+        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {export.PARQUET}.")
     job = _ended_job(readers, caller, job_id)
     name = _TABLES[table]
-    axes = _axes(job)
 
-    def pieces(session: Session) -> Iterator[str]:
+    def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
         rows = results.rows(session, job_id, name)
+        if chosen == "parquet":
+            return _parquet(job, name, rows)
         if chosen == "csv":
-            return export.csv_text([*axes, *convert.columns(name)], rows)
-        return export.json_text(name, rows)
+            return export.in_blocks(export.csv_text([*_axes(job), *convert.columns(name)], rows))
+        return export.in_blocks(export.json_text(name, rows))
 
-    return _streamed(readers, pieces, chosen)
+    return streamed(readers, pieces, export.MEDIA_TYPES[chosen])
 
 
 @router.get(
@@ -188,20 +189,18 @@ def _ended_job(readers: sessionmaker[Session], caller: Caller, job_id: UUID) -> 
     return job
 
 
+def _parquet(job: Job, name: Table, rows: Rows) -> Iterator[bytes]:
+    from app import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
+
+    study = (job.document.get("study") or {"axes": []})["axes"]
+    before = columns_of("summary", ["number"]) if job.batch_id is not None else axis_columns(study)
+    return parquet.parquet_bytes([*before, *columns_of(name, convert.columns(name))], rows)
+
+
 def _axes(job: Job) -> list[str]:
     """Return the names of the columns that stand before the others in every row of a job."""
     study = job.document.get("study") or {"axes": []}
     return ["number"] if job.batch_id is not None else [axis["parameter"] for axis in study["axes"]]
-
-
-def _streamed(readers: sessionmaker[Session], pieces: Pieces, form: Format) -> StreamingResponse:
-    """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
-
-    def stream() -> Iterator[str]:
-        with readers() as session:
-            yield from export.in_blocks(pieces(session))
-
-    return StreamingResponse(stream(), media_type=export.MEDIA_TYPES[form], headers={"Vary": "Accept"})
 
 
 def _point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dict[str, Any]]]:

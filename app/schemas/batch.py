@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.examples import example
 from app.schemas.analysis import Analysis
-from app.schemas.answers import Link, Status
+from app.schemas.answers import Link, Number, Status
 from app.schemas.fields import Answer, Document, Label, example_of, told
 from app.schemas.line import Line
 
@@ -44,6 +44,28 @@ class LineCounts(Answer):
     failed: Count = told("Without; see their failures in the results [1]", 0)
     dismissed: Count = told("Cancelled before they were worked on [1]", 0)
     rejected: Count = told("Never taken, since they are at fault; see errors [1]", 1)
+
+
+class LineSummary(Answer):
+    """What came of one line, in a row."""
+
+    number: int = told("Number of the line, from 1; headers and the analysis do not count [1]", 1)
+    reference: str | None = told("The caller's reference of the line", "row-1")
+    asset_id: str | None = told("Identity of the line in the owner's records", "L204-S017")
+    status: str = told("State of the line", "successful")
+    failure: str | None = told("Why there is nothing, in a sentence", "The job ran longer than 3600 s.")
+    horizontal_tension_n: Number = told("Horizontal tension of one iced sub-conductor [N]", 30000.0)
+    catenary_parameter_m: Number = told("Tension over weight per length [m]", 1285.46)
+    sag_m: Number = told("Sag at mid-span [m]", 1.5412)
+    longitudinal_stiffness_n_per_m: Number = told(
+        "Longitudinal stiffness of the supports; null at dead ends [N/m]", 128460.7
+    )
+    twist_rad: Number = told("Largest static twist of the sections; null where it is neglected [rad]", -0.75)
+    den_hartog_coefficient: Number = told("dC_L/dalpha + C_D of one sub-conductor [1/rad]", -0.1667)
+    den_hartog_unstable: bool | None = told("Whether the coefficient is negative; null if it is unknown", True)
+    lowest_critical_wind_speed_m_per_s: Number = told("Wind speed from which the line gallops [m/s]", 2.403)
+    largest_vertical_m: Number = told("Largest vertical amplitude [m]", 0.1568)
+    engine_version: str | None = told("Version of the computation", "0.1.0")
 
 
 class LineFault(Answer):

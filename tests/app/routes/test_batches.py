@@ -7,11 +7,13 @@ from typing import Any
 from uuid import UUID
 
 import httpx
+import pyarrow.parquet as pq
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import leases
 from app.examples import example
+from app.export import PARQUET
 from app.leases import Failure
 from app.main import create_app
 from app.settings import Settings
@@ -131,6 +133,17 @@ def test_csv_has_labels_and_the_summary_every_line(client: httpx.Client, setting
     assert [row["number"] for row in rows] == ["1"] * len(cycle["frequencies"])
 
 
+def test_parquet_says_the_same_as_ndjson(client: httpx.Client, settings: Settings) -> None:
+    address = accepted(client, MIXED)
+    work_off(client, settings, address)
+    for table in ("summary", "limit-cycles"):
+        answer = client.get(f"{address}/results?table={table}", headers={"Accept": PARQUET})
+        assert answer.headers["content-type"] == PARQUET
+        found = pq.read_table(io.BytesIO(answer.content))
+        assert found.to_pylist() == ndjson(client, f"{address}/results?table={table}")
+    assert found.schema.field("vertical_m").metadata[b"unit"] == b"m"
+
+
 def test_results_wait_for_the_end_unless_partial_ones_are_asked_for(client: httpx.Client, settings: Settings) -> None:
     address = accepted(client, [TWIN, TWIN, TWIN])
     run_job(settings, chunks(client, address)[-1], "test")
@@ -142,9 +155,8 @@ def test_results_wait_for_the_end_unless_partial_ones_are_asked_for(client: http
 
 def test_forms_that_there_are_not_are_refused(client: httpx.Client) -> None:
     address = accepted(client, [TWIN])
-    parquet = {"Accept": "application/vnd.apache.parquet"}
-    assert client.get(f"{address}/results?partial=true", headers=parquet).status_code == 406
-    assert client.get(f"{address}/results?partial=true&format=parquet").status_code == 400
+    assert client.get(f"{address}/results?partial=true", headers={"Accept": "text/html"}).status_code == 406
+    assert client.get(f"{address}/results?partial=true&format=xlsx").status_code == 400
     assert client.get(f"{address}/results?table=orbits").status_code == 400
     assert client.post("/v1/batches", content=b"x", headers={"Content-Type": "text/plain"}).status_code == 415
     brotli = {"Content-Type": "text/csv", "Content-Encoding": "br"}

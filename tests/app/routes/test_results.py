@@ -5,10 +5,12 @@ from typing import Any
 from uuid import UUID
 
 import httpx
+import pyarrow.parquet as pq
 import pytest
 
 from app import leases
 from app.db import make_engine, session_factory
+from app.export import PARQUET
 from app.schemas import JobRequest
 from app.schemas.answers import ResultDocument
 from app.settings import Settings
@@ -70,6 +72,28 @@ def test_json_and_csv_hold_the_same_rows(shared_client: httpx.Client, address: s
     assert rows
     assert [{key: "" if value is None else str(value) for key, value in row.items()} for row in rows] == cells
     assert rows == shared_client.get(f"{address}/results").json()[name]
+
+
+def parquet(answer: httpx.Response) -> Any:
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == PARQUET
+    return pq.read_table(io.BytesIO(answer.content))
+
+
+@pytest.mark.parametrize(("path", "name"), TABLES.items())
+def test_parquet_holds_the_same_rows(shared_client: httpx.Client, address: str, path: str, name: str) -> None:
+    found = parquet(shared_client.get(f"{address}/results/{path}", headers={"Accept": PARQUET}))
+    assert found.to_pylist() == shared_client.get(f"{address}/results/{path}").json()[name]
+
+
+def test_parquet_of_a_study_begins_with_its_axes_and_knows_units(
+    shared_client: httpx.Client, study_address: str
+) -> None:
+    found = parquet(shared_client.get(f"{study_address}/results/limit-cycles?format=parquet"))
+    axis, speed = found.schema.field(0), found.schema.field("wind_speed_m_per_s")
+    assert axis.name == "span.horizontal_tension_n"
+    assert (axis.metadata[b"unit"], speed.metadata[b"unit"]) == (b"N", b"m/s")
+    assert set(found.column(0).to_pylist()) == {24000.0, 30000.0}
 
 
 def test_the_format_parameter_wins_over_the_header(shared_client: httpx.Client, address: str) -> None:
