@@ -1,13 +1,14 @@
 """The order of the steps, and nothing else: lines and an analysis in, progress and results out."""
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.arrays import FloatArray, merged
 from engine.competition import loop_competitions
 from engine.cycles import Cycles, explicit_starts, find_cycles
+from engine.effects import device_effects
 from engine.family import Starts
 from engine.fem import FIELDS
 from engine.harmonic import Orbits, resized
@@ -26,7 +27,7 @@ from engine.outcome import Fault, InvalidSpec
 from engine.report import assembled
 from engine.result import LoopCompetitionRow, Progress, Result
 from engine.rows import Found, FrequencyTable, coupled_squares
-from engine.spec import Analysis, Line, LoopCompetition, Model, check_compatible
+from engine.spec import Analysis, DeviceEffect, Line, LoopCompetition, Model, check_compatible
 from engine.stability import critical_wind_speeds
 
 
@@ -76,6 +77,15 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
         check_compatible(line, analysis)
     if len({line.span.elements for line in lines}) != 1:
         raise InvalidSpec(Fault("span.elements", None, "must be equal within a stack of lines"))
+    if analysis.device_effect is DeviceEffect.NEGLECTED:
+        return (yield from _analysed(lines, analysis))
+    bare = [replace(line, devices=()) for line in lines]
+    results = yield from _analysed([*lines, *bare], analysis)
+    pairs = zip(results[len(lines) :], results, strict=False)
+    return [replace(fitted, device_effects=device_effects(without, fitted)) for without, fitted in pairs]
+
+
+def _analysed(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
     yield Progress(0.0, "static state and modes")
     prepared = _prepare(lines, analysis)
     yield Progress(0.1, "critical wind speeds and limit cycles of the hybrid model")

@@ -66,6 +66,8 @@ def assembled(
                 bifurcations=(),
                 model_comparisons=model_comparisons(cycles),
                 loop_competitions=tuple(competitions[i]),
+                device_effects=(),
+                placements=(),
                 orbits=orbits,
                 warnings=(*said, *fit, *(text for table in dropped for text in table[i])),
                 engine_version=ENGINE_VERSION,

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engine.outcome import Outcome, Stability
-from engine.spec import Model
+from engine.spec import Model, Objective
 
 Direction = Literal["vertical", "horizontal", "torsional"]
 
@@ -161,6 +161,44 @@ class LoopCompetitionRow:
 
 
 @dataclass(frozen=True, slots=True)
+class DeviceEffectRow:
+    """Lowest onset and largest amplitude sqrt(V^2 + W^2) of a stable motion, without and with devices.
+
+    A critical wind speed is None if there is no onset up to the limit; an amplitude is None where no wind speed was
+    asked for or no stable motion is known, 0 where the line rests.
+    """
+
+    model: Model
+    loops: int
+    wind_speed_m_per_s: float | None
+    critical_wind_speed_without_m_per_s: float | None
+    critical_wind_speed_with_m_per_s: float | None
+    amplitude_without_m: float | None
+    amplitude_with_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlacementRow:
+    """A device that a search has placed, its number among the devices of the line, and how the search went.
+
+    objective_value: the lowest onset reached [m/s] (the limit if there is none below), or the largest amplitude [m];
+    None if no candidate has a value.
+    """
+
+    device: int
+    type: Literal["detuning_pendulum", "airflow_spoiler"]
+    position_m: float | None
+    mass_kg: float | None
+    arm_m: float | None
+    from_m: float | None
+    to_m: float | None
+    objective: Objective
+    objective_value: float | None
+    evaluations: int
+    generations: int
+
+
+@dataclass(frozen=True, slots=True)
 class Orbit:
     """Fourier coefficients of a cycle where it is observed, for pictures.
 
@@ -187,6 +225,8 @@ class Result:
     bifurcations: tuple[BifurcationRow, ...]
     model_comparisons: tuple[ModelComparisonRow, ...]
     loop_competitions: tuple[LoopCompetitionRow, ...]
+    device_effects: tuple[DeviceEffectRow, ...]
+    placements: tuple[PlacementRow, ...]
     orbits: tuple[Orbit, ...]
     warnings: tuple[str, ...]
     engine_version: str

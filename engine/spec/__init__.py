@@ -8,6 +8,7 @@ from engine.spec.analysis import (
     AerodynamicModel,
     Analysis,
     Closure,
+    DeviceEffect,
     LongitudinalInertia,
     LoopCompetition,
     Model,
@@ -27,6 +28,7 @@ from engine.spec.environment import (
     Wind,
 )
 from engine.spec.line import Line, ice_properties
+from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
 from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 
 __all__ = [
@@ -43,6 +45,7 @@ __all__ = [
     "DampingModel",
     "DetuningPendulum",
     "Device",
+    "DeviceEffect",
     "Ice",
     "IceSegment",
     "Line",
@@ -50,12 +53,17 @@ __all__ = [
     "LoopCompetition",
     "MeasuredCoefficients",
     "Model",
+    "Objective",
+    "PendulumChoice",
+    "Placement",
     "Spacer",
     "Span",
+    "SpoilerChoice",
     "StaticTwist",
     "Support",
     "Supports",
     "Wind",
     "check_compatible",
+    "check_placement",
     "ice_properties",
 ]

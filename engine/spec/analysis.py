@@ -54,6 +54,13 @@ class LoopCompetition(StrEnum):
     CHECKED = "checked"
 
 
+class DeviceEffect(StrEnum):
+    """Whether a line with devices is analysed without them too, to tell what they change."""
+
+    NEGLECTED = "neglected"
+    REPORTED = "reported"
+
+
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model.
@@ -72,6 +79,7 @@ class Analysis:
     finite_element_loops: tuple[int, ...] = (1, 2, 3)
     static_twist: StaticTwist = StaticTwist.NEGLECTED
     loop_competition: LoopCompetition = LoopCompetition.NEGLECTED
+    device_effect: DeviceEffect = DeviceEffect.NEGLECTED
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""

@@ -1,0 +1,129 @@
+"""What a search for the places of devices may choose from, and what it is to reach."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+from engine.outcome import Fault, require
+from engine.spec.analysis import Analysis
+from engine.spec.devices import AirflowSpoiler, DetuningPendulum, Device
+from engine.spec.environment import Aerodynamics
+from engine.spec.line import Line
+from engine.spec.rules import finite, not_negative, positive
+
+Range = tuple[float, float]
+
+
+class Objective(StrEnum):
+    """What the search makes as high or as low as it can."""
+
+    HIGHEST_CRITICAL_WIND_SPEED = "highest_critical_wind_speed"
+    LOWEST_AMPLITUDE = "lowest_amplitude"
+
+
+@dataclass(frozen=True, slots=True)
+class PendulumChoice:
+    """So many equal pendulums: ranges of their positions [m], mass [kg] and arm [m]; their angle [rad] is given."""
+
+    count: int
+    position: Range
+    mass: Range
+    arm: Range
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        require(
+            None if 1 <= self.count <= 20 else Fault("count", self.count, "must be from 1 to 20"),
+            *_range_faults("position", self.position),
+            *_range_faults("mass", self.mass),
+            *_range_faults("arm", self.arm),
+            positive("arm.lowest", self.arm[0]),
+            finite("angle", self.angle),
+        )
+
+    @property
+    def bounds(self) -> tuple[Range, ...]:
+        """Ranges of the unknowns: every position, the mass, the arm."""
+        return (*(self.position for _ in range(self.count)), self.mass, self.arm)
+
+    def devices(self, *unknowns: float) -> tuple[Device, ...]:
+        """Return the devices of some unknowns, from left to right."""
+        *positions, mass, arm = unknowns
+        return tuple(DetuningPendulum(position, mass, arm, self.angle) for position in sorted(positions))
+
+
+@dataclass(frozen=True, slots=True)
+class SpoilerChoice:
+    """One spoiler of given length [m] anywhere within a range of positions [m]; mass is per sub-conductor [kg/m]."""
+
+    length: float
+    position: Range
+    aerodynamics: Aerodynamics
+    mass: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        long = self.length > self.position[1] - self.position[0]
+        require(
+            positive("length", self.length),
+            *_range_faults("position", self.position),
+            Fault("length", self.length, "must fit into the range of positions") if long else None,
+            not_negative("mass", self.mass),
+        )
+
+    @property
+    def bounds(self) -> tuple[Range, ...]:
+        """Range of the unknown: where the spoiler begins."""
+        return ((self.position[0], self.position[1] - self.length),)
+
+    def devices(self, *unknowns: float) -> tuple[Device, ...]:
+        """Return the spoiler that begins there."""
+        (start,) = unknowns
+        return (AirflowSpoiler(start, start + self.length, self.aerodynamics, self.mass),)
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """Devices to be placed, the objective, and the effort: generations and members of each, from a seed."""
+
+    choice: PendulumChoice | SpoilerChoice
+    objective: Objective = Objective.HIGHEST_CRITICAL_WIND_SPEED
+    generations: int = 20
+    population: int = 24
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Check the rules of every field."""
+        require(
+            None if self.generations >= 1 else Fault("generations", self.generations, "must be at least 1"),
+            None if self.population >= 5 else Fault("population", self.population, "must be at least 5"),
+            None if self.seed >= 0 else Fault("seed", self.seed, "must be at least 0"),
+        )
+
+
+def check_placement(line: Line, analysis: Analysis, placement: Placement) -> None:
+    """Check what concerns a line, what is asked of it and a placement together.
+
+    Raises
+    ------
+    InvalidSpec
+        If the range of positions leaves the span, a spoiler is to be placed beside another, or an amplitude is to be
+        lowered without wind speeds.
+    """
+    choice, last = placement.choice, placement.choice.position[1]
+    spoilers = isinstance(choice, SpoilerChoice) and any(isinstance(d, AirflowSpoiler) for d in line.devices)
+    still = placement.objective is Objective.LOWEST_AMPLITUDE and not analysis.wind_speeds
+    off_span = f"must lie on the span (its length is {line.span.length})"
+    require(
+        Fault("choice.position.highest", last, off_span) if last > line.span.length else None,
+        Fault("choice", None, "must not place a spoiler on a line that has one") if spoilers else None,
+        Fault("objective", placement.objective.value, "needs wind speeds in the analysis") if still else None,
+    )
+
+
+def _range_faults(name: str, limits: Range) -> Iterator[Fault | None]:
+    yield not_negative(f"{name}.lowest", limits[0])
+    yield finite(f"{name}.highest", limits[1])
+    rule = f"must not be below the lowest ({limits[0]})"
+    yield None if limits[0] <= limits[1] else Fault(f"{name}.highest", limits[1], rule)
