@@ -10,7 +10,7 @@ from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution, solution
 
 try:
-    from engine._kernels import balance, even_parts, monodromy
+    from engine._kernels import balance, even_parts, linearization, monodromy
 
     AVAILABLE = True
 except ImportError:
@@ -54,6 +54,31 @@ def solved_balances(
         (x, step, iterations),
     )
     return solution(x, step, iterations, options)
+
+
+def balance_slopes(
+    model: ReducedModel, member: IntArray, orbits: tuple[FloatArray, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Evaluate the harmonic balance with its slopes as `engine.harmonic.linearized` would.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    member : (cycles,)
+    orbits : tuple of arrays
+        Coefficients (cycles, m, 2 H + 1), angular frequency and wind speed (cycles,).
+
+    Returns
+    -------
+    (cycles, n), (cycles, n, n + 2)
+    """
+    cycles, m, size = orbits[0].shape
+    n = m * size
+    residuals, slopes = np.empty((cycles, n)), np.empty((cycles, n, n + 2))
+    places = _contiguous(member, *orbits)
+    linearization(_parts(model), _shape(model), (cycles, size // 2), places, (residuals, slopes))
+    return residuals, slopes
 
 
 def product_over_period(

@@ -107,6 +107,16 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     return np.concatenate([by_coefficients, merged(by_omega, -2)[..., None]], axis=-1)
 
 
+def wind_slopes(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Differentiate the residual by the wind speed, the co-ordinates held: (cycles, m, 2 H + 1)."""
+    made = basis(orbits.coefficients.shape[-1] // 2)
+    m = model.mass.shape[-1]
+    state = _sampled(orbits, made)
+    speed = orbits.wind_speed[:, None, None]
+    by_rate = (force_gradient(model.load, state)[..., m:] @ state[..., m:, None])[..., 0]
+    return np.asarray((made.projection @ (speed * by_rate - 2.0 * speed * force(model.load, state))).swapaxes(-1, -2))
+
+
 def balance(
     model: ReducedModel, member: IntArray, start: Orbits, options: Options | None = None
 ) -> tuple[Orbits, Solution]:
@@ -153,6 +163,23 @@ def balance(
     else:
         solution = newton(system, x, scale, options)
     return _unpacked(solution.x, m, start.wind_speed), solution
+
+
+def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[FloatArray, FloatArray]:
+    """Return residuals and all their slopes at once, for members (cycles,) of a stack of models.
+
+    Returns
+    -------
+    (cycles, n), (cycles, n, n + 2)
+        With n = m (2 H + 1); slopes by the coefficients, by w and by the wind speed.
+    """
+    if compiled.AVAILABLE:
+        return compiled.balance_slopes(
+            model, member, (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
+        )
+    here = take(model, member)
+    by_wind = merged(wind_slopes(here, orbits), -2)[..., None]
+    return merged(residual(here, orbits), -2), np.concatenate([jacobian(here, orbits), by_wind], axis=-1)
 
 
 def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:

@@ -1,44 +1,20 @@
-/* Harmonic balance by Newton's method, one cycle after another. engine/harmonic.py, theory section 7.2.
+/* The equations of the harmonic balance and their slopes. engine/harmonic.py, theory section 7.2.
  *
  * A product of the load's gradient g(tau) with a Fourier basis needs only the harmonics of g up to 2 H, since
  * 2 cos a cos b = cos(a - b) + cos(a + b) and so on: blocks of the Jacobian are sums of Toeplitz and Hankel matrices. */
-#include "kernels.h"
+#include "balance.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct {
-    int m, harmonics, size, unknowns, stride, samples, groups;
-    int orders;          /* of one spectrum: cos k tau for k = -H ... 2 H, padded, then sin k tau likewise */
-    int *place;          /* (unknowns), where each stands in the system: idle co-ordinates first */
-    int *active;         /* (2 m), whether the load depends on this component of (q, q'/U) */
-    double *waves;       /* (samples, 2 orders), cos and sin of k tau over the number of samples */
-    double *spectra;     /* (rows, 2 orders): the same of every row of the load */
-    double *matrix;      /* (unknowns, stride), with the right side behind each row */
-    double **rows;       /* (unknowns), into the matrix */
-    double *slope;       /* (m, 2 H + 1), coefficients of dq/dtau */
-    double *given;       /* (unknowns), the start */
-    Lanes *values;       /* (2 H + 1, groups), the basis at groups of samples, 0 beyond the last */
-    Lanes *loads;        /* (rows, groups): f, its gradient, and its derivative by w / U */
-    Lanes *state, *scratch;
-} Workspace;
-
-/* The rows of the load: f_i, df_i/d(component v of (q, q'/U)), df_i/d(w/U). */
-static int force_row(int i) { return i; }
-static int gradient_row(const Workspace *w, int i, int v) { return w->m + i * 2 * w->m + v; }
-static int rate_row(const Workspace *w, int i) { return w->m + w->m * 2 * w->m + i; }
-static int row_count(const Workspace *w) { return 2 * w->m * (1 + w->m); }
-
-static const double *spectrum(const Workspace *w, int row) { return w->spectra + row * 2 * w->orders + w->harmonics; }
-
-static void release(Workspace *w)
+void release_system(System *w)
 {
     free(w->place), free(w->active), free(w->waves), free(w->spectra), free(w->matrix), free(w->rows), free(w->slope);
     free(w->given), free(w->values), free(w->loads), free(w->state), free(w->scratch);
 }
 
-static void fill_waves(Workspace *w)
+static void fill_waves(System *w)
 {
     for (int s = 0; s < w->samples; s++) {
         const double tau = 2.0 * M_PI * s / w->samples;
@@ -55,9 +31,9 @@ static void fill_waves(Workspace *w)
     }
 }
 
-static int prepare(Workspace *w, const Model *model, int harmonics)
+int prepare_system(System *w, const Model *model, int harmonics)
 {
-    *w = (Workspace){.m = model->m, .harmonics = harmonics, .size = 2 * harmonics + 1};
+    *w = (System){.m = model->m, .harmonics = harmonics, .size = 2 * harmonics + 1};
     w->samples = 4 * harmonics + 2;
     w->groups = (w->samples + LANES - 1) / LANES;
     w->orders = (3 * harmonics + LANES) / LANES * LANES;
@@ -83,8 +59,7 @@ static int prepare(Workspace *w, const Model *model, int harmonics)
     return 1;
 }
 
-/* Put those co-ordinates first on which the load does not depend: their columns are nearly empty. */
-static void arrange(Workspace *w, const Model *model)
+void arrange_system(System *w, const Model *model)
 {
     const int m = w->m;
     memset(w->active, 0, 2 * (size_t)m * sizeof *w->active);
@@ -101,7 +76,7 @@ static void arrange(Workspace *w, const Model *model)
     memset(w->spectra, 0, (size_t)row_count(w) * 2 * (size_t)w->orders * sizeof *w->spectra);
 }
 
-static void differentiate(Workspace *w, const double *coefficients)
+static void differentiate(System *w, const double *coefficients)
 {
     for (int j = 0; j < w->m; j++) {
         const double *a = coefficients + j * w->size;
@@ -113,7 +88,7 @@ static void differentiate(Workspace *w, const double *coefficients)
     }
 }
 
-static inline Lanes series(const Workspace *w, const double *coefficients, int group)
+static inline Lanes series(const System *w, const double *coefficients, int group)
 {
     Lanes sum = {0};
     for (int c = 0; c < w->size; c++)
@@ -122,7 +97,7 @@ static inline Lanes series(const Workspace *w, const double *coefficients, int g
 }
 
 /* Evaluate the load, its gradient and its derivative by w / U at every sample. */
-WIDE static void sample(Workspace *w, const Model *model, const double *coefficients, double rate)
+WIDE static void sample(System *w, const Model *model, const double *coefficients, double rate)
 {
     const int m = w->m;
     Lanes *state = w->state, *motion = state + 2 * m, *force = motion + m, *gradient = force + m;
@@ -146,7 +121,7 @@ WIDE static void sample(Workspace *w, const Model *model, const double *coeffici
 }
 
 /* Transform one row of the load; the number of samples is even. */
-WIDE static void transform(Workspace *w, int row)
+WIDE static void transform(System *w, int row)
 {
     const double *load = (const double *)(w->loads + row * w->groups);
     for (int k = 0; k < 2 * w->orders; k += LANES) {
@@ -160,7 +135,7 @@ WIDE static void transform(Workspace *w, int row)
 }
 
 /* Transform every row of the load that is not zero for good. */
-static void transform_all(Workspace *w)
+static void transform_all(System *w)
 {
     for (int i = 0; i < w->m; i++) {
         transform(w, force_row(i));
@@ -172,7 +147,7 @@ static void transform_all(Workspace *w)
 }
 
 /* First entry of the block of equation i and co-ordinate j. */
-static double *block_of(const Workspace *w, int i, int j)
+static double *block_of(const System *w, int i, int j)
 {
     return w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride + w->place[j * w->size];
 }
@@ -180,7 +155,7 @@ static double *block_of(const Workspace *w, int i, int j)
 /* Subtract U^2 P diag(df/dq) V + U w P diag(df/d(q'/U)) V D from the block of equation i and co-ordinate j, with V the
  * basis at the samples, P its projection and D its derivative: with E and O the even and the odd spectrum,
  * cos a cos b gives E(b - a) + E(a + b), cos a sin b gives O(a + b) + O(b - a), and so on. */
-WIDE static void subtract_load_block(Workspace *w, int i, int j, double speed, double omega)
+WIDE static void subtract_load_block(System *w, int i, int j, double speed, double omega)
 {
     const double *even = spectrum(w, gradient_row(w, i, j)), *odd = even + w->orders;
     const double *rate_even = spectrum(w, gradient_row(w, i, w->m + j)), *rate_odd = rate_even + w->orders;
@@ -204,7 +179,7 @@ WIDE static void subtract_load_block(Workspace *w, int i, int j, double speed, d
 }
 
 /* Add K - a^2 w^2 M and a w C to the block of equation i and co-ordinate j. */
-static void add_linear_block(Workspace *w, const Model *model, int i, int j, double omega)
+static void add_linear_block(System *w, const Model *model, int i, int j, double omega)
 {
     const int at = i * w->m + j;
     double *block = block_of(w, i, j);
@@ -221,7 +196,7 @@ static void add_linear_block(Workspace *w, const Model *model, int i, int j, dou
 }
 
 /* Add the linear terms of co-ordinate j to the residual of equation i and to its derivative by w. */
-static void add_motion(Workspace *w, const Model *model, int i, int j, const double *x)
+static void add_motion(System *w, const Model *model, int i, int j, const double *x)
 {
     const int at = i * w->m + j, n = w->unknowns;
     const double mass = model->mass[at], damping = model->damping[at], omega = x[n - 1];
@@ -235,7 +210,7 @@ static void add_motion(Workspace *w, const Model *model, int i, int j, const dou
 }
 
 /* Subtract the load's harmonics from the residual of equation i and from its derivative by w. */
-static void subtract_load(Workspace *w, int i, double speed)
+static void subtract_load(System *w, int i, double speed)
 {
     const double *force = spectrum(w, force_row(i)), *by_rate = spectrum(w, rate_row(w, i));
     double *by_omega = block_of(w, i, 0) - w->place[0] + w->unknowns - 1;
@@ -247,8 +222,7 @@ static void subtract_load(Workspace *w, int i, double speed)
     }
 }
 
-/* Fill the system of one step of Newton's method: the balance, and the phase condition as the last row. */
-static void assemble(Workspace *w, const Model *model, const double *x, double speed, const double *reference)
+void assemble_system(System *w, const Model *model, const double *x, double speed)
 {
     const int m = w->m, n = w->unknowns;
     const double omega = x[n - 1];
@@ -265,65 +239,4 @@ static void assemble(Workspace *w, const Model *model, const double *x, double s
                 subtract_load_block(w, i, j, speed, omega);
         }
     }
-    double *phase = w->matrix + (ptrdiff_t)(n - 1) * w->stride;
-    for (int u = 0; u < n - 1; u++) {
-        phase[w->place[u]] = reference[u];
-        phase[n] += reference[u] * (x[u] - w->given[u]);
-    }
-    for (int row = 0; row < n; row++)
-        w->rows[row] = w->matrix + (ptrdiff_t)row * w->stride;
-}
-
-/* Return the root mean square of change / scale. */
-static double scaled_size(const Workspace *w, const double *scale)
-{
-    double sum = 0.0;
-    for (int u = 0; u < w->unknowns; u++) {
-        const double part = w->rows[w->place[u]][w->unknowns] / scale[u];
-        sum += part * part;
-    }
-    return sqrt(sum / w->unknowns);
-}
-
-static int all_finite(int count, const double *x)
-{
-    for (int u = 0; u < count; u++)
-        if (!isfinite(x[u]))
-            return 0;
-    return 1;
-}
-
-static void iterate(Workspace *w, const Model *model, const Balances *balances, ptrdiff_t cycle, const Options *options)
-{
-    const int n = w->unknowns;
-    double *x = balances->x + cycle * n;
-    memcpy(w->given, x, (size_t)n * sizeof *x);
-    for (int iteration = 0; iteration < options->iterations && all_finite(n, x); iteration++) {
-        assemble(w, model, x, balances->wind_speed[cycle], balances->reference + cycle * (n - 1));
-        if (!eliminate(n, w->rows))
-            return;
-        const double size = scaled_size(w, balances->scale + cycle * n);
-        if (!isfinite(size))
-            return;
-        const double taken = size > options->largest_step ? options->largest_step / size : 1.0;
-        for (int u = 0; u < n; u++)
-            x[u] -= taken * w->rows[w->place[u]][n];
-        balances->step[cycle] = size;
-        balances->iterations[cycle] = iteration + 1;
-        if (size <= options->tolerance)
-            return;
-    }
-}
-
-int solve_balances(const Model *stack, const Balances *balances, const Options *options)
-{
-    Workspace workspace;
-    const int ready = prepare(&workspace, stack, balances->harmonics);
-    for (ptrdiff_t cycle = 0; ready && cycle < balances->cycles; cycle++) {
-        const Model model = model_of(stack, balances->member[cycle]);
-        arrange(&workspace, &model);
-        iterate(&workspace, &model, balances, cycle, options);
-    }
-    release(&workspace);
-    return ready;
 }

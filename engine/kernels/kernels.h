@@ -58,6 +58,19 @@ typedef struct {
 /* Solve every balance by Newton's method; return 0 if memory is short. Theory section 7.2. */
 int solve_balances(const Model *stack, const Balances *balances, const Options *options);
 
+/* Orbits whose balance is wanted: coefficients (cycles, m, 2 H + 1); angular_frequency, wind_speed (cycles); with
+ * n = m (2 H + 1), residuals (cycles, n) and slopes (cycles, n, n + 2), by the coefficients, w and U. */
+typedef struct {
+    ptrdiff_t cycles;
+    int harmonics;
+    const ptrdiff_t *member;
+    const double *coefficients, *angular_frequency, *wind_speed;
+    double *residuals, *slopes;
+} Linearizations;
+
+/* Evaluate every balance and its slopes; return 0 if memory is short. */
+int linearize_balances(const Model *stack, const Linearizations *wanted);
+
 /* Orbits whose monodromy is wanted: inverse_mass (cycles, m, m); coefficients (cycles, m, 2 H + 1);
  * angular_frequency, wind_speed (cycles); values, slopes (2, steps, 2 H + 1), the basis and its derivative by tau at the
  * two Gauss points of every step; matrices (cycles, 2 m, 2 m). Steps is a multiple of LANES. */

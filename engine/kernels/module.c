@@ -100,6 +100,30 @@ static PyObject *balance(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, done);
 }
 
+static PyObject *linearization(PyObject *Py_UNUSED(self), PyObject *arguments)
+{
+    Buffers buffers = {.count = 0};
+    PyObject *parts, *member, *coefficients, *frequency, *speed, *residuals, *slopes;
+    int shape[3], harmonics;
+    Py_ssize_t members, cycles;
+    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOO)(OO)", &PyTuple_Type, &parts, &members, shape, shape + 1,
+                          shape + 2, &cycles, &harmonics, &member, &coefficients, &frequency, &speed, &residuals, &slopes))
+        return NULL;
+    const Py_ssize_t n = shape[0] * (2 * (Py_ssize_t)harmonics + 1);
+    Model model;
+    Linearizations wanted = {.cycles = cycles, .harmonics = harmonics};
+    int done = 1;
+    if (read_model(&buffers, parts, shape, &model, members) && (wanted.member = INDICES(member, cycles))
+        && within(wanted.member, cycles, members) && (wanted.coefficients = REALS(coefficients, cycles * n))
+        && (wanted.angular_frequency = REALS(frequency, cycles)) && (wanted.wind_speed = REALS(speed, cycles))
+        && (wanted.residuals = RESULT(residuals, cycles * n)) && (wanted.slopes = RESULT(slopes, cycles * n * (n + 2)))) {
+        Py_BEGIN_ALLOW_THREADS
+        done = linearize_balances(&model, &wanted);
+        Py_END_ALLOW_THREADS
+    }
+    return finished(&buffers, done);
+}
+
 static PyObject *monodromy(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
@@ -146,6 +170,7 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
 
 static PyMethodDef methods[] = {
     {"balance", balance, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
+    {"linearization", linearization, METH_VARARGS, "Evaluate the harmonic balance of a stack of cycles with its slopes."},
     {"monodromy", monodromy, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
     {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},
     {NULL, NULL, 0, NULL},

@@ -12,7 +12,7 @@ from engine.arrays import FloatArray, IntArray
 from engine.cycles import Cycles, energy_starts, find_cycles
 from engine.describing import explicit_cycles
 from engine.floquet import floquet, monodromy
-from engine.harmonic import Orbits, balance
+from engine.harmonic import Orbits, balance, linearized
 from engine.hybrid import ReducedModel, take
 from engine.newton import Options, Solution
 from engine.spec import Analysis, Closure
@@ -65,6 +65,20 @@ def test_a_newton_step_is_that_of_the_numpy_form(name: str, harmonics: int, both
     assert found.angular_frequency == pytest.approx(expected.angular_frequency, rel=1e-9)
     assert how.step == pytest.approx(expected_how.step, rel=1e-9)
     assert how.iterations.tolist() == expected_how.iterations.tolist() == [1] * COPIES
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_slopes_are_those_of_the_numpy_form(name: str, both: pytest.MonkeyPatch) -> None:
+    model = perturbed(MODELS[name]())
+    orbits = random_orbits(model, 5, COPIES)
+    member = np.arange(COPIES) % 4
+    found = linearized(model, member, orbits)
+    both.setattr(compiled, "AVAILABLE", False)
+    expected = linearized(model, member, orbits)
+    for mine, theirs in zip(found, expected, strict=True):
+        for column in np.ndindex(*mine.shape[2:]):
+            here = (..., *column)
+            assert mine[here] == pytest.approx(theirs[here], rel=1e-9, abs=1e-11 * np.abs(theirs[here]).max())
 
 
 @pytest.mark.parametrize("name", MODELS)

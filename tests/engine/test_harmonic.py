@@ -15,6 +15,7 @@ from engine.harmonic import (
     fourier,
     half_peak_to_peak,
     jacobian,
+    linearized,
     oscillation_size,
     residual,
     resized,
@@ -73,6 +74,21 @@ def test_jacobian_is_the_derivative_of_the_residual(name: str) -> None:
         second = shifted(column, 2.0 * step) - shifted(column, -2.0 * step)
         expected = (8.0 * first - second) / (12.0 * step)
         assert found[..., column] == pytest.approx(expected, rel=1e-6, abs=1e-9 * np.abs(found).max())
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_slopes_by_the_wind_speed_are_derivatives(name: str) -> None:
+    model = take(MODELS[name](), np.zeros(2, dtype=np.intp))
+    orbits = random_orbits(model, 3, 2)
+    step = 1e-3
+
+    def shifted(by: float) -> FloatArray:
+        return linearized(model, np.arange(2), replace(orbits, wind_speed=orbits.wind_speed + by))[0]
+
+    first, second = (shifted(n * step) - shifted(-n * step) for n in (1.0, 2.0))
+    expected = (8.0 * first - second) / (12.0 * step)
+    found = linearized(model, np.arange(2), orbits)[1][..., -1]
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-8 * np.abs(expected).max())
 
 
 def solved(model: ReducedModel, wind_speed: float, harmonics: int) -> Orbits:

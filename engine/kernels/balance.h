@@ -1,0 +1,41 @@
+/* The system of one step of Newton's method for a cycle, and the room that it takes. */
+#ifndef GALLOPING_BALANCE_H
+#define GALLOPING_BALANCE_H
+
+#include "kernels.h"
+
+typedef struct {
+    int m, harmonics, size, unknowns, stride, samples, groups;
+    int orders;          /* of one spectrum: cos k tau for k = -H ... 2 H, padded, then sin k tau likewise */
+    int *place;          /* (unknowns), where each stands in the system: idle co-ordinates first */
+    int *active;         /* (2 m), whether the load depends on this component of (q, q'/U) */
+    double *waves;       /* (samples, 2 orders), cos and sin of k tau over the number of samples */
+    double *spectra;     /* (rows, 2 orders): the same of every row of the load */
+    double *matrix;      /* (unknowns, stride), with the right side behind each row */
+    double **rows;       /* (unknowns), into the matrix */
+    double *slope;       /* (m, 2 H + 1), coefficients of dq/dtau */
+    double *given;       /* (unknowns), the start */
+    Lanes *values;       /* (2 H + 1, groups), the basis at groups of samples, 0 beyond the last */
+    Lanes *loads;        /* (rows, groups): f, its gradient, and its derivative by w / U */
+    Lanes *state, *scratch;
+} System;
+
+/* The rows of the load: f_i, df_i/d(component v of (q, q'/U)), df_i/d(w/U). */
+static inline int force_row(int i) { return i; }
+static inline int gradient_row(const System *w, int i, int v) { return w->m + i * 2 * w->m + v; }
+static inline int rate_row(const System *w, int i) { return w->m + w->m * 2 * w->m + i; }
+static inline int row_count(const System *w) { return 2 * w->m * (1 + w->m); }
+
+static inline const double *spectrum(const System *w, int row) { return w->spectra + row * 2 * w->orders + w->harmonics; }
+
+/* Make room for models of one shape; return 0 if memory is short. */
+int prepare_system(System *w, const Model *model, int harmonics);
+void release_system(System *w);
+
+/* Put those co-ordinates first on which the load does not depend: their columns are nearly empty. */
+void arrange_system(System *w, const Model *model);
+
+/* Fill all rows but the last with the balance at x, its residual as the right side. */
+void assemble_system(System *w, const Model *model, const double *x, double speed);
+
+#endif
