@@ -7,7 +7,7 @@ import platform
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from benchmarks import engine_speed
+from benchmarks import engine_speed, scaling
 
 ROOT = Path(__file__).parents[1]
 Section = Callable[[], Iterator[tuple[str, float]]]
@@ -41,7 +41,11 @@ def main() -> None:
     """Run the sections asked for and write what they found."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--fleet", type=int, default=1000, help="largest number of lines of the fleet")
+    parser.add_argument("--long", type=int, nargs="?", const=10_000, help="run the fleet alone, up to so many lines")
     arguments = parser.parse_args()
+    if arguments.long:
+        _write_long(arguments.long)
+        return
     figures: dict[str, float] = {}
     for section in _sections(arguments.fleet):
         for name, value in section():
@@ -71,6 +75,22 @@ def _write_page(figures: dict[str, float]) -> None:
     shares = engine_speed.profile()
     rows = [f"| `{place}` | {share:.1%} |" for place, share in shares if share >= 0.01]
     _replace("profile", ["| where | share of the time |", "|---|---|", *rows])
+
+
+def _write_long(largest: int) -> None:
+    """Run the fleet at every size, and replace its table."""
+    runs: list[scaling.Run] = []
+    for run in scaling.long_runs(largest):
+        runs.append(run)
+        print(
+            f"{run.lines:8} lines {run.seconds:10.1f} s {run.lines / run.seconds:8.1f} lines/s {run.peak:8.0f} MB",
+            flush=True,
+        )
+    rows = [f"| {run.lines} | {run.seconds:.1f} | {run.lines / run.seconds:.1f} | {run.peak:.0f} |" for run in runs]
+    head = ["| lines | processor time [s] | lines a second | peak memory of the process [MB] |", "|---|---|---|---|"]
+    _replace(
+        "long", [*head, *rows, "", f"Exponent of the time over the number of lines: {scaling.exponent(runs):.3f}."]
+    )
 
 
 def _replace(mark: str, lines: list[str]) -> None:
