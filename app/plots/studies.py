@@ -37,7 +37,7 @@ class Study:
 
 
 @dataclass(frozen=True, slots=True)
-class _Series:
+class Curve:
     """Cycles that belong together: look and name in the legend, abscissa and row of each cycle, and their model."""
 
     name: str
@@ -69,13 +69,13 @@ def study(title: str, studies: Mapping[str, Study], extension: Extension, abscis
 
 def _study_figure(title: str, studies: Mapping[str, Study], abscissa: Abscissa) -> Figure:
     first = next(iter(studies.values()))
-    series = list(_all_series(studies, abscissa))
+    found = list(curves(studies, abscissa))
     loops = sorted({count for one in studies.values() for count in loops_and_models(one.found)[0]})
     figure = Figure(figsize=(10.5, 1.5 + 2.5 * len(loops)), layout="constrained")
     panels = figure.subplots(len(loops), len(_RATIOS), squeeze=False, sharex=True)
     for count, row in zip(loops, panels, strict=True):
         for panel, (text, ratio) in zip(row, _RATIOS, strict=True):
-            for one in series:
+            for one in found:
                 _draw(panel, one, [(place, ratio(r), r) for place, r in one.points if r["loops"] == count])
             panel.set_ylabel(f"{text}\n{loops_name(count)}" if panel is row[0] else text)
             panel.set_ylim(bottom=0.0)
@@ -83,7 +83,7 @@ def _study_figure(title: str, studies: Mapping[str, Study], abscissa: Abscissa) 
     for panel in panels[-1]:
         panel.set_xlabel(_label(first.axes, abscissa))
     figure.suptitle(textwrap.fill(title, 90), fontweight="bold")
-    _legend(figure, series, sum(len(one.found.get("failures", ())) for one in studies.values()))
+    _legend(figure, found, sum(len(one.found.get("failures", ())) for one in studies.values()))
     return figure
 
 
@@ -107,11 +107,11 @@ def _label(axes: Sequence[str], abscissa: Abscissa) -> str:
     if axes[0] in _DAMPING:
         return "reduced critical wind speed U_c / (f L_x)"
     if axes[0] in _TENSIONS:
-        return "tension ratio H / w"
+        return "tension ratio H / w, iced"
     return "span ratio L_x / s_a" if axes[0] == _LENGTH else axes[0]
 
 
-def _all_series(studies: Mapping[str, Study], abscissa: Abscissa) -> Iterator[_Series]:
+def curves(studies: Mapping[str, Study], abscissa: Abscissa) -> Iterator[Curve]:
     """Yield the cycles of each study by model, and by wind speed unless that is what varies."""
     speeds = sorted({row["wind_speed_m_per_s"] for one in studies.values() for row in _lasting(one)})
     colours = iter(_PALETTE * (1 + len(studies) * len(speeds) // len(_PALETTE)))
@@ -124,7 +124,7 @@ def _all_series(studies: Mapping[str, Study], abscissa: Abscissa) -> Iterator[_S
             for model in NAMES:
                 points = [(where(row), row) for row in rows if row["model"] == model and where(row) is not None]
                 if points:
-                    yield _Series(", ".join(part for part in parts if part), colour, size, model, points)
+                    yield Curve(", ".join(part for part in parts if part), colour, size, model, points)
 
 
 def _lasting(study: Study) -> list[Row]:
@@ -177,7 +177,7 @@ def _reduced(critical: float | None, cycle: Row) -> float | None:
     return float(critical * cycle["reduced_wind_speed"] / cycle["wind_speed_m_per_s"])
 
 
-def _draw(panel: Axes, series: _Series, points: Sequence[tuple[Any, float, Row]]) -> None:
+def _draw(panel: Axes, curve: Curve, points: Sequence[tuple[Any, float, Row]]) -> None:
     """Draw cycles, stable ones filled and joined where there is one at each place."""
     for stability in dict.fromkeys(row["stability"] for _, _, row in points):
         here = [(place, value) for place, value, row in points if row["stability"] == stability]
@@ -188,19 +188,19 @@ def _draw(panel: Axes, series: _Series, points: Sequence[tuple[Any, float, Row]]
             *zip(*(sorted(here) if numeric else here), strict=True),
             linestyle="-" if joined else "none",
             linewidth=0.8,
-            marker=MARKERS[series.model],
-            markersize=series.size,
-            color=series.colour,
-            markerfacecolor=series.colour if stability == "stable" else "lightgrey",
+            marker=MARKERS[curve.model],
+            markersize=curve.size,
+            color=curve.colour,
+            markerfacecolor=curve.colour if stability == "stable" else "lightgrey",
             clip_on=False,
         )
 
 
-def _legend(figure: Figure, series: Sequence[_Series], failed: int) -> None:
+def _legend(figure: Figure, shown: Sequence[Curve], failed: int) -> None:
     """Explain the marks, as far as that is short, and say how many points failed."""
-    several = len({one.model for one in series}) > 1
+    several = len({one.model for one in shown}) > 1
     handles = []
-    for one in series[:_MOST_IN_LEGEND]:
+    for one in shown[:_MOST_IN_LEGEND]:
         parts = [one.name, NAMES[one.model] if several or not one.name else ""]
         label, marker = ", ".join(part for part in parts if part), MARKERS[one.model]
         handles.append(Line2D([], [], marker=marker, markersize=one.size, color=one.colour, linewidth=0.8, label=label))

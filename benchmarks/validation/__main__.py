@@ -9,7 +9,9 @@ from benchmarks.validation import (
     frequencies,
     limit_cycles,
     model_comparison,
+    relative_wind,
     static_twist,
+    studies,
 )
 from benchmarks.validation.common import ROOT
 
@@ -27,6 +29,8 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "limit_cycles": limit_cycles.section,
     "direct_integration": direct_integration.section,
     "model_comparison": model_comparison.section,
+    "studies": studies.section,
+    "relative_wind": relative_wind.section,
     "static_twist": static_twist.section,
 }
 
@@ -38,10 +42,11 @@ def main() -> None:
     wanted = parser.parse_args().sections or list(SECTIONS)
     if unknown := set(wanted) - set(SECTIONS):
         parser.error(f"there are no sections {', '.join(sorted(unknown))}")
-    written = _written()
+    new = {}
     for name in wanted:
         print(name, flush=True)
-        written[name] = "\n".join(SECTIONS[name]())
+        new[name] = "\n".join(SECTIONS[name]())
+    written = _written() | new
     texts = [f"{_mark(name)}\n{written[name]}" for name in SECTIONS if name in written]
     PAGE.write_text("\n\n".join([HEADER, *texts]) + "\n")
 

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.image import imread
 
 from app import plots
-from app.plots.studies import _all_series, _label
+from app.plots.studies import _label, curves
 
 VALUES: dict[str, list[Any]] = {
     "damping.vertical_ratio": [0.0003, 0.0005, 0.0007],
@@ -50,21 +50,21 @@ def study(*axes: str, winds: tuple[float, ...] = (4.0,), failures: int = 0) -> p
     ],
 )
 def test_cycles_stand_over_the_ratio_of_the_source(axes: tuple[str, ...], expected: list[Any]) -> None:
-    (series,) = _all_series({"": study(*axes)}, "reduced")
+    (series,) = curves({"": study(*axes)}, "reduced")
     places = [place for place, _ in series.points]
     assert places == (pytest.approx(expected) if isinstance(expected[0], float) else expected)
 
 
 @pytest.mark.parametrize("axis", VALUES)
 def test_cycles_stand_over_the_values_themselves_if_that_is_wanted(axis: str) -> None:
-    (series,) = _all_series({"": study(axis)}, "parameter")
+    (series,) = curves({"": study(axis)}, "parameter")
     assert [place for place, _ in series.points] == VALUES[axis]
     assert _label([axis], "parameter") == axis
 
 
 def test_each_wind_speed_and_each_line_is_a_series() -> None:
     both = {"twin": study("span.length_m", winds=(4.0, 6.0)), "quad": study("span.length_m", winds=(4.0, 6.0))}
-    series = list(_all_series(both, "reduced"))
+    series = list(curves(both, "reduced"))
     assert [one.name for one in series] == ["twin, 4 m/s", "twin, 6 m/s", "quad, 4 m/s", "quad, 6 m/s"]
     assert len({one.colour for one in series}) == 4
 
