@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -13,15 +13,18 @@ REQUEST_ID = "X-Request-ID"
 
 _READS = frozenset({"GET", "HEAD"})
 
+Observe = Callable[[str, str, int, float], None]
+
 _logger = logging.getLogger(__name__)
 
 
 class Access:
     """ASGI middleware around all others, so that the answers to defects carry the id, too."""
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an application."""
+    def __init__(self, app: ASGIApp, observe: Observe) -> None:
+        """Wrap an application; `observe` is told method, route, status and seconds of every request."""
         self.app = app
+        self.observe = observe
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
@@ -44,7 +47,9 @@ class Access:
             try:
                 await self.app(scope, receive, send_with_id)
             finally:
-                _log(scope, status, time.perf_counter() - begin)
+                seconds = time.perf_counter() - begin
+                self.observe(scope["method"], route_of(scope), status, seconds)
+                _log(scope, status, seconds)
 
 
 def _log(scope: Scope, status: int, seconds: float) -> None:

@@ -14,7 +14,7 @@ from sqlalchemy import ColumnElement, Select, and_, delete, func, insert, select
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
-from app import audit
+from app import audit, correlation, tallies
 from app.auth import Caller
 from app.convert import NumberedLine
 from app.db import database_time
@@ -254,6 +254,8 @@ def _as_job(caller: Caller, batch_id: UUID, chunk: Chunk, now: datetime) -> Job:
         batch_id=batch_id,
         document=document,
         input_hash=input_hash(document),
+        request_id=correlation.request_id(),
+        trace_parent=correlation.trace_parent(),
         lines=chunk.lines,
     )
 
@@ -262,7 +264,9 @@ def _dismiss_waiting(session: Session, batch_id: UUID) -> None:
     now = database_time(session)
     waiting = Job.batch_id == batch_id, Job.status == JobStatus.ACCEPTED
     statement = update(Job).where(*waiting).values(status=JobStatus.DISMISSED, finished_at=now)
-    _record(session, session.execute(statement.returning(Job.id, Job.attempt)), JobEventKind.DISMISSED, now)
+    dismissed = session.execute(statement.returning(Job.id, Job.attempt)).all()
+    _record(session, dismissed, JobEventKind.DISMISSED, now)
+    tallies.add_end(session, JobStatus.DISMISSED, chunk=True, count=len(dismissed))
 
 
 def _ask_running(session: Session, batch_id: UUID) -> bool:

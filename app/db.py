@@ -5,7 +5,7 @@ from pathlib import Path
 from sqlite3 import Connection as SQLiteConnection
 from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event, make_url, select
+from sqlalchemy import Connection, Engine, NullPool, create_engine, event, make_url, select
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.functions import func
 
@@ -14,15 +14,17 @@ from app.tables import UtcDateTime
 
 _BUSY_SECONDS = 30.0
 _THREADS = 40
+_IMPATIENT: dict[str, Any] = {"connect_timeout": 2, "options": "-c statement_timeout=2000"}
 _CLOCK = "time by the database's clock"
 
 
-def make_engine(settings: Settings) -> Engine:
+def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
     """Make an engine for the database of the settings; the directory of an SQLite file is made if it is missing.
 
     SQLite: write-ahead log, foreign keys, a busy timeout, and every transaction begins as a writer (`BEGIN IMMEDIATE`)
     unless its session comes from `session_factory(..., read_only=True)`: a reader that turns into a writer midway
     would fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use.
+    An impatient engine is for looks whether the database is there: it connects anew for each, and gives up soon.
 
     Raises
     ------
@@ -31,12 +33,14 @@ def make_engine(settings: Settings) -> Engine:
     """
     url = make_url(settings.database_url)
     if url.get_backend_name() != "sqlite":
+        if impatient:
+            return create_engine(url, poolclass=NullPool, connect_args=_IMPATIENT)
         # Enough for every thread of the API: what overflows a pool is closed after each use and opened anew.
         pool = {"pool_size": _THREADS, "max_overflow": 0}
         return create_engine(url, pool_pre_ping=True, connect_args={"connect_timeout": 10}, **pool)
     if url.database:
         Path(url.database).parent.mkdir(parents=True, exist_ok=True)
-    engine = create_engine(url, connect_args={"timeout": _BUSY_SECONDS})
+    engine = create_engine(url, connect_args={"timeout": _IMPATIENT["connect_timeout"] if impatient else _BUSY_SECONDS})
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine

@@ -13,7 +13,7 @@ from sqlalchemy import ColumnElement, Select, delete, select, tuple_
 from sqlalchemy.orm import Session, defer, sessionmaker
 from uuid_utils.compat import uuid7
 
-from app import audit
+from app import audit, correlation, tallies
 from app.auth import Caller
 from app.db import database_time
 from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
@@ -73,6 +73,8 @@ def create(
         asset_id=asset_id,
         document=dict(document),
         input_hash=input_hash(document),
+        request_id=correlation.request_id(),
+        trace_parent=correlation.trace_parent(),
         tags=[JobTag(key=key, value=value) for key, value in sorted((tags or {}).items())],
     )
     session.add(job)
@@ -129,6 +131,7 @@ def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
         job.status, job.finished_at = JobStatus.DISMISSED, database_time(session)
         audit.record(session, caller, AuditAction.JOB_CANCELLED, job_id)
         record(session, job_id, JobEventKind.DISMISSED, attempt=job.attempt)
+        tallies.add_end(session, job.status, chunk=job.batch_id is not None)
         return CancelOutcome.DISMISSED
     if job.status is JobStatus.RUNNING:
         if not job.cancel_requested:

@@ -16,12 +16,13 @@ from uuid import UUID
 from sqlalchemy import ColumnElement, CursorResult, and_, false, func, or_, select, update
 from sqlalchemy.orm import Session
 
-from app import results
+from app import results, tallies
 from app.correlation import Ids
 from app.db import database_time
 from app.jobs import record
 from app.settings import Settings
 from app.tables import FailureKind, Job, JobEventKind, JobStatus
+from app.tallies import Name
 
 if TYPE_CHECKING:
     from app.convert import PointResult
@@ -46,6 +47,7 @@ class Claim:
     document: dict[str, Any]
     batch_id: UUID | None = None
     ids: Ids = field(default_factory=Ids)
+    claimed_at: datetime | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +82,7 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
         return None
     record(session, job_id, JobEventKind.RUNNING, attempt=taken.attempt, detail=owner)
     ids = Ids(taken.request_id, taken.trace_parent, str(job_id), taken.attempt)
-    return Claim(job_id, taken.attempt, taken.document, taken.batch_id, ids)
+    return Claim(job_id, taken.attempt, taken.document, taken.batch_id, ids, now)
 
 
 def heartbeat(session: Session, held: Claim, lease_seconds: float, progress: float, step: str) -> Beat:
@@ -128,6 +130,8 @@ def release_expired(session: Session, settings: Settings, owner: str | None = No
     released = list(session.scalars(statement.with_for_update(skip_locked=True, of=Job)))
     for job in released:
         _release(session, job, settings, now)
+    if released:
+        tallies.add(session, Name.LEASES, "returned" if owner else "expired", count=len(released))
     return len(released)
 
 
@@ -199,14 +203,22 @@ def _end(
 ) -> bool:
     if changes["status"] is not JobStatus.DISMISSED:
         changes["failed_lines"] = Job.lines - sum(point.failure is None for point in points)  # null but for a chunk
-    over = {"finished_at": database_time(session), "lease_owner": None, "lease_expires_at": None, "step": ""}
+    now = database_time(session)
+    over = {"finished_at": now, "lease_owner": None, "lease_expires_at": None, "step": ""}
     statement = update(Job).where(*_guard(held)).values(**over, **changes)
     ended = session.execute(statement.execution_options(synchronize_session=False))
     if not isinstance(ended, CursorResult) or ended.rowcount != 1:
         return False
     results.store(session, held.job_id, points)
     record(session, held.job_id, JobEventKind(changes["status"].value), attempt=held.attempt, detail=detail)
+    _count_end(session, held, changes, now)
     return True
+
+
+def _count_end(session: Session, held: Claim, changes: dict[str, Any], now: datetime) -> None:
+    seconds = (now - (held.claimed_at or now)).total_seconds()
+    chunk = held.batch_id is not None
+    tallies.add_end(session, changes["status"], changes.get("failure_kind"), chunk=chunk, seconds=seconds)
 
 
 def _release(session: Session, job: Job, settings: Settings, now: datetime) -> None:
@@ -218,6 +230,7 @@ def _release(session: Session, job: Job, settings: Settings, now: datetime) -> N
         job.status, job.dispatched_at, job.started_at, job.progress = JobStatus.ACCEPTED, None, None, 0.0
     else:
         job.status, job.finished_at = JobStatus(kind.value), now
+        tallies.add_end(session, job.status, failure.kind if failure else None, chunk=job.batch_id is not None)
     if failure is not None:
         job.failure_kind, job.failure_detail, job.failed_lines = failure.kind, failure.detail, job.lines
     detail = failure.detail if failure else None

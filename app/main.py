@@ -8,7 +8,7 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.types import ASGIApp
 
-from app import errors
+from app import errors, metrics
 from app.access import Access
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
@@ -39,7 +39,7 @@ class Service(FastAPI):
 
     def build_middleware_stack(self) -> ASGIApp:
         """Return the application inside of what must hold even for the answer to a defect."""
-        return Access(SecurityHeaders(super().build_middleware_stack()))
+        return Access(SecurityHeaders(super().build_middleware_stack()), self.state.requests.observe)
 
 
 def create_app(settings: Settings | None = None) -> Service:
@@ -61,6 +61,7 @@ def create_app(settings: Settings | None = None) -> Service:
         await meter.close()
         app.state.sender.close()
         database.dispose()
+        app.state.prober.dispose()
 
     app = Service(
         title="Galloping of iced conductors",
@@ -72,8 +73,10 @@ def create_app(settings: Settings | None = None) -> Service:
         responses={"default": documentation.ANY_PROBLEM},
     )
     app.state.settings = settings
+    app.state.requests = metrics.requests()
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
+    app.state.prober = make_engine(settings, impatient=True)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
     app.state.inbox = Groups("inbox", partial(committed_together, app.state.writers))
     app.state.dispatcher = Groups("dispatcher", app.state.sender.send_together)

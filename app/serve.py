@@ -1,10 +1,13 @@
 """The commands that run the service: migrate, api, worker, and serve, which is the whole of it in one command."""
 
 import logging
+import math
 import os
+import shutil
 import signal
 import sys
-from typing import Any, NoReturn
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
 
 import uvicorn
 from alembic import command
@@ -18,7 +21,11 @@ from app.auth import is_loopback
 from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
 
+if TYPE_CHECKING:
+    from app.main import Service
+
 _MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
+_SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded
 _STOP_SECONDS = 10.0
 _LOOK_SECONDS = 0.5
 
@@ -72,9 +79,18 @@ def api(settings: Settings, host: str, port: int) -> int:
     Requests that are being served then are finished, as long as that takes no longer than the time for a stop.
     """
     logs.configure(settings)
-    # Our own log of requests is in the place of uvicorn's.
-    quiet: dict[str, Any] = {"log_config": None, "access_log": False, "server_header": False}
-    uvicorn.run("app.main:create_app", factory=True, host=host, port=port, **quiet)
+    os.environ[_SHARED_METRICS] = str(_empty_folder(settings.data_dir / f"metrics-{port}"))
+    uvicorn.run(
+        "app.serve:_application",
+        factory=True,
+        host=host,
+        port=port,
+        workers=settings.api_processes,
+        log_config=None,
+        access_log=False,  # ours is in the place of uvicorn's
+        server_header=False,
+        timeout_graceful_shutdown=math.ceil(settings.shutdown_seconds),
+    )
     return 0
 
 
@@ -112,6 +128,24 @@ def _has_keys(settings: Settings) -> bool:
             return keys.any_exist(session)
     finally:
         engine.dispose()
+
+
+def _application() -> "Service":
+    """Make the application of one API process, which is a child of uvicorn's if there are several."""
+    from app.main import create_app  # noqa: PLC0415 - the client library of the metrics reads the variable as it loads
+
+    settings = get_settings()
+    if settings.api_processes > 1:
+        logs.configure(settings)
+        processes.end_with_parent(os.getppid())
+    return create_app(settings)
+
+
+def _empty_folder(path: Path) -> Path:
+    """Make a folder without anything in it; what an earlier run counted there is no longer counted on."""
+    shutil.rmtree(path, ignore_errors=True)
+    path.mkdir(parents=True)
+    return path
 
 
 def _take_turns(connection: Connection) -> None:

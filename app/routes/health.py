@@ -1,26 +1,29 @@
 """Whether the service lives, whether it can take work, and the pages that problem types lead to."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
-from alembic.runtime.migration import MigrationContext
-from alembic.script import ScriptDirectory
-from fastapi import APIRouter
+from anyio import create_task_group, move_on_after, to_thread
+from fastapi import APIRouter, Request, Response
 from fastapi.responses import JSONResponse
+from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
-from sqlalchemy.orm import Session, sessionmaker
 
+from app import metrics
 from app.errors import ProblemError, ProblemKind
 from app.queue import BrokerUnavailable, open_queue
 from app.routes import documentation
 from app.routes.common import Readers, SettingsOf
 from app.schemas.answers import Health, ProblemPage
-from app.serve import alembic_config
+from app.serve import is_newest
 from app.settings import Settings
 
 router = APIRouter(tags=["service"])
 
 _OK: dict[str, Any] = {"status": "ok", "checks": {"database": "ok", "migrations": "ok", "broker": "ok"}}
 _DOWN: dict[str, Any] = {"status": "unavailable", "checks": {**_OK["checks"], "broker": "cannot be reached"}}
+_PATIENCE_SECONDS = 3.0
 
 
 @router.get(
@@ -41,12 +44,20 @@ def live() -> JSONResponse:
         503: {**documentation.body("Cannot", ("application/json", _DOWN)), "model": Health},
     },
 )
-def ready(settings: SettingsOf, readers: Readers) -> JSONResponse:
-    """Say whether the database is there and migrated, and the broker is there; 503 if not.
+async def ready(request: Request, settings: SettingsOf) -> JSONResponse:
+    """Say whether the database is there and migrated, and the broker is there; 503 if not, within three seconds.
 
     Work is accepted without the broker too, and is done when it is back.
     """
-    checks = {**_database_checks(readers), "broker": _broker_check(settings)}
+    checks = dict.fromkeys(_OK["checks"], "does not answer in time")
+
+    async def look(check: Callable[[], dict[str, str]]) -> None:
+        checks.update(await to_thread.run_sync(check, abandon_on_cancel=True))
+
+    with move_on_after(_PATIENCE_SECONDS):
+        async with create_task_group() as looks:
+            looks.start_soon(look, partial(_database_checks, request.app.state.prober))
+            looks.start_soon(look, partial(_broker_check, settings))
     good = all(value == "ok" for value in checks.values())
     return JSONResponse({"status": "ok" if good else "unavailable", "checks": checks}, 200 if good else 503)
 
@@ -67,21 +78,30 @@ def problem_page(slug: str) -> ProblemPage:
     raise ProblemError(ProblemKind.NOT_FOUND, "There is no such problem.")
 
 
-def _database_checks(readers: sessionmaker[Session]) -> dict[str, str]:
+@router.get(
+    "/metrics",
+    response_class=Response,
+    responses={200: documentation.body("Metrics for Prometheus", ("text/plain", "galloping_jobs_waiting 0.0"))},
+)
+def show_metrics(request: Request, readers: Readers) -> Response:
+    """Tell requests, queues, ended jobs and lost leases in Prometheus' format; the same in every process."""
+    told, media_type = metrics.text(request.app.state.requests, readers, request.headers.get("accept", ""))
+    return Response(told, media_type=media_type)
+
+
+def _database_checks(prober: Engine) -> dict[str, str]:
     try:
-        with readers() as session:
-            connection = session.connection()
-            present = MigrationContext.configure(connection).get_current_heads()
-            newest = ScriptDirectory.from_config(alembic_config(connection)).get_heads()
+        with prober.connect() as connection:
+            newest = is_newest(connection)
     except SQLAlchemyError:
         return {"database": "cannot be reached", "migrations": "unknown"}
-    return {"database": "ok", "migrations": "ok" if set(present) == set(newest) else "not the newest"}
+    return {"database": "ok", "migrations": "ok" if newest else "not the newest"}
 
 
-def _broker_check(settings: Settings) -> str:
+def _broker_check(settings: Settings) -> dict[str, str]:
     try:
         with open_queue(settings) as queue:
             queue.is_empty()
     except BrokerUnavailable:
-        return "cannot be reached"
-    return "ok"
+        return {"broker": "cannot be reached"}
+    return {"broker": "ok"}

@@ -1,5 +1,6 @@
 """Jobs: submitted, looked at, listed, cancelled."""
 
+from contextvars import copy_context
 from datetime import UTC, datetime
 from functools import partial
 from typing import Annotated, Any
@@ -127,7 +128,8 @@ async def submit(
         job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
         return job.id, job_document(job)
 
-    job_id, accepted = await inbox.ask(make)
+    context = copy_context()  # with the ids of this request
+    job_id, accepted = await inbox.ask(lambda session: context.run(make, session))
     dispatcher.put(job_id)
     return JSONResponse(accepted, 202, headers={"Location": job_address(job_id), "Retry-After": RETRY_SECONDS})
 

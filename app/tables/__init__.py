@@ -5,6 +5,7 @@ from app.tables.base import Base, FailureKind, JobEventKind, JobStatus, UtcDateT
 from app.tables.batches import Batch, BatchItem
 from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.results import PointRow
+from app.tables.tallies import Tally
 
 __all__ = [
     "ApiKey",
@@ -20,5 +21,6 @@ __all__ = [
     "JobStatus",
     "JobTag",
     "PointRow",
+    "Tally",
     "UtcDateTime",
 ]

@@ -15,7 +15,7 @@ class Job(Base):
     """One request, or a chunk of a batch: the document, the state, and who works on it until when.
 
     batch_id, lines and failed_lines are those of a chunk, and null for a job of its own. request_id and trace_parent
-    are those of the request that is being served where the row is made.
+    are those of the request that made it.
     """
 
     __tablename__ = "jobs"
@@ -52,12 +52,8 @@ class Job(Base):
     lines: Mapped[int | None]
     failed_lines: Mapped[int | None]
     owner: Mapped[str] = mapped_column(String(64))
-    request_id: Mapped[str | None] = mapped_column(
-        String(correlation.LONGEST_REQUEST_ID), default=correlation.request_id
-    )
-    trace_parent: Mapped[str | None] = mapped_column(
-        String(correlation.TRACE_PARENT_LENGTH), default=correlation.trace_parent
-    )
+    request_id: Mapped[str | None] = mapped_column(String(correlation.LONGEST_REQUEST_ID))
+    trace_parent: Mapped[str | None] = mapped_column(String(correlation.TRACE_PARENT_LENGTH))
 
     tags: Mapped[list["JobTag"]] = relationship(order_by="JobTag.key", lazy="selectin", passive_deletes=True)
     events: Mapped[list["JobEvent"]] = relationship(order_by="JobEvent.id", lazy="select", passive_deletes=True)

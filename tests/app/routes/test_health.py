@@ -1,8 +1,15 @@
+import asyncio
+import contextlib
+import socket
+from collections.abc import Iterator
 from pathlib import Path
 
+import httpx
+from fastapi import FastAPI
 from sqlalchemy import text
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.main import create_app
 from app.settings import Settings
 from tests.app import service
 
@@ -31,3 +38,25 @@ def test_a_database_of_another_revision_is_not_ready(settings: Settings, session
         answer = client.get("/health/ready")
     assert answer.status_code == 503
     assert answer.json()["checks"] == {"database": "ok", "migrations": "not the newest", "broker": "ok"}
+
+
+@contextlib.contextmanager
+def silent_server() -> Iterator[int]:
+    """Give a port that takes connections and never says a word."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        yield listener.getsockname()[1]
+
+
+def test_servers_that_never_answer_are_told_in_time(tmp_path: Path) -> None:
+    with silent_server() as port, silent_server() as other:
+        database, broker = f"postgresql://a@127.0.0.1:{port}/a", f"redis://127.0.0.1:{other}/0"
+        app = create_app(Settings(data_dir=tmp_path, database_url=database, broker_url=broker))
+        answer = asyncio.run(asyncio.wait_for(ask(app, "/health/ready"), 30.0))
+    assert answer.status_code == 503
+    assert set(answer.json()["checks"]) == {"database", "migrations", "broker"}
+    assert "ok" not in answer.json()["checks"].values()
+
+
+async def ask(app: FastAPI, path: str) -> httpx.Response:
+    async with httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://test") as client:
+        return await client.get(path)
