@@ -45,9 +45,13 @@ class Queue:
 
     def is_empty(self, *, chunk: bool = False) -> bool:
         """Tell whether no message of jobs, or of chunks, waits for a worker."""
+        return self.length(chunk=chunk) == 0
+
+    def length(self, *, chunk: bool = False) -> int:
+        """Return how many messages of jobs, or of chunks, wait for a worker."""
         channel = self.connection.default_channel
         declared: Any = kombu.Queue(_queue_name(chunk), channel=channel).queue_declare()
-        return bool(declared.message_count == 0)
+        return int(declared.message_count)
 
 
 def _queue_name(chunk: bool) -> str:

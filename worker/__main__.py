@@ -15,6 +15,7 @@ from app import leases, logs, processes
 from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
 from worker.health import show_life
+from worker.presence import presence
 from worker.sweep import release, sweep
 from worker.tasks import OWNER
 
@@ -37,7 +38,7 @@ def main() -> int:
 
 
 def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) -> None:
-    with processes.until_stopped() as wait:
+    with processes.until_stopped() as wait, presence(sessions, settings, owner) as show_presence:
         pool = _start_pool(settings, owner)
         while not wait(settings.sweep_seconds):
             if pool.poll() is not None:
@@ -45,6 +46,7 @@ def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) 
                 _repair(sessions, settings, owner)
                 pool = _start_pool(settings, owner)
             _repair(sessions, settings)
+            show_presence()
         _drain(sessions, settings, owner, pool)
         _repair(sessions, settings, owner)
 

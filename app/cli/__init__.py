@@ -2,7 +2,7 @@
 
 import typer
 
-from app.cli import keys, lines, service
+from app.cli import keys, lines, operate, service
 
 app = typer.Typer(
     help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
@@ -19,6 +19,9 @@ for command in (
     service.submit,
     lines.example,
     lines.ellipse,
+    operate.status,
+    operate.prune,
+    operate.audit,
 ):
     app.command()(command)
 app.add_typer(keys.commands, name="keys")

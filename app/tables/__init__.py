@@ -1,4 +1,4 @@
-"""The tables: jobs with tags and events, batches of lines, results, keys and audit. One schema for both databases."""
+"""The tables: jobs with tags and events, batches, results, keys, audit, workers. One schema for both databases."""
 
 from app.tables.access import ApiKey, AuditAction, AuditEvent
 from app.tables.base import Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
@@ -6,6 +6,7 @@ from app.tables.batches import Batch, BatchItem
 from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.results import PointRow
 from app.tables.tallies import Tally
+from app.tables.workers import Worker
 
 __all__ = [
     "ApiKey",
@@ -23,4 +24,5 @@ __all__ = [
     "PointRow",
     "Tally",
     "UtcDateTime",
+    "Worker",
 ]

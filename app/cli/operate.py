@@ -1,0 +1,127 @@
+"""Commands for the operator of a service: `status`, `prune`, `audit`."""
+# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from app.cli.common import (
+    FAILED,
+    AsJson,
+    DataDirectory,
+    operator_told,
+    print_table,
+    read_settings,
+    using_database,
+    write,
+)
+
+if TYPE_CHECKING:
+    from app.status import Contents, Status
+
+_WORKERS = ("name", "version", "processes", "running", "seen")
+_EVENTS = ("at", "owner", "key_id", "action", "subject", "detail")
+
+
+def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
+    """Show database, broker, workers, queues, jobs and leases; ends with 1 if anything needs the operator."""
+    from app import status as service
+
+    with operator_told():
+        found = service.look(read_settings(data_dir))
+    if json:
+        from dataclasses import asdict
+
+        write({**asdict(found), "faults": found.faults()}, None)
+    else:
+        _show(found)
+    raise typer.Exit(FAILED if found.faults() else 0)
+
+
+def prune(
+    days: Annotated[
+        int, typer.Option(min=1, envvar="GALLOPING_RETENTION_DAYS", help="Keep what ended in so many days.")
+    ],
+    audit_days: Annotated[
+        int, typer.Option(min=1, envvar="GALLOPING_AUDIT_RETENTION_DAYS", help="Keep so many days of the audit record.")
+    ] = 730,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only count what would be removed.")] = False,
+    json: AsJson = False,
+    data_dir: DataDirectory = None,
+) -> None:
+    """Remove jobs and batches that ended long ago, with results and events; what waits or runs is kept."""
+    from dataclasses import asdict
+
+    from app import prune as retention
+
+    kept = retention.Retention(timedelta(days=days), timedelta(days=audit_days))
+    with using_database(read_settings(data_dir)) as sessions:
+        counts = asdict((retention.due if dry_run else retention.prune)(sessions, kept))
+    if json:
+        write({"dry_run": dry_run, **counts}, None)
+        return
+    said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in counts.items())
+    typer.echo(f"{'would remove' if dry_run else 'removed'} {said}")
+
+
+def audit(
+    owner: Annotated[str | None, typer.Option(help="Only what this owner's keys did.")] = None,
+    days: Annotated[int | None, typer.Option(min=1, help="Only the last days.")] = None,
+    limit: Annotated[int, typer.Option(min=1, max=100_000, help="Most events.")] = 50,
+    json: AsJson = False,
+    data_dir: DataDirectory = None,
+) -> None:
+    """Show who changed what, the newest first."""
+    from app import audit as record
+
+    since = datetime.now(UTC) - timedelta(days=days) if days else None
+    with using_database(read_settings(data_dir)) as sessions, sessions() as session:
+        events = [_event(event) for event in record.latest(session, owner, since, limit)]
+    if json:
+        write({"events": events}, None)
+    else:
+        print_table(_EVENTS, events)
+
+
+def _event(event: Any) -> dict[str, Any]:
+    named = {name: getattr(event, name) for name in ("key_id", "subject")}
+    return {
+        "at": event.at.isoformat(timespec="seconds"),
+        "owner": event.owner,
+        "action": event.action.value,
+        "detail": event.detail,
+        **{name: str(value) if value else None for name, value in named.items()},
+    }
+
+
+def _show(found: "Status") -> None:
+    typer.echo(f"database  {found.database}\nbroker    {found.broker}")
+    if found.queues is not None:
+        typer.echo(f"queues    {found.queues.jobs} messages of jobs, {found.queues.chunks} of chunks")
+    if found.contents is not None:
+        _show_contents(found.contents)
+    for sentence in found.faults():
+        typer.secho(sentence, fg=typer.colors.RED)
+
+
+def _show_contents(contents: "Contents") -> None:
+    leases = contents.leases
+    typer.echo(f"leases    {leases.held} held, {leases.expired} run out; {leases.undispatched} jobs without a message")
+    kinds = {"jobs": contents.jobs, "chunks of batches": contents.chunks}
+    rows = [
+        {"kind": kind, **work.by_status, "oldest waiting": _seconds(work.oldest_waiting_seconds)}
+        for kind, work in kinds.items()
+    ]
+    print_table(tuple(rows[0]), rows)
+    if contents.workers:
+        seen = ({"seen": f"{_seconds(worker.seen_seconds_ago)} ago"} for worker in contents.workers)
+        states = [
+            {name: getattr(worker, name) for name in _WORKERS[:-1]} | ago
+            for worker, ago in zip(contents.workers, seen, strict=True)
+        ]
+        print_table(_WORKERS, states)
+
+
+def _seconds(seconds: float | None) -> str | None:
+    return None if seconds is None else f"{seconds:.0f} s"
