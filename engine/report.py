@@ -11,9 +11,10 @@ from engine.profile import mean_mass
 from engine.resonance import resonance_rows
 from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
 from engine.rows import Found, FrequencyTable, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
-from engine.spec import AirflowSpoiler, Analysis, Line
+from engine.spec import AirflowSpoiler, Analysis, Ice, IceSegment, Line, ice_properties
 
 HEAVY_DEVICES = 0.1  # of the span's weight
+LEAST_INERTIA = 1e-6  # about the mass centre, of that about the reference curve: below it M is nearly singular
 
 
 def assembled(
@@ -92,7 +93,23 @@ def line_warnings(line: Line) -> list[str]:
     masses = [line.conductor.mass, *(s.mass for s in line.ice.segments if s.mass is not None)]
     if max(masses) > (1.0 + HEAVY_DEVICES) * min(masses):
         result.append("The ice mass varies along the span; the static profile takes its mean.")
+    pieces: list[Ice | IceSegment] = [line.ice, *line.ice.segments]
+    share = min(_inertia_share(line, piece) for piece in pieces)
+    if share < LEAST_INERTIA:
+        result.append(
+            f"The inertia about the mass centre is {share:.1e} of that about the reference curve: the mass matrix is "
+            "ill-conditioned, and torsional frequencies and motions lose as many digits."
+        )
     return result
+
+
+def _inertia_share(line: Line, piece: Ice | IceSegment) -> float:
+    """Return the section's polar inertia about its mass centre over that about the reference curve."""
+    e_y, e_z, mass = ice_properties(line, piece)
+    centres = np.add(line.bundle.positions, (e_y, e_z))
+    own = line.conductor.polar_inertia - mass * (e_y**2 + e_z**2)
+    about_mass_centre = own + mass * centres.var(axis=0).sum()
+    return float(about_mass_centre / (own + mass * (centres**2).sum(axis=-1).mean()))
 
 
 def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...], tuple[Orbit, ...]]:

@@ -1,0 +1,56 @@
+"""How points of an analysis end: what fails has its row and its reason, and stops nothing else."""
+
+from dataclasses import replace
+
+import pytest
+
+from engine.outcome import Outcome, Stability
+from engine.spec import Aerodynamics, Analysis, Line
+from tests.builders import run, source_line
+
+BOTH = Analysis(loops=(1, 2), wind_speeds=(2.0, 4.0, 6.0), finite_element_loops=(1, 2))
+
+
+def linear_line() -> Line:
+    """Return the twin bundle under a load without quadratic and cubic terms: what grows grows without end."""
+    line = source_line(2)
+    load = Aerodynamics((-0.1667, 0.0, 0.0), (0.8605, 0.0, 0.0), (-0.7272, 0.0, 0.0))
+    return replace(line, ice=replace(line.ice, aerodynamics=load))
+
+
+def test_every_outcome_has_its_sentence() -> None:
+    assert all(outcome.sentence.endswith(".") for outcome in Outcome)
+
+
+def test_a_wind_speed_without_a_cycle_to_converge_to_has_its_row_and_stops_no_other() -> None:
+    rows = run(linear_line(), BOTH).limit_cycles
+    lost = [row for row in rows if row.outcome is Outcome.NO_CONVERGENCE]
+    assert {row.wind_speed_m_per_s for row in lost} == {4.0, 6.0}
+    assert {row.model for row in lost} == set(BOTH.models)
+    assert {row.stability for row in lost} == {Stability.UNKNOWN}
+    assert {(row.vertical_m, row.frequency_hz, row.vertical_share) for row in lost} == {(None, None, None)}
+    for model in BOTH.models:
+        for loops in BOTH.loops:
+            rest = [r for r in rows if (r.model, r.loops, r.kind) == (model, loops, "equilibrium")]
+            assert [r.wind_speed_m_per_s for r in rest] == [2.0, 4.0, 6.0]
+            assert [r.stability for r in rest] == [Stability.STABLE, Stability.UNSTABLE, Stability.UNSTABLE]
+            assert {r.outcome for r in rest} == {Outcome.CONVERGED}
+
+
+def test_the_critical_speeds_stand_though_no_cycle_does() -> None:
+    linear, cubic = (run(line, BOTH).critical_wind_speeds for line in (linear_line(), source_line(2)))
+    assert [row.wind_speed_m_per_s for row in linear] == pytest.approx([row.wind_speed_m_per_s for row in cubic])
+
+
+def test_an_ill_conditioned_mass_matrix_is_said_to_be_one() -> None:
+    line = source_line(1)
+    least = line.conductor.mass * (line.ice.eccentricity_y**2 + line.ice.eccentricity_z**2)
+
+    def warnings(share: float) -> tuple[str, ...]:
+        conductor = replace(line.conductor, polar_inertia=least * (1.0 + share))
+        return run(replace(line, conductor=conductor), replace(BOTH, wind_speeds=())).warnings
+
+    assert not any("ill-conditioned" in text for text in warnings(1e-3))
+    (said,) = (text for text in warnings(1e-9) if "ill-conditioned" in text)
+    assert "1.0e-09" in said
+    assert not any("ill-conditioned" in text for text in run(source_line(2), BOTH).warnings)
