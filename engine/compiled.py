@@ -10,7 +10,7 @@ from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution, solution
 
 try:
-    from engine._kernels import balance, even_parts, linearization, monodromy
+    from engine._kernels import balance, even_parts, linearization, monodromies
 
     AVAILABLE = True
 except ImportError:
@@ -81,8 +81,11 @@ def balance_slopes(
     return residuals, slopes
 
 
-def product_over_period(
-    model: ReducedModel, orbits: tuple[FloatArray, ...], basis: tuple[FloatArray, FloatArray]
+def products_over_period(
+    model: ReducedModel,
+    orbits: tuple[FloatArray, ...],
+    basis: tuple[FloatArray, FloatArray],
+    steps: tuple[IntArray, IntArray],
 ) -> FloatArray:
     """Integrate the linearized equations over one period as `engine.floquet` would.
 
@@ -91,23 +94,22 @@ def product_over_period(
     model : ReducedModel
         Leading axis (cycles,).
     orbits : tuple of arrays
-        Coefficients (cycles, m, 2 H + 1), angular frequency and wind speed (cycles,).
-    basis : pair of arrays (2, steps, 2 H + 1)
-        The Fourier basis and its derivative at the two Gauss points of every step.
+        Inverse mass (cycles, m, m), coefficients (cycles, m, 2 H + 1), angular frequency and wind speed (cycles,).
+    basis : pair of arrays (rows, 2 H + 1)
+        The Fourier basis and its derivative at Gauss points.
+    steps : pair of arrays (cycles,)
+        Number of steps, a multiple of eight, and the row where the cycle's Gauss points begin: first those of all steps
+        that come first, then the others.
 
     Returns
     -------
     (cycles, 2 m, 2 m)
+        NaN where the number of steps is 0.
     """
-    cycles, m, size = orbits[0].shape
+    cycles, m, size = orbits[1].shape
     matrices = np.empty((cycles, 2 * m, 2 * m))
-    monodromy(
-        _parts(model),
-        _shape(model),
-        (basis[0].shape[1], size // 2),
-        _contiguous(np.linalg.inv(model.mass), *orbits, *basis),
-        matrices,
-    )
+    places = _contiguous(*orbits, *basis, *steps)
+    monodromies(_parts(model), _shape(model), (basis[0].shape[0], size // 2), places, matrices)
     return matrices
 
 

@@ -69,8 +69,11 @@ def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
 def monodromy(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> FloatArray:
     """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed."""
     size = 2 * model.mass.shape[-1]
+    inverse = np.asarray(np.linalg.inv(model.mass), dtype=np.float64)
+    steps = fineness * _steps(inverse @ model.stiffness, orbits)
+    if compiled.AVAILABLE:
+        return _compiled_products(model, orbits, inverse, np.where(steps <= MOST_STEPS, steps, 0))
     matrices: FloatArray = np.full((orbits.wind_speed.size, size, size), np.nan)
-    steps = fineness * _steps(model, orbits)
     for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
         here = np.flatnonzero(steps == count)
         block = max(1, BLOCK_NUMBERS // (count * size**2))
@@ -80,14 +83,22 @@ def monodromy(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> FloatAr
     return matrices
 
 
+def _compiled_products(model: ReducedModel, orbits: Orbits, inverse: FloatArray, steps: IntArray) -> FloatArray:
+    """Return the products of all steps over one period, NaN where there are none."""
+    harmonics = orbits.coefficients.shape[-1] // 2
+    counts = np.unique(np.append(steps, 0))
+    made = [_gauss_basis(count, harmonics) for count in counts.tolist()]
+    values, slopes = (np.concatenate(parts) for parts in zip(*made, strict=True))
+    first = (np.cumsum(2 * counts) - 2 * counts)[np.searchsorted(counts, steps)]
+    motion = (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
+    return compiled.products_over_period(model, (inverse, *motion), (values, slopes), (steps, first))
+
+
 def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> FloatArray:
     """Integrate by Magnus' method of fourth order, two Gauss points a step: the constant part is exact.
 
     The number of steps is a power of two.
     """
-    if compiled.AVAILABLE:
-        motion = (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
-        return compiled.product_over_period(model, motion, _gauss_basis(steps, orbits.coefficients.shape[-1] // 2))
     width = 2.0 * np.pi / steps
     with np.errstate(over="ignore", invalid="ignore"):
         first, second = (_generator(model, orbits, tau) for tau in _gauss_phases(steps))
@@ -99,20 +110,20 @@ def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> Flo
 def _gauss_phases(steps: int) -> FloatArray:
     """Return the phases of the two Gauss points of every step: (2, steps) [rad]."""
     offset = np.array([[-1.0], [1.0]]) * np.sqrt(3.0) / 6.0
-    return np.asarray((np.arange(steps) + 0.5 + offset) * (2.0 * np.pi / steps))
+    return np.asarray((np.arange(steps) + 0.5 + offset) * (2.0 * np.pi / max(steps, 1)))
 
 
 @lru_cache
 def _gauss_basis(steps: int, harmonics: int) -> tuple[FloatArray, FloatArray]:
-    """Return the Fourier basis and its derivative at the Gauss points: (2, steps, 2 H + 1) each."""
-    values = fourier(_gauss_phases(steps), harmonics)
+    """Return the Fourier basis and its derivative at all first, then all second Gauss points: (2 steps, 2 H + 1)."""
+    values = fourier(_gauss_phases(steps).ravel(), harmonics)
     return values, values @ basis(harmonics).derivative
 
 
-def _steps(model: ReducedModel, orbits: Orbits) -> IntArray:
-    """Return the number of steps, a power of two, that resolves the fastest mode of each cycle: (cycles,)."""
-    square = np.trace(np.linalg.solve(model.mass, model.stiffness), axis1=-2, axis2=-1)
-    needed = 2.0 * np.pi / PHASE_PER_STEP * np.sqrt(np.abs(square)) / orbits.angular_frequency
+def _steps(square: FloatArray, orbits: Orbits) -> IntArray:
+    """Return the number of steps, a power of two, that resolves the fastest mode of M^-1 K: (cycles,)."""
+    trace = np.trace(square, axis1=-2, axis2=-1)
+    needed = 2.0 * np.pi / PHASE_PER_STEP * np.sqrt(np.abs(trace)) / orbits.angular_frequency
     return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, FEWEST_STEPS, 2 * MOST_STEPS))), dtype=np.intp)
 
 

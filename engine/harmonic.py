@@ -60,7 +60,7 @@ def basis(harmonics: int) -> Basis:
 def fourier(tau: FloatArray, harmonics: int) -> FloatArray:
     """Evaluate 1, cos tau, sin tau, ..., cos H tau, sin H tau: tau.shape + (2 H + 1,)."""
     angle = tau[..., None] * np.arange(1, harmonics + 1)
-    waves = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(*tau.shape, -1)
+    waves = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(*tau.shape, 2 * harmonics)
     return np.concatenate([np.ones((*tau.shape, 1)), waves], axis=-1)
 
 

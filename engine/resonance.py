@@ -5,9 +5,8 @@ of two positive integers" (paper section 5.1).
 """
 
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
 from itertools import combinations
-from math import log
+from math import gcd, log
 
 import numpy as np
 
@@ -15,7 +14,8 @@ from engine.arrays import FloatArray, IntArray
 from engine.result import FrequencyRow, InternalResonanceRow
 
 LARGEST_INTEGER = 3  # a cubic load excites no ratio of a higher order by itself
-_RATIOS = sorted({Fraction(p, q) for p in range(1, LARGEST_INTEGER + 1) for q in range(1, LARGEST_INTEGER + 1)})
+_INTEGERS = range(1, LARGEST_INTEGER + 1)
+_RATIOS = {p / q: (p, q) for p in _INTEGERS for q in _INTEGERS if gcd(p, q) == 1}
 
 
 def resonance_rows(frequencies: Sequence[FrequencyRow]) -> tuple[InternalResonanceRow, ...]:
@@ -39,20 +39,20 @@ def _pairs(row: FrequencyRow) -> Iterator[InternalResonanceRow]:
     for (lower, below), (upper, above) in combinations(named, 2):
         if below is not None and above is not None:
             ratio = above / below
-            nearest = nearest_ratio(ratio)
+            p, q = nearest_ratio(ratio)
             yield InternalResonanceRow(
                 model=row.model,
                 loops=row.loops,
                 directions=f"{upper}:{lower}",
                 frequency_ratio=ratio,
-                nearest_ratio=f"{nearest.numerator}:{nearest.denominator}",
-                detuning=ratio / float(nearest) - 1.0,
+                nearest_ratio=f"{p}:{q}",
+                detuning=ratio * q / p - 1.0,
             )
 
 
-def nearest_ratio(ratio: float) -> Fraction:
-    """Return the ratio of integers up to `LARGEST_INTEGER` that differs least from a positive number, relatively."""
-    return min(_RATIOS, key=lambda candidate: abs(log(ratio / float(candidate))))
+def nearest_ratio(ratio: float) -> tuple[int, int]:
+    """Return the p and q up to `LARGEST_INTEGER` whose ratio p/q differs least from a positive number, relatively."""
+    return _RATIOS[min(_RATIOS, key=lambda candidate: abs(log(ratio / candidate)))]
 
 
 def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArray) -> FloatArray:

@@ -54,13 +54,13 @@ WIDE static void generate(Workspace *w, const Model *model, const Monodromies *w
                           ptrdiff_t step)
 {
     const int m = w->m, n = w->n;
-    const ptrdiff_t stretch = wanted->steps / LANES;
+    const ptrdiff_t steps = wanted->steps[cycle], stretch = steps / LANES;
     const double omega = wanted->angular_frequency[cycle], speed = wanted->wind_speed[cycle];
     const double *coefficients = wanted->coefficients + cycle * m * w->size;
     const double *inverse = wanted->inverse_mass + cycle * m * m;
     Lanes *block = w->blocks + point * m * n;
     for (int lane = 0; lane < LANES; lane++) {
-        const ptrdiff_t at = (point * wanted->steps + lane * stretch + step) * w->size;
+        const ptrdiff_t at = (wanted->first[cycle] + point * steps + lane * stretch + step) * w->size;
         for (int j = 0; j < m; j++) {
             double q = 0.0, motion = 0.0;
             for (int c = 0; c < w->size; c++) {
@@ -141,12 +141,12 @@ static void collect(const Workspace *w, const Lanes *lanes, double *result)
 
 static void integrate(Workspace *w, const Model *model, const Monodromies *wanted, ptrdiff_t cycle)
 {
-    const ptrdiff_t stretch = wanted->steps / LANES;
+    const ptrdiff_t stretch = wanted->steps[cycle] / LANES;
     Lanes *sofar = matrix_of(w, FIRST), *next = matrix_of(w, SECOND), *factor = matrix_of(w, PRODUCT);
     for (ptrdiff_t step = 0; step < stretch; step++) {
         for (int point = 0; point < 2; point++)
             generate(w, model, wanted, cycle, point, step);
-        exponent(w, 2.0 * M_PI / (double)wanted->steps);
+        exponent(w, 2.0 * M_PI / (double)wanted->steps[cycle]);
         exponentiate(w, step ? factor : next);
         if (step)
             multiply(w->n, factor, sofar, next);
@@ -163,7 +163,11 @@ int integrate_monodromies(const Model *stack, const Monodromies *wanted)
     const int ready = prepare(&workspace, stack, wanted->harmonics);
     for (ptrdiff_t cycle = 0; ready && cycle < wanted->cycles; cycle++) {
         const Model model = model_of(stack, cycle);
-        integrate(&workspace, &model, wanted, cycle);
+        if (wanted->steps[cycle])
+            integrate(&workspace, &model, wanted, cycle);
+        else
+            for (ptrdiff_t e = 0; e < workspace.count; e++)
+                wanted->matrices[cycle * workspace.count + e] = NAN;
     }
     release(&workspace);
     return ready;

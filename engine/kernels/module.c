@@ -124,26 +124,37 @@ static PyObject *linearization(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, done);
 }
 
-static PyObject *monodromy(PyObject *Py_UNUSED(self), PyObject *arguments)
+static int whole_steps(const Monodromies *wanted, Py_ssize_t rows)
+{
+    for (Py_ssize_t i = 0; i < wanted->cycles; i++)
+        if (wanted->steps[i] < 0 || wanted->steps[i] % LANES || wanted->first[i] < 0
+            || wanted->first[i] + 2 * wanted->steps[i] > rows) {
+            PyErr_Format(PyExc_ValueError, "%zd steps from row %zd of %zd", wanted->steps[i], wanted->first[i], rows);
+            return 0;
+        }
+    return 1;
+}
+
+static PyObject *monodromies(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *parts, *inverse, *coefficients, *frequency, *speed, *values, *slopes, *matrices;
+    PyObject *parts, *inverse, *coefficients, *frequency, *speed, *values, *slopes, *steps, *first, *matrices;
     int shape[3], harmonics;
-    Py_ssize_t cycles, steps;
-    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOOOO)O", &PyTuple_Type, &parts, &cycles, shape, shape + 1, shape + 2,
-                          &steps, &harmonics, &inverse, &coefficients, &frequency, &speed, &values, &slopes, &matrices))
+    Py_ssize_t cycles, rows;
+    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOOOOOO)O", &PyTuple_Type, &parts, &cycles, shape, shape + 1,
+                          shape + 2, &rows, &harmonics, &inverse, &coefficients, &frequency, &speed, &values, &slopes,
+                          &steps, &first, &matrices))
         return NULL;
-    if (steps % LANES)
-        return PyErr_Format(PyExc_ValueError, "steps must be a multiple of %d", LANES);
     const Py_ssize_t m = shape[0], size = 2 * (Py_ssize_t)harmonics + 1;
     Model model;
-    Monodromies wanted = {.cycles = cycles, .steps = steps, .harmonics = harmonics};
+    Monodromies wanted = {.cycles = cycles, .harmonics = harmonics};
     int done = 1;
     if (read_model(&buffers, parts, shape, &model, cycles) && (wanted.inverse_mass = REALS(inverse, cycles * m * m))
         && (wanted.coefficients = REALS(coefficients, cycles * m * size))
         && (wanted.angular_frequency = REALS(frequency, cycles)) && (wanted.wind_speed = REALS(speed, cycles))
-        && (wanted.values = REALS(values, 2 * steps * size)) && (wanted.slopes = REALS(slopes, 2 * steps * size))
-        && (wanted.matrices = RESULT(matrices, cycles * 4 * m * m))) {
+        && (wanted.values = REALS(values, rows * size)) && (wanted.slopes = REALS(slopes, rows * size))
+        && (wanted.steps = INDICES(steps, cycles)) && (wanted.first = INDICES(first, cycles))
+        && whole_steps(&wanted, rows) && (wanted.matrices = RESULT(matrices, cycles * 4 * m * m))) {
         Py_BEGIN_ALLOW_THREADS
         done = integrate_monodromies(&model, &wanted);
         Py_END_ALLOW_THREADS
@@ -171,7 +182,7 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
 static PyMethodDef methods[] = {
     {"balance", balance, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
     {"linearization", linearization, METH_VARARGS, "Evaluate the harmonic balance of a stack of cycles with its slopes."},
-    {"monodromy", monodromy, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
+    {"monodromies", monodromies, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
     {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},
     {NULL, NULL, 0, NULL},
 };

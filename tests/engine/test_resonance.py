@@ -1,5 +1,3 @@
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
@@ -15,7 +13,7 @@ from tests.builders import only, run, source_line
     [(0.92, (1, 1)), (1.19, (1, 1)), (1.24, (3, 2)), (2.3, (2, 1)), (0.52, (1, 2)), (9.0, (3, 1)), (0.7, (2, 3))],
 )
 def test_the_nearest_ratio_is_the_one_of_least_relative_difference(ratio: float, expected: tuple[int, int]) -> None:
-    assert nearest_ratio(ratio) == Fraction(*expected)
+    assert nearest_ratio(ratio) == expected
 
 
 def test_the_three_frequencies_make_three_ratios() -> None:
