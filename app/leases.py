@@ -209,7 +209,7 @@ def _end(
     ended = session.execute(statement.execution_options(synchronize_session=False))
     if not isinstance(ended, CursorResult) or ended.rowcount != 1:
         return False
-    results.store(session, held.job_id, points)
+    results.store(session, held.job_id, points, held.batch_id)
     record(session, held.job_id, JobEventKind(changes["status"].value), attempt=held.attempt, detail=detail)
     _count_end(session, held, changes, now)
     return True

@@ -19,7 +19,17 @@ from app.headers import SecurityHeaders
 from app.jobs import look_up
 from app.queue import Sender, celery_application
 from app.rates import Meter
-from app.routes import aerodynamics, batch_results, batches, documentation, health, jobs, reference, results
+from app.routes import (
+    aerodynamics,
+    batch_ranking,
+    batch_results,
+    batches,
+    documentation,
+    health,
+    jobs,
+    reference,
+    results,
+)
 from app.settings import Settings, get_settings
 
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
@@ -85,6 +95,6 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batches, batch_results, aerodynamics, reference, health):
+    for module in (jobs, results, batches, batch_results, batch_ranking, aerodynamics, reference, health):
         app.include_router(module.router)
     return app

@@ -24,7 +24,7 @@ def encode(key: bytes, place: Place) -> str:
     delta = created_at - _EPOCH
     microseconds = (delta.days * 86_400 + delta.seconds) * 1_000_000 + delta.microseconds
     payload = microseconds.to_bytes(_STAMP_BYTES, "big") + identity.bytes
-    return base64.urlsafe_b64encode(_sign(key, payload) + payload).decode()
+    return seal(key, payload)
 
 
 def decode(key: bytes, cursor: str) -> Place:
@@ -35,6 +35,25 @@ def decode(key: bytes, cursor: str) -> Place:
     BadCursor
         If it was not made by `encode` with this key.
     """
+    payload = unseal(key, cursor)
+    microseconds = int.from_bytes(payload[:_STAMP_BYTES], "big")
+    seconds, rest = divmod(microseconds, 1_000_000)
+    return datetime.fromtimestamp(seconds, UTC).replace(microsecond=rest), UUID(bytes=payload[_STAMP_BYTES:])
+
+
+def seal(key: bytes, payload: bytes) -> str:
+    """Return a payload with its signature as text."""
+    return base64.urlsafe_b64encode(_sign(key, payload) + payload).decode()
+
+
+def unseal(key: bytes, cursor: str) -> bytes:
+    """Return the payload of a text that `seal` made with this key.
+
+    Raises
+    ------
+    BadCursor
+        If it is no such text.
+    """
     try:
         raw = base64.b64decode(cursor.encode("ascii"), altchars=b"-_", validate=True)
     except (binascii.Error, UnicodeEncodeError) as error:
@@ -42,9 +61,7 @@ def decode(key: bytes, cursor: str) -> Place:
     signature, payload = raw[:_SIGNATURE_BYTES], raw[_SIGNATURE_BYTES:]
     if not hmac.compare_digest(signature, _sign(key, payload)):
         raise BadCursor("the cursor is not one of ours")
-    microseconds = int.from_bytes(payload[:_STAMP_BYTES], "big")
-    seconds, rest = divmod(microseconds, 1_000_000)
-    return datetime.fromtimestamp(seconds, UTC).replace(microsecond=rest), UUID(bytes=payload[_STAMP_BYTES:])
+    return payload
 
 
 def _sign(key: bytes, payload: bytes) -> bytes:

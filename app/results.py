@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from app.convert import PointResult
 
 STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m", "twist_rad")
-PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m")
+PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100
 _LEVEL = 1  # higher levels take longer and save nothing on rows of numbers
 
 
-def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"]) -> None:
-    """Add everything that was found at these points of a job, in one statement.
+def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"], batch_id: UUID | None = None) -> None:
+    """Add everything that was found at these points of a job, or lines of a batch's chunk, in one statement.
 
     Raises
     ------
@@ -36,8 +36,9 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"])
         If a point is stored already.
     """
     if points_found:
+        place = {"job_id": job_id, "batch_id": batch_id}
         compressor = zstandard.ZstdCompressor(level=_LEVEL)
-        _insert(session, [{"job_id": job_id, **_as_columns(point, compressor)} for point in points_found])
+        _insert(session, [{**place, **_as_columns(point, compressor)} for point in points_found])
 
 
 def unpacked(packed: bytes | None) -> bytes:

@@ -146,7 +146,7 @@ def directions() -> FloatArray:
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
-def subconductor_paths(series: FloatArray, positions: FloatArray) -> FloatArray:
+def subconductor_paths(series: FloatArray, positions: FloatArray, samples: int = PATH_SAMPLES) -> FloatArray:
     """Evaluate the closed paths of all sub-conductors over one period, eq. (3).
 
     Parameters
@@ -155,13 +155,15 @@ def subconductor_paths(series: FloatArray, positions: FloatArray) -> FloatArray:
         Fourier coefficients of V, W [m] and Theta [rad] where the motion is observed.
     positions : (n, 2)
         y_i, z_i of the sub-conductors [m].
+    samples : int
+        Phases of the period; the outermost points of a path are then missed by less than 5 / samples^2 of its size.
 
     Returns
     -------
-    (..., n, PATH_SAMPLES, 2)
+    (..., n, samples, 2)
         y_i + V - z_i Theta and z_i + W + y_i Theta [m].
     """
-    tau = 2.0 * np.pi * np.arange(PATH_SAMPLES) / PATH_SAMPLES
+    tau = 2.0 * np.pi * np.arange(samples) / samples
     motion = series @ fourier(tau, series.shape[-1] // 2).T
     v, w, theta = (motion[..., i, None, :] for i in range(3))
     y, z = positions[:, 0, None], positions[:, 1, None]

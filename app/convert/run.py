@@ -11,6 +11,7 @@ import orjson
 from app import schemas
 from app.convert import study
 from app.convert.assemble import SoundParts, gather
+from app.convert.peaks import peaks
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
 from engine.result import (
@@ -133,7 +134,7 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
             try:
                 step = next(progress)
             except StopIteration as end:
-                yield point_result(end.value, number, values)
+                yield point_result(line, end.value, number, values)
                 return
             yield Advance(step.fraction, step.step)
     except (ArithmeticError, ValueError) as error:  # both also cover numpy's, and what a specification raises
@@ -158,21 +159,14 @@ def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[
     return line, analysis
 
 
-def point_result(result: Result, number: int, values: dict[str, Any]) -> PointResult:
+def point_result(line: spec.Line, result: Result, number: int, values: dict[str, Any]) -> PointResult:
     """Return the engine's result of one point as plain values; what is not finite becomes null."""
-    onsets = (row.wind_speed_m_per_s for row in result.critical_wind_speeds)
-    amplitudes = (row.vertical_m for row in result.limit_cycles if row.vertical_m is not None)
     return PointResult(
         point=number,
         axes=values,
         static=_finite(asdict(result.static)),
         den_hartog=_finite(asdict(result.den_hartog)),
-        peaks=_finite(
-            {
-                "lowest_critical_wind_speed_m_per_s": min(onsets, default=None),
-                "largest_vertical_m": max(amplitudes, default=None),
-            }
-        ),
+        peaks=_finite(peaks(line, result)),
         tables_json=_json({name: getattr(result, name) for name in TABLES}),
         orbits_json=_json(result.orbits),
         warnings=list(result.warnings),

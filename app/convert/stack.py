@@ -162,8 +162,8 @@ def _stack_results(stack: Sequence[_Made]) -> Iterator[PointResult]:
             return
         yield failed_point(_for_owner(error), stack[0][0], _axes(stack[0][0]))
         return
-    for (number, _, _), result in zip(stack, results, strict=True):
-        yield point_result(result, number, _axes(number))
+    for (number, line, _), result in zip(stack, results, strict=True):
+        yield point_result(line, result, number, _axes(number))
 
 
 def _for_owner(error: Exception) -> Exception:

@@ -3,13 +3,13 @@
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, sessionmaker
 
 from app import batch_results, batches
 from app.auth import Caller
 from app.batches import Counts
 from app.errors import ProblemError, ProblemKind
-from app.routes.common import ENDED, PREFIX
+from app.routes.common import ENDED, PREFIX, RETRY_SECONDS
 from app.tables import Batch
 
 _ERRORS_SHOWN = 50
@@ -27,6 +27,26 @@ def find_batch(session: Session, caller: Caller, batch_id: UUID) -> Batch:
     if batch is None:
         raise ProblemError(ProblemKind.NOT_FOUND, f"There is no batch {batch_id}.")
     return batch
+
+
+def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, partial: bool) -> None:
+    """See to it that a batch has results to show: all of them, or with partial what there is.
+
+    Raises
+    ------
+    ProblemError
+        404 if the owner has no such batch, 409 if it has not ended.
+    """
+    with readers() as session:
+        find_batch(session, caller, batch_id)
+        counts = batches.counts(session, [batch_id])[batch_id]
+    if not partial and counts.status not in ENDED:
+        raise ProblemError(
+            ProblemKind.NOT_READY,
+            f"The batch is {counts.status.value}, {counts.progress:.0%} done; ?partial=true takes what there is.",
+            links=[{"rel": "status", "href": batch_address(batch_id)}],
+            headers={"Retry-After": RETRY_SECONDS},
+        )
 
 
 def batch_address(batch_id: UUID) -> str:

@@ -5,7 +5,8 @@ from typing import Any
 
 from app.examples import example
 from app.export import PARQUET
-from app.schemas.batch import BatchRequest
+from app.schemas.batch import BatchRequest, RankedLine
+from app.schemas.fields import example_of
 
 _BATCH = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"
 _ADDRESS = f"/v1/batches/{_BATCH}"
@@ -63,6 +64,7 @@ FINISHED: dict[str, Any] = {
 DISMISSED: dict[str, Any] = {**ACCEPTED, "status": "dismissed", "lines": {**_COUNTS, "accepted": 0, "dismissed": 2}}
 STOPPING: dict[str, Any] = {**ACCEPTED, "status": "running", "lines": {**_COUNTS, "accepted": 0, "running": 2}}
 PAGE: dict[str, Any] = {"batches": [_SUMMARY], "next": None}
+RANKING: dict[str, Any] = {"lines": [example_of(RankedLine) | {"clearance_m": None}], "next": None}
 ERRORS: dict[str, Any] = {"errors": [FAULT]}
 RESULT: dict[str, Any] = {
     "number": 1,

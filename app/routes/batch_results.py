@@ -7,16 +7,15 @@ from uuid import UUID
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
-from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.orm import Session
 
-from app import batch_results, batches, export
-from app.auth import Caller
+from app import batch_results, export
 from app.batch_results import BatchTable
 from app.columns import columns_of
 from app.errors import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation
-from app.routes.batch_common import batch_address, find_batch
-from app.routes.common import ENDED, PREFIX, RETRY_SECONDS, CallerOf, Readers, streamed
+from app.routes.batch_common import require_results
+from app.routes.common import PREFIX, CallerOf, Readers, streamed
 from app.schemas.batch import BatchErrors
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
@@ -77,7 +76,7 @@ def results(
         raise ProblemError(
             ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {export.PARQUET}."
         )
-    _require(readers, caller, batch_id, ended=not asked.partial)
+    require_results(readers, caller, batch_id, partial=asked.partial)
     name: BatchTable = _TABLES[asked.table or "summary"]
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
@@ -107,22 +106,9 @@ def results(
 )
 def errors(batch_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
     """Return all faults of the lines that were rejected when the batch came in."""
-    _require(readers, caller, batch_id, ended=False)
+    require_results(readers, caller, batch_id, partial=True)
 
     def pieces(session: Session) -> Iterator[str]:
         return export.in_blocks(export.json_text("errors", batch_results.errors(session, batch_id)))
 
     return streamed(readers, pieces, "application/json")
-
-
-def _require(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, ended: bool) -> None:
-    with readers() as session:
-        find_batch(session, caller, batch_id)
-        counts = batches.counts(session, [batch_id])[batch_id]
-    if ended and counts.status not in ENDED:
-        raise ProblemError(
-            ProblemKind.NOT_READY,
-            f"The batch is {counts.status.value}, {counts.progress:.0%} done; ?partial=true takes what there is.",
-            links=[{"rel": "status", "href": batch_address(batch_id)}],
-            headers={"Retry-After": RETRY_SECONDS},
-        )

@@ -64,8 +64,35 @@ class LineSummary(Answer):
     den_hartog_coefficient: Number = told("dC_L/dalpha + C_D of one sub-conductor [1/rad]", -0.1667)
     den_hartog_unstable: bool | None = told("Whether the coefficient is negative; null if it is unknown", True)
     lowest_critical_wind_speed_m_per_s: Number = told("Wind speed from which the line gallops [m/s]", 2.403)
-    largest_vertical_m: Number = told("Largest vertical amplitude [m]", 0.1568)
+    largest_vertical_m: Number = told("Largest vertical amplitude of a stable motion [m]", 0.1568)
+    largest_height_m: Number = told("Height of all that a stable motion of all sub-conductors reaches [m]", 0.3136)
+    largest_width_m: Number = told("Width of all that a stable motion of all sub-conductors reaches [m]", 0.4908)
     engine_version: str | None = told("Version of the computation", "0.1.0")
+
+
+class RankedLine(Answer):
+    """One line of a ranking."""
+
+    rank: int = told("Place in the ranking, from 1 [1]", 1)
+    number: int = told("Number of the line, from 1 [1]", 17)
+    reference: str | None = told("The caller's reference of the line", "row-17")
+    asset_id: str | None = told("Identity of the line in the owner's records", "L204-S017")
+    lowest_critical_wind_speed_m_per_s: Number = told("Wind speed from which the line gallops [m/s]", 2.403)
+    largest_vertical_m: Number = told("Largest vertical amplitude of a stable motion [m]", 0.1568)
+    largest_height_m: Number = told("Height of all that a stable motion of all sub-conductors reaches [m]", 0.3136)
+    largest_width_m: Number = told("Width of all that a stable motion of all sub-conductors reaches [m]", 0.4908)
+    margin_m_per_s: Number = told("Critical less design wind speed; null unless ranked by it [m/s]", -2.597)
+    clearance_m: Number = told("Spacing less height or width; null unless ranked by it [m]", 3.6864)
+
+
+class RankingPage(Answer):
+    """Some lines of a ranking, in its order."""
+
+    lines: list[RankedLine] = told("The lines of the page", [example_of(RankedLine)])
+    next: str | None = told(
+        "Address of the next page; null on the last",
+        "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f/ranking?by=amplitude&cursor=AZmjxFt-fBqdLj9KW2x9jg",
+    )
 
 
 class LineFault(Answer):

@@ -3,7 +3,7 @@
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ForeignKey, LargeBinary, String, Text
+from sqlalchemy import ForeignKey, Index, LargeBinary, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.tables.base import Base
@@ -12,10 +12,20 @@ from app.tables.base import Base
 class PointRow(Base):
     """One point of a study, or one line of a chunk under its number; a job without a study has the one point 0.
 
-    tables and orbits are JSON compressed by Zstandard (`app.results`), null for a point that failed.
+    tables and orbits are JSON compressed by Zstandard (`app.results`), null for a point that failed. Lines of a batch
+    are ranked by what stands in an index with it.
     """
 
     __tablename__ = "results"
+    __table_args__ = tuple(
+        Index(None, "batch_id", column, "point")
+        for column in (
+            "lowest_critical_wind_speed_m_per_s",
+            "largest_vertical_m",
+            "largest_height_m",
+            "largest_width_m",
+        )
+    )
 
     job_id: Mapped[UUID] = mapped_column(ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True)
     point: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
@@ -34,3 +44,6 @@ class PointRow(Base):
     tables: Mapped[bytes | None] = mapped_column(LargeBinary)
     orbits: Mapped[bytes | None] = mapped_column(LargeBinary)
     twist_rad: Mapped[float | None]
+    batch_id: Mapped[UUID | None]
+    largest_height_m: Mapped[float | None]
+    largest_width_m: Mapped[float | None]

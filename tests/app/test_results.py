@@ -90,7 +90,7 @@ def test_peaks_stand_beside_what_is_packed(sessions: sessionmaker[Session], comp
         kept = session.execute(select(*names).where(PointRow.job_id == job_id).order_by(PointRow.point)).all()
     for peaks, point in zip(kept, computed, strict=True):
         winds = [row["wind_speed_m_per_s"] for row in point.tables["critical_wind_speeds"]]
-        amplitudes = [row["vertical_m"] for row in point.tables["limit_cycles"] if row["vertical_m"] is not None]
+        amplitudes = [row["vertical_m"] for row in point.tables["limit_cycles"] if row["stability"] == "stable"]
         assert tuple(peaks) == (min(winds), max(amplitudes))
 
 

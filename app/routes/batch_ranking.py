@@ -1,0 +1,134 @@
+"""Lines of a batch ranked: by amplitude, by margin of the critical wind speed, by clearance between phases."""
+
+from typing import Annotated, Any, Literal, Self
+from urllib.parse import urlencode
+from uuid import UUID
+
+from fastapi import APIRouter, Query
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict, Field
+from sqlalchemy import Row
+
+from app import paging, ranking
+from app.errors import ProblemKind, query_fault
+from app.ranking import Order, Place
+from app.results import PEAKS
+from app.routes import batch_documentation, documentation
+from app.routes.batch_common import batch_address, require_results
+from app.routes.common import PREFIX, CallerOf, Readers, SettingsOf
+from app.schemas.batch import RankingPage
+from app.settings import cursor_key
+
+router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
+
+_CRITICAL, _HEIGHT, _WIDTH = "lowest_critical_wind_speed_m_per_s", "largest_height_m", "largest_width_m"
+Spacing = Annotated[float | None, Field(gt=0.0, le=100.0)]
+
+
+class RankingQuery(BaseModel):
+    """By which figure the lines are ranked, and where the page begins."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    by: Literal["amplitude", "critical-wind-margin", "clearance"] = Field(
+        default="amplitude",
+        description="Largest vertical amplitude first; least margin of the critical wind speed first; least clearance "
+        "first",
+    )
+    design_wind_speed_m_per_s: Annotated[float | None, Field(ge=0.0, le=100.0)] = Field(
+        default=None, description="For the margin: critical less design wind speed [m/s]"
+    )
+    vertical_spacing_m: Spacing = Field(
+        default=None, description="For the clearance: distance of two phases above each other [m]"
+    )
+    horizontal_spacing_m: Spacing = Field(
+        default=None, description="Or distance of two phases beside each other [m]; both gallop alike"
+    )
+    partial: bool = Field(default=False, description="Also while lines are waiting or running")
+    limit: int = Field(default=50, ge=1, le=500, description="Lines on a page")
+    cursor: str | None = Field(default=None, max_length=200, description="Place that a `next` address holds")
+
+    def checked(self) -> Self:
+        """Return the query if it has what its figure needs, and nothing that belongs to another.
+
+        Raises
+        ------
+        ProblemError
+            400 otherwise.
+        """
+        spacings = (self.vertical_spacing_m is not None) + (self.horizontal_spacing_m is not None)
+        if (self.design_wind_speed_m_per_s is not None) != (self.by == "critical-wind-margin"):
+            raise query_fault("design_wind_speed_m_per_s", "is given with by=critical-wind-margin, and only then")
+        if spacings != (self.by == "clearance"):
+            rule = (
+                "exactly one of vertical_spacing_m and horizontal_spacing_m is given with by=clearance, and only then"
+            )
+            raise query_fault("vertical_spacing_m", rule)
+        return self
+
+    def order(self) -> Order:
+        """Return the order that puts the line that needs care first."""
+        if self.by == "amplitude":
+            return Order("largest_vertical_m", descending=True)
+        if self.by == "critical-wind-margin":
+            return Order(_CRITICAL, descending=False)
+        return Order(_HEIGHT if self.vertical_spacing_m is not None else _WIDTH, descending=True)
+
+
+@router.get(
+    "/ranking",
+    response_model=RankingPage,
+    responses={
+        200: documentation.body("A page of lines", ("application/json", batch_documentation.RANKING)),
+        **documentation.problems(ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_FOUND, ProblemKind.NOT_READY),
+    },
+)
+def rank(
+    batch_id: UUID, asked: Annotated[RankingQuery, Query()], caller: CallerOf, readers: Readers, settings: SettingsOf
+) -> JSONResponse:
+    """Rank the lines, those that need care first, a page at a time; `next` is the address of the following page.
+
+    Lines for which the figure is not known are left out: without a critical wind speed up to the limit, say.
+    """
+    query, key = asked.checked(), cursor_key(settings)
+    order = query.order()
+    after = _place(key, batch_id, order, query.cursor)
+    require_results(readers, caller, batch_id, partial=query.partial)
+    with readers() as session:
+        found = ranking.page(session, batch_id, order, after, query.limit + 1)
+    before = after.rank if after else 0
+    lines = [_line(query, before + i, row) for i, row in enumerate(found[: query.limit], start=1)]
+    following = None
+    if len(found) > query.limit:
+        last = found[query.limit - 1]
+        place = Place(getattr(last, order.figure), last.number, before + query.limit)
+        following = _next_address(batch_id, query, ranking.encode(key, batch_id, order, place))
+    return JSONResponse({"lines": lines, "next": following})
+
+
+def _line(query: RankingQuery, rank: int, row: Row[Any]) -> dict[str, Any]:
+    margin = clearance = None
+    if query.design_wind_speed_m_per_s is not None:
+        margin = row.lowest_critical_wind_speed_m_per_s - query.design_wind_speed_m_per_s
+    if query.vertical_spacing_m is not None:
+        clearance = query.vertical_spacing_m - row.largest_height_m
+    elif query.horizontal_spacing_m is not None:
+        clearance = query.horizontal_spacing_m - row.largest_width_m
+    return {
+        "rank": rank,
+        **{name: getattr(row, name) for name in ("number", "reference", "asset_id", *PEAKS)},
+        "margin_m_per_s": margin,
+        "clearance_m": clearance,
+    }
+
+
+def _place(key: bytes, batch_id: UUID, order: Order, cursor: str | None) -> Place | None:
+    try:
+        return ranking.decode(key, batch_id, order, cursor) if cursor else None
+    except paging.BadCursor as error:
+        raise query_fault("cursor", str(error)) from error
+
+
+def _next_address(batch_id: UUID, query: RankingQuery, cursor: str) -> str:
+    kept = query.model_dump(exclude_unset=True, exclude={"cursor"})
+    return f"{batch_address(batch_id)}/ranking?{urlencode({**kept, 'cursor': cursor})}"

@@ -1,0 +1,98 @@
+from typing import Any
+
+import httpx
+import pytest
+
+from app.examples import example
+from app.schemas.batch import RankingPage
+from app.settings import Settings
+from tests.app.lines import SHORT, changed
+from tests.app.routes.test_batches import work_off
+
+TWIN = example("c11-twin")
+LINES = [
+    {**changed("span.length_m", length, TWIN), "reference": f"L{length:g}", "asset_id": f"A{length:g}"}
+    for length in (100.0, 150.0, 125.0)
+]
+
+
+@pytest.fixture(scope="module")
+def address(shared_client: httpx.Client, shared_settings: Settings) -> str:
+    """Give the address of a finished batch of three spans, of which the longer gallop further."""
+    answer = shared_client.post("/v1/batches", json={"lines": LINES, "analysis": SHORT})
+    assert answer.status_code == 202, answer.text
+    work_off(shared_client, shared_settings, answer.headers["location"])
+    return str(answer.headers["location"])
+
+
+def ranked(client: httpx.Client, address: str, **query: Any) -> list[dict[str, Any]]:
+    """Return all lines of a ranking by following its pages."""
+    lines: list[dict[str, Any]] = []
+    url: str | None = str(httpx.URL(f"{address}/ranking", params=query))
+    while url:
+        answer = client.get(url)
+        assert answer.status_code == 200, answer.text
+        RankingPage.model_validate_json(answer.content)
+        lines += answer.json()["lines"]
+        url = answer.json()["next"]
+    return lines
+
+
+@pytest.mark.parametrize("limit", [1, 2, 50])
+def test_the_largest_amplitude_comes_first(shared_client: httpx.Client, address: str, limit: int) -> None:
+    lines = ranked(shared_client, address, by="amplitude", limit=limit)
+    assert [line["rank"] for line in lines] == [1, 2, 3]
+    assert [line["reference"] for line in lines] == ["L150", "L125", "L100"]
+    amplitudes = [line["largest_vertical_m"] for line in lines]
+    assert amplitudes == sorted(amplitudes, reverse=True)
+    assert lines[0]["margin_m_per_s"] is lines[0]["clearance_m"] is None
+
+
+def test_the_least_margin_of_the_critical_wind_speed_comes_first(shared_client: httpx.Client, address: str) -> None:
+    lines = ranked(shared_client, address, by="critical-wind-margin", design_wind_speed_m_per_s=2.5, limit=2)
+    margins = [line["margin_m_per_s"] for line in lines]
+    assert margins == sorted(margins)
+    for line in lines:
+        assert line["margin_m_per_s"] == pytest.approx(line["lowest_critical_wind_speed_m_per_s"] - 2.5)
+
+
+@pytest.mark.parametrize(("spacing", "extent"), [("vertical_spacing_m", "height"), ("horizontal_spacing_m", "width")])
+def test_the_least_clearance_comes_first(shared_client: httpx.Client, address: str, spacing: str, extent: str) -> None:
+    lines = ranked(shared_client, address, by="clearance", **{spacing: 3.0})
+    clearances = [line["clearance_m"] for line in lines]
+    assert clearances == sorted(clearances)
+    for line in lines:
+        assert line["clearance_m"] == pytest.approx(3.0 - line[f"largest_{extent}_m"])
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "by=weight",
+        "vertical_spacing_m=3",
+        "by=amplitude&design_wind_speed_m_per_s=3",
+        "by=critical-wind-margin",
+        "by=clearance",
+        "by=clearance&vertical_spacing_m=3&horizontal_spacing_m=3",
+        "by=amplitude&vertical_spacing_m=3",
+        "by=clearance&vertical_spacing_m=-1",
+        "by=amplitude&limit=0",
+        "by=amplitude&cursor=AAAA",
+        "by=amplitude&colour=red",
+    ],
+)
+def test_queries_that_make_no_sense_are_refused(shared_client: httpx.Client, address: str, query: str) -> None:
+    answer = shared_client.get(f"{address}/ranking?{query}")
+    assert answer.status_code == 400
+    assert answer.json()["errors"]
+
+
+def test_a_ranking_waits_for_the_end_unless_a_partial_one_is_asked_for(shared_client: httpx.Client) -> None:
+    address = shared_client.post("/v1/batches", json={"lines": LINES, "analysis": SHORT}).headers["location"]
+    assert shared_client.get(f"{address}/ranking?by=amplitude").status_code == 409
+    assert ranked(shared_client, address, by="amplitude", partial=True) == []
+
+
+def test_there_is_no_ranking_of_no_batch(shared_client: httpx.Client, address: str) -> None:
+    other = address[:-1] + ("0" if address[-1] != "0" else "1")
+    assert shared_client.get(f"{other}/ranking?by=amplitude").status_code == 404
