@@ -3,14 +3,14 @@
 Lines that were stored before have neither height nor width, and the largest amplitude of all motions instead of those
 that last.
 
-Revision: 0009
+Revision: 0010
 """
 
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0009"
-down_revision = "0008"
+revision = "0010"
+down_revision = "0009"
 branch_labels = None
 depends_on = None
 
