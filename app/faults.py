@@ -13,7 +13,7 @@ _MOST_CHARACTERS = 200
 _MOST_SHOWN = 80
 
 # A tagged union puts the name of its branch into a location, behind the field or the item that it is the type of.
-_SPEEDS, _DEVICES, _AERODYNAMICS = "wind_speeds_m_per_s", "devices", "aerodynamics"
+_SPEEDS, _DEVICES, _DEVICE, _AERODYNAMICS = "wind_speeds_m_per_s", "devices", "device", "aerodynamics"
 _UNION_BRANCHES = frozenset(
     {"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range", "coefficients", "measured"}
 )
@@ -120,7 +120,7 @@ def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str) -
 def _is_branch(location: Sequence[int | str], place: int) -> bool:
     owners = location[max(0, place - 2) : place]
     return location[place] in _UNION_BRANCHES and (
-        owners[-1:] in {(_SPEEDS,), (_AERODYNAMICS,)} or owners[:1] == (_DEVICES,)
+        owners[-1:] in {(_SPEEDS,), (_DEVICE,), (_AERODYNAMICS,)} or owners[:1] == (_DEVICES,)
     )
 
 
@@ -141,7 +141,8 @@ def _wording(error: Mapping[str, Any]) -> tuple[str, str]:
     if code == "extra_forbidden":
         return "unknown_field", "unknown field"
     if code in {"union_tag_not_found", "union_tag_invalid"}:
-        return "unknown_type", "type must be spacer, detuning_pendulum or airflow_spoiler"
+        *others, last = str(error.get("ctx", {}).get("expected_tags", "a kind of device")).replace("'", "").split(", ")
+        return "unknown_type", f"type must be {', '.join(others)} or {last}" if others else f"type must be {last}"
     if code in {"model_type", "model_attributes_type", "dict_type"}:
         return "not_an_object", "must be an object"
     return code, detail[:1].lower() + detail[1:]

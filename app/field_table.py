@@ -39,10 +39,15 @@ def _fields(prefix: str, schema: _Schema) -> Iterator[dict[str, Any]]:
         for form in _forms(field):
             if form.get("type") == "array":
                 for item in _forms(form["items"]):
-                    kind = item.get("properties", {}).get("type", {}).get("const", "")
-                    yield from _fields(f"{path}[{kind}].", item)
+                    yield from _fields(f"{path}[{_kind(item)}].", item)
             else:
-                yield from _fields(f"{path}.", form)
+                yield from _fields(f"{path}[{_kind(form)}]." if _kind(form) else f"{path}.", form)
+
+
+def _kind(form: _Schema) -> str:
+    """Return the type of which one form of several is; nothing where there is only one."""
+    kind: str = form.get("properties", {}).get("type", {}).get("const", "")
+    return kind
 
 
 def _forms(schema: _Schema) -> list[_Schema]:

@@ -20,10 +20,14 @@ BAD_INPUT = 2
 FAILED = 1
 
 LineFile = Annotated[
-    Path, typer.Argument(metavar="LINE.json", help="A line, or {line, analysis, study}; - reads standard input.")
+    Path,
+    typer.Argument(metavar="LINE.json", help="A line, or {line, analysis, study, placement}; - reads standard input."),
 ]
 AnalysisFile = Annotated[Path | None, typer.Option("--analysis", metavar="ANALYSIS.json", help="What is asked.")]
 StudyFile = Annotated[Path | None, typer.Option("--study", metavar="STUDY.json", help="Fields of the line to vary.")]
+PlacementFile = Annotated[
+    Path | None, typer.Option("--placement", metavar="PLACEMENT.json", help="Devices to be placed.")
+]
 OutputFile = Annotated[
     Path | None, typer.Option("--output", metavar="RESULT.json", help="Where the result goes; else standard output.")
 ]
@@ -31,11 +35,11 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, for programs."
 DataDirectory = Annotated[Path | None, typer.Option("--data-dir", help="Directory of all files of the service.")]
 
 
-def read_request(line: Path, analysis: Path | None, study: Path | None) -> Any:
+def read_request(line: Path, analysis: Path | None, study: Path | None, placement: Path | None = None) -> Any:
     """Put the request together from its files; a file that holds a whole request may be completed, not contradicted."""
     whole = _read_json(line)
     document = whole if isinstance(whole, dict) and "line" in whole else {"line": whole}
-    for name, path in (("analysis", analysis), ("study", study)):
+    for name, path in (("analysis", analysis), ("study", study), ("placement", placement)):
         if path is None:
             continue
         if name in document:

@@ -14,6 +14,7 @@ from app.cli.common import (
     AnalysisFile,
     LineFile,
     OutputFile,
+    PlacementFile,
     StudyFile,
     end,
     progress_bar,
@@ -28,7 +29,13 @@ if TYPE_CHECKING:
     from app.convert import PointResult
 
 
-def analyse(line: LineFile, analysis: AnalysisFile = None, study: StudyFile = None, output: OutputFile = None) -> None:
+def analyse(
+    line: LineFile,
+    analysis: AnalysisFile = None,
+    study: StudyFile = None,
+    placement: PlacementFile = None,
+    output: OutputFile = None,
+) -> None:
     """Analyse a line in this process, without service or database."""
     from app.processes import ONE_BLAS_THREAD
 
@@ -36,12 +43,12 @@ def analyse(line: LineFile, analysis: AnalysisFile = None, study: StudyFile = No
     from app import convert
     from app.faults import BadInput
 
-    document = read_request(line, analysis, study)
+    document = read_request(line, analysis, study, placement)
     try:
         request = convert.read(document)
     except BadInput as error:
         refuse(error.faults)
-    whole = request.model_dump(mode="json", by_alias=True, exclude={"study"} if request.study is None else None)
+    whole = request.kept()
     points: list[PointResult] = []
     try:
         with progress_bar() as show:

@@ -9,10 +9,13 @@ from pydantic import ValidationError
 from app import schemas
 from app.convert import study
 from app.convert.assemble import SoundParts, gather
-from app.convert.pointers import to_pointer
+from app.convert.parts import placement
+from app.convert.pointers import json_names, to_pointer
 from app.convert.sound import SoundAxis, pruned, sound_analysis, sound_axes, sound_parts
 from app.convert.study import Ground
-from app.faults import MOST_FAULTS, BadInput, Fault, faults_of
+from app.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer
+from engine.outcome import InvalidSpec
+from engine.spec import check_placement
 
 
 def read(document: object) -> schemas.JobRequest:
@@ -47,7 +50,25 @@ def request_faults(request: schemas.JobRequest) -> list[Fault]:
     """Return the faults that a request has beyond its schema."""
     axes = request.study.axes if request.study else []
     sound = [SoundAxis(i, axis.parameters, list(enumerate(axis.values))) for i, axis in enumerate(axes)]
-    return _combined({}, SoundParts.of(request.line), request.analysis, sound)
+    parts = SoundParts.of(request.line)
+    faults = _combined({}, parts, request.analysis, sound)
+    return faults or _placement_faults(request)
+
+
+def _placement_faults(request: schemas.JobRequest) -> list[Fault]:
+    """Return what is wrong with the placement of a request that is sound without it."""
+    if request.placement is None:
+        return []
+    line, analysis, _ = gather(SoundParts.of(request.line), request.analysis)
+    assert line is not None, "a line without faults was gathered"
+    try:
+        check_placement(line, analysis, placement(request.placement))
+    except InvalidSpec as error:
+        names = [json_names(request.placement, fault.field.split(".")) for fault in error.faults]
+        pointers = [json_pointer(["placement", *path]) for path in names]
+        told = zip(pointers, error.faults, strict=True)
+        return [Fault(pointer, "inconsistent", fault.rule) for pointer, fault in told]
+    return []
 
 
 def with_further_faults(document: object, faults: Sequence[Fault]) -> list[Fault]:

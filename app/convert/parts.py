@@ -108,6 +108,28 @@ def device(part: schemas.Device) -> spec.Device:
             return spec.AirflowSpoiler(part.start, part.stop, aerodynamics(part.aerodynamics, part.at_rest), part.mass)
 
 
+def placement(part: schemas.Placement) -> spec.Placement:
+    """Build a search for the places of devices."""
+    return spec.Placement(
+        choice=_choice(part.choice),
+        objective=spec.Objective(part.objective),
+        generations=part.generations,
+        population=part.population,
+        seed=part.seed,
+    )
+
+
+def _choice(part: schemas.PendulumChoice | schemas.SpoilerChoice) -> spec.PendulumChoice | spec.SpoilerChoice:
+    try:
+        if isinstance(part, schemas.SpoilerChoice):
+            coefficients = aerodynamics(part.aerodynamics, part.at_rest)
+            return spec.SpoilerChoice(part.length, part.position.pair, coefficients, part.mass)
+        ranges = part.position.pair, part.mass.pair, part.arm.pair
+        return spec.PendulumChoice(part.count, *ranges, math.radians(part.angle))
+    except InvalidSpec as error:
+        raise InvalidSpec(*(replace(f, field=f"choice.{f.field}") for f in error.faults)) from error
+
+
 def analysis(part: schemas.Analysis) -> spec.Analysis:
     """Build what is asked."""
     return spec.Analysis(
@@ -122,6 +144,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         finite_element_loops=tuple(part.finite_element_loops),
         static_twist=spec.StaticTwist(part.static_twist),
         loop_competition=spec.LoopCompetition(part.loop_competition),
+        device_effect=spec.DeviceEffect(part.device_effect),
     )
 
 

@@ -1,7 +1,7 @@
 """A validated request -> the engine -> plain rows, one point of the study after another."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from typing import Any, Literal
@@ -9,7 +9,7 @@ from typing import Any, Literal
 import orjson
 
 from app import schemas
-from app.convert import study
+from app.convert import parts, study
 from app.convert.assemble import SoundParts, gather
 from app.convert.peaks import peaks
 from engine import ENGINE_VERSION, spec
@@ -17,11 +17,14 @@ from engine.outcome import InvalidSpec
 from engine.result import (
     BifurcationRow,
     CriticalWindSpeedRow,
+    DeviceEffectRow,
     FrequencyRow,
     InternalResonanceRow,
     LimitCycleRow,
     LoopCompetitionRow,
     ModelComparisonRow,
+    PlacementRow,
+    Progress,
     Result,
 )
 
@@ -33,6 +36,8 @@ Table = Literal[
     "bifurcations",
     "model_comparisons",
     "loop_competitions",
+    "device_effects",
+    "placements",
 ]
 _ROW_TYPES: Mapping[Table, type[Any]] = {
     "frequencies": FrequencyRow,
@@ -42,6 +47,8 @@ _ROW_TYPES: Mapping[Table, type[Any]] = {
     "bifurcations": BifurcationRow,
     "model_comparisons": ModelComparisonRow,
     "loop_competitions": LoopCompetitionRow,
+    "device_effects": DeviceEffectRow,
+    "placements": PlacementRow,
 }
 TABLES: tuple[Table, ...] = tuple(_ROW_TYPES)
 _NO_ROWS = orjson.dumps({name: [] for name in TABLES})
@@ -125,11 +132,8 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
 
 
 def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> Iterator[Advance | PointResult]:
-    from engine.analysis import analyse  # noqa: PLC0415 - the API and `galloping --help` need no solver
-
     try:
-        line, analysis = specification(request, values)
-        progress = analyse(line, analysis)
+        progress = _steps(request, values)
         while True:
             try:
                 step = next(progress)
@@ -141,6 +145,18 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
         if request.study is None:
             raise
         yield failed_point(error, number, values)
+
+
+def _steps(request: schemas.JobRequest, values: dict[str, Any]) -> Generator[Progress, None, Result]:
+    """Return the computation of one point, which has not begun yet."""
+    # The API and `galloping --help` need no solver.
+    from engine.analysis import analyse  # noqa: PLC0415
+    from engine.placement import place  # noqa: PLC0415
+
+    line, analysis = specification(request, values)
+    if request.placement is None:
+        return analyse(line, analysis)
+    return place(line, analysis, parts.placement(request.placement))
 
 
 def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:

@@ -89,6 +89,8 @@ RESULT: dict[str, Any] = {
     "bifurcations": [],
     "model_comparisons": [],
     "loop_competitions": [],
+    "device_effects": [],
+    "placements": [],
 }
 RESULTS_ANSWER: dict[str, Any] = {
     "description": "NDJSON with one object a line, or rows of a table",

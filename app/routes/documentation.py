@@ -7,6 +7,7 @@ from app.examples import EXAMPLE_NAMES, example
 from app.export import PARQUET
 from app.faults import Fault
 from app.schemas.answers import Problem
+from app.schemas.placement import EXAMPLE as PLACEMENT
 
 _NULL = "\0null"
 _JOB = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e"
@@ -128,6 +129,8 @@ RESULT: dict[str, Any] = {
     "bifurcations": [],
     "model_comparisons": [],
     "loop_competitions": [],
+    "device_effects": [],
+    "placements": [],
     "warnings": [],
     "failures": [],
     "failure": None,
@@ -188,6 +191,14 @@ REQUESTS: dict[str, Any] = {
             "line": example("c11-twin"),
             "analysis": {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [6.0]},
             "study": {"axes": [{"parameter": "span.horizontal_tension_n", "values": [24000, 30000, 36000]}]},
+        },
+    },
+    "placement": {
+        "summary": "Best places of two pendulums",
+        "value": {
+            "line": example("c11-twin"),
+            "analysis": {"models": ["hybrid"], "wind_speeds_m_per_s": [4.0]},
+            "placement": PLACEMENT,
         },
     },
 }

@@ -122,7 +122,7 @@ async def submit(
     if faults:
         raise invalid_document(faults)
     line = document.line
-    kept = document.model_dump(mode="json", by_alias=True, exclude={"study"} if document.study is None else None)
+    kept = document.kept()
 
     def make(session: Session) -> tuple[UUID, dict[str, Any]]:
         job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)

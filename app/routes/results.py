@@ -32,6 +32,8 @@ TableName = Literal[
     "limit-cycles",
     "model-comparisons",
     "loop-competitions",
+    "device-effects",
+    "placements",
 ]
 _TABLES: dict[TableName, Table] = {
     "frequencies": "frequencies",
@@ -40,6 +42,8 @@ _TABLES: dict[TableName, Table] = {
     "limit-cycles": "limit_cycles",
     "model-comparisons": "model_comparisons",
     "loop-competitions": "loop_competitions",
+    "device-effects": "device_effects",
+    "placements": "placements",
 }
 _PROBLEMS = documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED)
 _TABLE_PROBLEMS = documentation.problems(

@@ -14,6 +14,7 @@ from app.schemas.environment import (
 )
 from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
+from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
 
 __all__ = [
     "Aerodynamics",
@@ -33,9 +34,12 @@ __all__ = [
     "JobRequest",
     "Line",
     "MeasuredCoefficients",
+    "PendulumChoice",
+    "Placement",
     "ProfilePoint",
     "Spacer",
     "Span",
+    "SpoilerChoice",
     "Study",
     "Support",
     "Supports",

@@ -10,6 +10,8 @@ from pydantic_core import PydanticCustomError
 from app.examples import example
 from app.schemas.fields import Document, quantity
 from app.schemas.line import Line
+from app.schemas.placement import EXAMPLE as PLACEMENT
+from app.schemas.placement import Placement
 
 STUDY_POINTS_LIMIT = 10_000
 _FASTEST_WIND = 100.0
@@ -107,6 +109,12 @@ class Analysis(Document):
         examples=["checked"],
     )
 
+    device_effect: Literal["neglected", "reported"] = Field(
+        default="neglected",
+        description="Whether the line is analysed without its devices too, to tell what they change",
+        examples=["reported"],
+    )
+
     @model_validator(mode="after")
     def _distinct(self) -> Self:
         for name in ("loops", "models", "finite_element_loops"):
@@ -196,10 +204,24 @@ class Study(Document):
 
 
 class JobRequest(Document):
-    """A line, what is asked of it, and a study over some of its fields."""
+    """A line, what is asked of it, and a study over some of its fields or a search for the places of devices."""
 
     line: Line = Field(description="The span", examples=[example("c11-twin")])
     analysis: Analysis = Field(default=Analysis(), description="What is asked", examples=[{"loops": [1, 2]}])
     study: Study | None = Field(
         default=None, description="Fields of the line to vary; none if absent", examples=[{"axes": [_AXIS]}]
     )
+    placement: Placement | None = Field(
+        default=None, description="Devices to be placed; none if absent, and not beside a study", examples=[PLACEMENT]
+    )
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        if self.study is not None and self.placement is not None:
+            raise PydanticCustomError("exclusive", "study and placement exclude each other")
+        return self
+
+    def kept(self) -> dict[str, Any]:
+        """Return the request with all defaults as it is kept and given back; what was not asked for is left out."""
+        absent = {name for name in ("study", "placement") if getattr(self, name) is None}
+        return self.model_dump(mode="json", by_alias=True, exclude=absent)

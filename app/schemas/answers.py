@@ -127,6 +127,40 @@ class LoopCompetition(Answer):
     outcome: Outcome = told("How the computation ended", "converged")
 
 
+class DeviceEffect(Answer):
+    """Lowest onset and largest stable amplitude, without and with devices."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    model: Model = told("Model that the row comes from", "hybrid")
+    loops: int = told("Loops per span [1]", 2)
+    wind_speed_m_per_s: Number = told("Wind speed of the amplitudes; null if none was asked for [m/s]", 4.0)
+    critical_wind_speed_without_m_per_s: Number = told("Lowest onset without; null if there is none [m/s]", 2.25)
+    critical_wind_speed_with_m_per_s: Number = told("Lowest onset with them; null if there is none [m/s]", 2.59)
+    amplitude_without_m: Number = told("Largest sqrt(V^2 + W^2) without; 0 at rest, null if unknown [m]", 0.373)
+    amplitude_with_m: Number = told("Largest sqrt(V^2 + W^2) with them; 0 at rest, null if unknown [m]", 0.096)
+
+
+class PlacedDevice(Answer):
+    """A device that a search has placed."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    device: int = told("Its number among the devices of the line, from 0 [1]", 0)
+    type: Literal["detuning_pendulum", "airflow_spoiler"] = told("Kind of device", "detuning_pendulum")
+    position_m: Number = told("Where a pendulum hangs [m]", 68.5)
+    mass_kg: Number = told("Mass of a pendulum [kg]", 19.9)
+    arm_m: Number = told("Arm of a pendulum [m]", 0.46)
+    from_m: Number = told("Where a spoiler begins [m]", None)
+    to_m: Number = told("Where a spoiler ends [m]", None)
+    objective: Literal["highest_critical_wind_speed", "lowest_amplitude"] = told(
+        "What was sought", "highest_critical_wind_speed"
+    )
+    objective_value: Number = told("What was reached, in m/s or m; null if no place has a value", 2.547)
+    evaluations: int = told("Different candidates that were computed [1]", 80)
+    generations: int = told("Generations of the search [1]", 4)
+
+
 class StaticState(Answer):
     """Static state of the span; in a study one row a point, after the values of the axes."""
 
@@ -192,6 +226,11 @@ class ResultDocument(Answer):
     loop_competitions: list[LoopCompetition] = told(
         "Stable cycles against the other loops; empty unless loop_competition is checked", [example_of(LoopCompetition)]
     )
+    device_effects: list[DeviceEffect] = told(
+        "Without and with devices; empty unless device_effect is reported or devices were placed",
+        [example_of(DeviceEffect)],
+    )
+    placements: list[PlacedDevice] = told("Devices that a search has placed", [example_of(PlacedDevice)])
     warnings: list[str] = told("What to bear in mind, in sentences", ["The angle of attack leaves the fitted range."])
     failures: list[PointFailure] = told("Points that failed", [example_of(PointFailure)])
     failure: Failure | None = told("Why the job failed; null if it did not", example_of(Failure))
