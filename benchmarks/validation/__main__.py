@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from benchmarks.validation import (
     critical_wind_speeds,
+    device_placement,
     direct_integration,
     frequencies,
     limit_cycles,
@@ -32,6 +33,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "studies": studies.section,
     "relative_wind": relative_wind.section,
     "static_twist": static_twist.section,
+    "device_placement": device_placement.section,
 }
 
 
