@@ -133,7 +133,8 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
 
 def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> Iterator[Advance | PointResult]:
     try:
-        progress = _steps(request, values)
+        line, analysis = specification(request, values)
+        progress = _steps(request.placement, line, analysis)
         while True:
             try:
                 step = next(progress)
@@ -147,16 +148,17 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
         yield failed_point(error, number, values)
 
 
-def _steps(request: schemas.JobRequest, values: dict[str, Any]) -> Generator[Progress, None, Result]:
+def _steps(
+    placement: schemas.Placement | None, line: spec.Line, analysis: spec.Analysis
+) -> Generator[Progress, None, Result]:
     """Return the computation of one point, which has not begun yet."""
     # The API and `galloping --help` need no solver.
     from engine.analysis import analyse  # noqa: PLC0415
     from engine.placement import place  # noqa: PLC0415
 
-    line, analysis = specification(request, values)
-    if request.placement is None:
+    if placement is None:
         return analyse(line, analysis)
-    return place(line, analysis, parts.placement(request.placement))
+    return place(line, analysis, parts.placement(placement))
 
 
 def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:
