@@ -8,6 +8,7 @@ from benchmarks.validation import (
     device_placement,
     direct_integration,
     frequencies,
+    internal_resonance,
     limit_cycles,
     model_comparison,
     relative_wind,
@@ -26,6 +27,7 @@ coefficient, exact closure, ten elements. Theory and section numbers are explain
 
 SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "frequencies": frequencies.section,
+    "internal_resonance": internal_resonance.section,
     "critical_wind_speeds": critical_wind_speeds.section,
     "limit_cycles": limit_cycles.section,
     "direct_integration": direct_integration.section,
