@@ -31,6 +31,13 @@ class ProblemKind(Enum):
     NOT_FOUND = ("not-found", 404, "Not found", "There is nothing at this address, or no longer.")
     METHOD_NOT_ALLOWED = ("method-not-allowed", 405, "Method not allowed", "The address does not take this method.")
     NOT_ACCEPTABLE = ("not-acceptable", 406, "Not acceptable", "None of the media types asked for can be made.")
+    # Those who share a status stand before the one that any other fault of this status is.
+    REQUEST_IN_FLIGHT = (
+        "request-in-flight",
+        409,
+        "Request in flight",
+        "An earlier request with this Idempotency-Key is still at work; its answer comes to who asks again.",
+    )
     NOT_READY = ("not-ready", 409, "Not ready", "The job has not ended; its status document tells how far it is.")
     DISMISSED = ("dismissed", 410, "Dismissed", "The job was cancelled and has no results.")
     TOO_LARGE = ("too-large", 413, "Body too large", "The request body is larger than the operator allows.")
@@ -39,6 +46,12 @@ class ProblemKind(Enum):
         415,
         "Unsupported media type",
         "The body is of another type than taken.",
+    )
+    KEY_REUSED = (
+        "idempotency-key-reused",
+        422,
+        "Idempotency-Key reused",
+        "The Idempotency-Key was used for another request within the last 24 hours.",
     )
     INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is no JSON, or fields of it are wrong.")
     TOO_MANY_REQUESTS = (

@@ -91,8 +91,18 @@ def input_hash(document: Mapping[str, Any]) -> str:
     ValueError
         If the document holds NaN or an infinity.
     """
-    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return hashlib.sha256(canonical.encode()).hexdigest()
+    return hashlib.sha256(canonical(document).encode()).hexdigest()
+
+
+def canonical(document: Mapping[str, Any]) -> str:
+    """Return a document as the one text that all its forms have.
+
+    Raises
+    ------
+    ValueError
+        If the document holds NaN or an infinity.
+    """
+    return json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def get(session: Session, owner: str, job_id: UUID) -> Job | None:

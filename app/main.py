@@ -21,6 +21,7 @@ from app.queue import Sender, celery_application
 from app.rates import Meter
 from app.routes import (
     aerodynamics,
+    batch_intake,
     batch_ranking,
     batch_results,
     batches,
@@ -95,6 +96,6 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batches, batch_results, batch_ranking, aerodynamics, reference, health):
+    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, aerodynamics, reference, health):
         app.include_router(module.router)
     return app

@@ -8,7 +8,7 @@ from uuid import UUID
 
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches, leases, tallies
+from app import batches, idempotency, leases, tallies
 from app.queue import BrokerUnavailable, open_queue
 from app.settings import Settings
 
@@ -27,6 +27,7 @@ def sweep(sessions: sessionmaker[Session], settings: Settings) -> int:
     with sessions.begin() as session:
         batches.discard_abandoned(session)
         tallies.fold(session)
+        idempotency.forget_expired(session)
     return sum(_send_waiting(sessions, settings, chunks) for chunks in (False, True))
 
 

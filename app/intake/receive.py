@@ -3,7 +3,7 @@
 No transaction lasts longer than a block, so that a slow sender holds up nobody.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import islice
@@ -50,8 +50,29 @@ class _Draft:
     faults: list[Fault] = field(default_factory=list)
 
 
+def _nothing(*_: object) -> None:
+    """Take no part."""
+
+
+@dataclass(frozen=True, slots=True)
+class Participant:
+    """Who takes part in the transactions of a batch: in that of each block of lines, and in that which accepts it.
+
+    Whatever they raise undoes the transaction, and the batch is removed.
+    """
+
+    on_block: Callable[[Session], object] = _nothing
+    on_accept: Callable[[Session, UUID], object] = _nothing
+
+
 def receive(
-    sessions: sessionmaker[Session], settings: Settings, caller: Caller, incoming: Incoming, *, atomic: bool
+    sessions: sessionmaker[Session],
+    settings: Settings,
+    caller: Caller,
+    incoming: Incoming,
+    participant: Participant = Participant(),
+    *,
+    atomic: bool,
 ) -> Receipt:
     """Check and store the lines of a batch, and accept it if any of them can be run; an atomic one only if all can.
 
@@ -69,10 +90,14 @@ def receive(
         batch_id = batches.begin(session, caller, analysis.model_dump(mode="json", by_alias=True))
     draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic)
     try:
-        _store(sessions, settings, draft, incoming.lines)
+        for block in _blocks(settings, draft, incoming.lines):
+            with sessions.begin() as session:
+                participant.on_block(session)
+                batches.add_items(session, block)
         _refuse_hopeless(draft)
         with sessions.begin() as session:
             batches.accept(session, caller, batch_id, draft.chunks, draft.rejected)
+            participant.on_accept(session, batch_id)
     except BaseException:
         with suppress(SQLAlchemyError), sessions.begin() as session:
             batches.discard(session, batch_id)
@@ -85,15 +110,15 @@ def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:
     return max(1, min(settings.most_chunk_lines, round(settings.chunk_seconds / convert.seconds_a_line(analysis))))
 
 
-def _store(sessions: sessionmaker[Session], settings: Settings, draft: _Draft, lines: Iterator[object]) -> None:
+def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Iterator[list[dict[str, Any]]]:
+    """Yield the rows of the lines, some at a time, until there is no use in going on."""
     while block := list(islice(lines, _LINES_A_BLOCK)):
         if draft.taken + len(block) > settings.max_batch_lines:
             raise BadInput([Fault("/lines", "too_long", f"a batch may have {settings.max_batch_lines} lines")])
         items = [_item(draft, document) for document in block]
         if draft.atomic and len(draft.faults) >= MOST_FAULTS:
             return
-        with sessions.begin() as session:
-            batches.add_items(session, items)
+        yield items
 
 
 def _item(draft: _Draft, document: object) -> dict[str, Any]:

@@ -2,14 +2,15 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Body
+from fastapi import APIRouter, Body, Response
 from fastapi.responses import JSONResponse
 
-from app import convert, schemas
+from app import convert, idempotency, jobs, schemas
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document
 from app.faults import BadInput
 from app.routes import documentation, reference_documentation
-from app.routes.common import PREFIX
+from app.routes.common import PREFIX, Writers
+from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
 from app.schemas.aerodynamics import FitAnswer
 
 router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route_class=StrictJsonRoute)
@@ -19,21 +20,31 @@ router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route
     "/fit",
     response_model=FitAnswer,
     responses={
-        200: documentation.body("The fit", ("application/json", reference_documentation.FIT)),
+        200: {
+            **documentation.body("The fit", ("application/json", reference_documentation.FIT)),
+            "headers": documentation.REPLAYED_HEADER,
+        },
         **documentation.problems(
-            ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
+            *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
         ),
     },
 )
 def fit(
     document: Annotated[schemas.MeasuredCoefficients, Body(openapi_examples=reference_documentation.FIT_REQUESTS)],
-) -> JSONResponse:
+    key: KeyOf,
+    writers: Writers,
+) -> Response:
     """Fit cubics about the static angle to measured lift, drag and moment, as a line's `ice` takes them.
 
     Lift and drag are turned with the section: C_y = C_L cos a + C_D sin a, C_z = -C_L sin a + C_D cos a, and
     C_theta = C_M, with a in radians from the static angle.
     """
     try:
-        return JSONResponse(convert.fit(document))
+        answer = JSONResponse(convert.fit(document))
     except BadInput as error:
         raise invalid_document(error.faults) from error
+
+    def fingerprint() -> str:
+        return idempotency.fingerprint(router.prefix, jobs.canonical(document.model_dump(mode="json")))
+
+    return once(writers, key, fingerprint, lambda _: Made(answer)).answer

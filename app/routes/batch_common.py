@@ -3,6 +3,7 @@
 from typing import Any
 from uuid import UUID
 
+from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import batch_results, batches
@@ -11,6 +12,8 @@ from app.batches import Counts
 from app.errors import ProblemError, ProblemKind
 from app.routes.common import ENDED, PREFIX, RETRY_SECONDS
 from app.tables import Batch
+
+BATCHES = f"{PREFIX}/batches"
 
 _ERRORS_SHOWN = 50
 
@@ -51,7 +54,7 @@ def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UU
 
 def batch_address(batch_id: UUID) -> str:
     """Return the address of a batch's status."""
-    return f"{PREFIX}/batches/{batch_id}"
+    return f"{BATCHES}/{batch_id}"
 
 
 def batch_summary(batch: Batch, counts: Counts) -> dict[str, Any]:
@@ -80,6 +83,13 @@ def batch_document(session: Session, batch: Batch, counts: Counts) -> dict[str, 
     """Return the status document of a batch, with the faults of the first lines that were rejected."""
     shown = list(batch_results.errors(session, batch.id, _ERRORS_SHOWN)) if batch.rejected_lines else []
     return {**batch_summary(batch, counts), "errors": shown[:_ERRORS_SHOWN]}
+
+
+def accepted_batch(session: Session, caller: Caller, batch_id: UUID) -> JSONResponse:
+    """Return the answer to who has sent a batch, or sent it again."""
+    batch = find_batch(session, caller, batch_id)
+    document = batch_document(session, batch, batches.counts(session, [batch_id])[batch_id])
+    return JSONResponse(document, 202, headers={"Location": batch_address(batch_id), "Retry-After": RETRY_SECONDS})
 
 
 def _links(batch: Batch, counts: Counts) -> list[dict[str, str]]:

@@ -5,6 +5,7 @@ from typing import Any
 
 from app.examples import example
 from app.export import PARQUET
+from app.routes import documentation
 from app.schemas.batch import BatchRequest, RankedLine
 from app.schemas.fields import example_of
 
@@ -63,6 +64,10 @@ FINISHED: dict[str, Any] = {
 }
 DISMISSED: dict[str, Any] = {**ACCEPTED, "status": "dismissed", "lines": {**_COUNTS, "accepted": 0, "dismissed": 2}}
 STOPPING: dict[str, Any] = {**ACCEPTED, "status": "running", "lines": {**_COUNTS, "accepted": 0, "running": 2}}
+ACCEPTED_ANSWER: dict[str, Any] = {
+    **documentation.body("Accepted; Location leads to its status", ("application/json", ACCEPTED)),
+    "headers": documentation.ACCEPTED_HEADERS,
+}
 PAGE: dict[str, Any] = {"batches": [_SUMMARY], "next": None}
 RANKING: dict[str, Any] = {"lines": [example_of(RankedLine) | {"clearance_m": None}], "next": None}
 ERRORS: dict[str, Any] = {"errors": [FAULT]}

@@ -1,5 +1,6 @@
 """Examples of every body and every problem for OpenAPI; each validates against its own schema (tests see to it)."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from app.errors import MEDIA_TYPE, ProblemKind, problem_document
@@ -74,6 +75,17 @@ _CRITICAL: dict[str, Any] = {
     "unstable_pairs_after": 1,
 }
 
+REPLAYED_HEADER: dict[str, Any] = {
+    "Idempotency-Replayed": {
+        "description": "`true` if this is the first answer under the `Idempotency-Key`, given again",
+        "schema": {"type": "string", "enum": ["true"]},
+    }
+}
+ACCEPTED_HEADERS: dict[str, Any] = {
+    "Location": {"description": "Address of the status", "schema": {"type": "string"}},
+    "Retry-After": {"description": "Seconds to wait before looking", "schema": {"type": "integer"}},
+    **REPLAYED_HEADER,
+}
 ACCEPTED_JOB: dict[str, Any] = {
     "id": _JOB,
     "status": "accepted",
@@ -225,8 +237,13 @@ ANY_PROBLEM: dict[str, Any] = {
 
 def problems(*kinds: ProblemKind) -> dict[int | str, dict[str, Any]]:
     """Return the entries of OpenAPI for these problems, and for the two that every address can answer."""
-    every = (*kinds, ProblemKind.UNAVAILABLE, ProblemKind.INTERNAL)
-    return {kind.status: {"description": kind.description, "content": _content(kind)} for kind in every}
+    by_status: dict[int | str, list[ProblemKind]] = {}
+    for kind in (*kinds, ProblemKind.UNAVAILABLE, ProblemKind.INTERNAL):
+        by_status.setdefault(kind.status, []).append(kind)
+    return {
+        status: {"description": " Or: ".join(kind.description for kind in same), "content": _content(same)}
+        for status, same in by_status.items()
+    }
 
 
 def with_nulls(document: Any) -> Any:
@@ -256,6 +273,9 @@ def body(description: str, *media_types: tuple[str, Any]) -> dict[str, Any]:
     return {"description": description, "content": content}
 
 
-def _content(kind: ProblemKind) -> dict[str, Any]:
-    sample = problem_document(kind, kind.description, _ADDRESS, _FAULTS.get(kind, ()))
-    return {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}, "example": sample}}
+def _content(kinds: Sequence[ProblemKind]) -> dict[str, Any]:
+    samples = {
+        kind.slug: {"value": problem_document(kind, kind.description, _ADDRESS, _FAULTS.get(kind, ()))}
+        for kind in kinds
+    }
+    return {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}, "examples": samples}}

@@ -3,7 +3,7 @@
 from contextvars import copy_context
 from datetime import UTC, datetime
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated
 from urllib.parse import urlencode
 from uuid import UUID
 
@@ -14,7 +14,7 @@ from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 from sqlalchemy.orm import Session
 
-from app import convert, jobs, paging, schemas
+from app import convert, idempotency, jobs, paging, schemas
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
 from app.jobs import CancelOutcome, JobFilters
 from app.routes import documentation
@@ -34,6 +34,7 @@ from app.routes.common import (
     job_address,
     job_document,
 )
+from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once_together
 from app.schemas.answers import JobDocument, JobPage
 from app.schemas.fields import Label
 from app.settings import cursor_key
@@ -99,22 +100,21 @@ class ListQuery(BaseModel):
             **documentation.body(
                 "Accepted; Location leads to its status", ("application/json", documentation.ACCEPTED_JOB)
             ),
-            "headers": {
-                "Location": {"description": "Address of the status", "schema": {"type": "string"}},
-                "Retry-After": {"description": "Seconds to wait before looking", "schema": {"type": "integer"}},
-            },
+            "headers": documentation.ACCEPTED_HEADERS,
         },
         **documentation.problems(
-            ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
+            *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
         ),
     },
 )
 async def submit(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
     caller: CallerOf,
+    key: KeyOf,
+    readers: Readers,
     inbox: Inbox,
     dispatcher: Dispatcher,
-) -> JSONResponse:
+) -> Response:
     """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already."""
     # Every point of a study is looked at, which may take a while; a line alone takes less than the way to a thread.
     check = partial(convert.request_faults, document)
@@ -124,14 +124,20 @@ async def submit(
     line = document.line
     kept = document.kept()
 
-    def make(session: Session) -> tuple[UUID, dict[str, Any]]:
+    def make(session: Session) -> Made:
         job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
-        return job.id, job_document(job)
+        headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
+        return Made(JSONResponse(job_document(job), 202, headers), [job.id])
 
-    context = copy_context()  # with the ids of this request
-    job_id, accepted = await inbox.ask(lambda session: context.run(make, session))
-    dispatcher.put(job_id)
-    return JSONResponse(accepted, 202, headers={"Location": job_address(job_id), "Retry-After": RETRY_SECONDS})
+    def fingerprint() -> str:
+        return idempotency.fingerprint(router.prefix, jobs.canonical(kept))
+
+    made = await once_together(
+        inbox, readers, key, fingerprint, partial(copy_context().run, make)
+    )  # with the ids of this request
+    for job_id in made.job_ids:
+        dispatcher.put(job_id)
+    return made.answer
 
 
 @router.get(

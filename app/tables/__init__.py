@@ -3,6 +3,7 @@
 from app.tables.access import ApiKey, AuditAction, AuditEvent
 from app.tables.base import Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
 from app.tables.batches import Batch, BatchItem
+from app.tables.idempotency import IdempotencyKey
 from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.results import PointRow
 from app.tables.tallies import Tally
@@ -16,6 +17,7 @@ __all__ = [
     "Batch",
     "BatchItem",
     "FailureKind",
+    "IdempotencyKey",
     "Job",
     "JobEvent",
     "JobEventKind",

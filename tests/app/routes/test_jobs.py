@@ -1,4 +1,3 @@
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
@@ -6,7 +5,6 @@ from typing import Any
 from uuid import UUID
 
 import httpx
-import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import leases
@@ -15,13 +13,6 @@ from app.examples import example
 from app.settings import Settings
 from tests.app import service
 from tests.documents import short_request
-
-
-@pytest.fixture
-def client(settings: Settings) -> Iterator[httpx.Client]:
-    """Give a client of a service on either kind of database."""
-    with service.running(settings) as running:
-        yield running
 
 
 def labelled(**changes: Any) -> dict[str, Any]:

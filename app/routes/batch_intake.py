@@ -1,0 +1,191 @@
+"""Batches sent: a body of any size, read as it comes in."""
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any
+from uuid import UUID
+
+import anyio
+from anyio import CapacityLimiter, from_thread, to_thread
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, Field
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import idempotency, intake
+from app.auth import Caller
+from app.errors import ProblemError, ProblemKind, invalid_document, query_fault
+from app.faults import BadInput, parse_json
+from app.idempotency import Key
+from app.intake import BodyTooLarge, Incoming, Participant
+from app.routes import batch_documentation, documentation
+from app.routes.batch_common import BATCHES, accepted_batch
+from app.routes.common import CallerOf, SenderOf, Writers
+from app.routes.once import KEY_PROBLEMS, KeyOf, Made, as_kept, held
+from app.schemas.batch import BatchDocument
+from app.settings import Settings
+
+if TYPE_CHECKING:
+    from hashlib import _Hash
+
+router = APIRouter(prefix=BATCHES, tags=["batches"])
+
+_SILENT_SECONDS = 60.0
+_TYPES = ("application/json", "application/x-ndjson", "text/csv")
+
+
+def _limiter(request: Request) -> CapacityLimiter:
+    """Return what bounds the threads that take in batches, so that slow senders leave the others to other requests."""
+    state = request.app.state
+    if not hasattr(state, "batch_limiter"):
+        state.batch_limiter = CapacityLimiter(state.settings.batches_at_once)
+    limiter: CapacityLimiter = state.batch_limiter
+    return limiter
+
+
+class IntakeQuery(BaseModel):
+    """How a batch is taken in."""
+
+    atomic: bool = Field(default=False, description="Take all lines or, if any is at fault, none")
+    analysis: str | None = Field(default=None, max_length=20_000, description="Analysis of a CSV batch, as JSON")
+
+
+@dataclass(frozen=True, slots=True)
+class _Posted:
+    """A body that is still coming in, how it is to be taken, and the sum over what has come of both."""
+
+    request: Request
+    settings: Settings
+    how: IntakeQuery
+    digest: "_Hash" = field(default_factory=hashlib.sha256)
+
+
+@router.post(
+    "",
+    status_code=202,
+    response_model=BatchDocument,
+    responses={
+        202: batch_documentation.ACCEPTED_ANSWER,
+        **documentation.problems(
+            *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
+        ),
+    },
+    openapi_extra=batch_documentation.request_body(),
+)
+async def submit(
+    request: Request,
+    caller: CallerOf,
+    key: KeyOf,
+    writers: Writers,
+    sender: SenderOf,
+    how: Annotated[IntakeQuery, Query()],
+) -> Response:
+    """Accept many lines under one analysis. Lines at fault are kept with their faults, the others run.
+
+    Each line may hold a `reference` beside its own fields; it is given back with the results, as is `asset_id`.
+    """
+    posted = _Posted(request, request.app.state.settings, how)
+    made = await to_thread.run_sync(partial(_receive, writers, caller, key, posted), limiter=_limiter(request))
+    await to_thread.run_sync(partial(sender.send, made.job_ids, chunk=True))
+    return made.answer
+
+
+def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> Made:
+    try:
+        return held(writers, key, partial(_fingerprint, posted), partial(_take_in, writers, caller, key, posted))
+    except BodyTooLarge as error:
+        raise ProblemError(ProblemKind.TOO_LARGE, str(error), headers={"Connection": "close"}) from error
+    except BadInput as error:
+        raise invalid_document(error.faults) from error
+
+
+def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> Made:
+    answers: list[Response] = []
+
+    def on_block(session: Session) -> None:
+        if key is not None:
+            idempotency.renew(session, key)
+
+    def on_accept(session: Session, batch_id: UUID) -> None:
+        answers.append(accepted_batch(session, caller, batch_id))
+        if key is not None:
+            idempotency.finish(session, key, _sum(posted), as_kept(answers[0]))
+
+    takes_part = Participant(on_block, on_accept)
+    incoming = _incoming(posted)
+    receipt = intake.receive(writers, posted.settings, caller, incoming, takes_part, atomic=posted.how.atomic)
+    return Made(answers[0], receipt.chunk_ids)
+
+
+def _fingerprint(posted: _Posted) -> str:
+    """Return the fingerprint of a body that nobody else reads."""
+    for _ in _inflated(posted):
+        pass
+    return _sum(posted)
+
+
+def _sum(posted: _Posted) -> str:
+    """Return the fingerprint of a body that was read to its end, as it was before it was compressed."""
+    return idempotency.fingerprint(
+        BATCHES, _media_type(posted), posted.how.model_dump_json(), posted.digest.hexdigest()
+    )
+
+
+def _media_type(posted: _Posted) -> str:
+    return posted.request.headers.get("content-type", "").partition(";")[0].strip().lower()
+
+
+def _incoming(posted: _Posted) -> Incoming:
+    media_type, settings = _media_type(posted), posted.settings
+    if media_type not in _TYPES:
+        said = f"The body is {media_type[:100]!r}, not one of {', '.join(_TYPES)}."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Post": ", ".join(_TYPES)})
+    if posted.how.analysis is not None and media_type != "text/csv":
+        raise query_fault("analysis", "only a CSV batch has its analysis in the query")
+    pieces = _inflated(posted)
+    if media_type == "application/json":
+        return intake.read_json(pieces, settings.max_body_bytes)
+    if media_type == "application/x-ndjson":
+        return intake.read_ndjson(pieces, settings.max_batch_line_bytes)
+    return intake.read_csv(pieces, _asked(posted.how.analysis), settings.max_batch_line_bytes)
+
+
+def _asked(analysis: str | None) -> Any:
+    try:
+        return parse_json((analysis or "{}").encode())
+    except BadInput as error:
+        raise query_fault("analysis", error.faults[0].detail) from error
+
+
+def _inflated(posted: _Posted) -> Iterator[bytes]:
+    encoding = posted.request.headers.get("content-encoding", "identity").strip().lower()
+    pieces = _pieces(posted.request)
+    if encoding == "gzip":
+        return _summed(posted, intake.gunzipped(pieces, posted.settings.max_batch_bytes))
+    if encoding != "identity":
+        said = f"The content encoding {encoding[:100]!r} is not taken; gzip is."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Encoding": "gzip"})
+    return _summed(posted, pieces)
+
+
+def _summed(posted: _Posted, pieces: Iterator[bytes]) -> Iterator[bytes]:
+    for piece in pieces:
+        posted.digest.update(piece)
+        yield piece
+
+
+def _pieces(request: Request) -> Iterator[bytes]:
+    """Yield the body in this thread as the event loop receives it: no piece is asked for before the last is used."""
+    stream = request.stream()
+
+    async def following() -> bytes | None:
+        with anyio.fail_after(_SILENT_SECONDS):
+            return await anext(stream, None)
+
+    try:
+        while (piece := from_thread.run(following)) is not None:
+            yield piece
+    except TimeoutError as error:
+        said = f"Nothing of the body came for {_SILENT_SECONDS:g} s."
+        raise ProblemError(ProblemKind.INVALID_DOCUMENT, said, headers={"Connection": "close"}) from error

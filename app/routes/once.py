@@ -1,0 +1,160 @@
+"""A POST under an `Idempotency-Key` is done once; the same request under it gets the first answer again."""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Annotated, Any
+from uuid import UUID
+
+from anyio import to_thread
+from fastapi import Depends, Header
+from fastapi.responses import JSONResponse, Response
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import idempotency
+from app.errors import ProblemError, ProblemKind
+from app.groups import Groups
+from app.idempotency import Answer, Key, KeyTaken
+from app.routes.common import RETRY_SECONDS, CallerOf, Change
+
+_REPLAYED = "Idempotency-Replayed"
+_OF_THE_BODY = frozenset({"content-length", "content-type"})
+KEY_PROBLEMS = (ProblemKind.INVALID_PARAMETER, ProblemKind.REQUEST_IN_FLIGHT, ProblemKind.KEY_REUSED)
+
+
+async def _key(
+    caller: CallerOf,
+    idempotency_key: Annotated[
+        str | None,
+        Header(
+            min_length=1,
+            max_length=255,
+            pattern=r"^[\x20-\x7e]+$",
+            description="The same request under the same key is done once within 24 hours and gets the first answer "
+            "again. The same key with another request is 422, and 409 while the first is still at work.",
+            examples=["5e2f1c6e-6f0f-4d3a-9a53-0f4b8d2a7c11"],
+        ),
+    ] = None,
+) -> Key | None:
+    return idempotency.new_key(caller.owner, idempotency_key) if idempotency_key is not None else None
+
+
+KeyOf = Annotated[Key | None, Depends(_key)]
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """The answer to a POST, and the jobs that it made, to be sent to the workers after the commit."""
+
+    answer: Response
+    job_ids: Sequence[UUID] = ()
+
+
+def once(
+    writers: sessionmaker[Session], key: Key | None, fingerprint: Callable[[], str], make: Callable[[Session], Made]
+) -> Made:
+    """Make something and keep the answer in one transaction; under a key that is in use, give its answer again.
+
+    Raises
+    ------
+    ProblemError
+        As `make` raises it, then with nothing kept; 409 if a request at work holds the key, 422 if it is another's.
+    """
+    try:
+        with writers.begin() as session:
+            return _keeping(key, fingerprint, make)(session)
+    except KeyTaken:
+        assert key is not None
+        return Made(first_answer(writers, key, fingerprint))
+
+
+async def once_together(
+    inbox: Groups[Change, Any],
+    readers: sessionmaker[Session],
+    key: Key | None,
+    fingerprint: Callable[[], str],
+    make: Callable[[Session], Made],
+) -> Made:
+    """Do as `once` does, in one transaction with what others ask at the same time.
+
+    Raises
+    ------
+    ProblemError
+        As from `once`.
+    """
+    try:
+        made: Made = await inbox.ask(_keeping(key, fingerprint, make))
+    except KeyTaken:
+        assert key is not None
+        return Made(await to_thread.run_sync(first_answer, readers, key, fingerprint))
+    return made
+
+
+def held(
+    writers: sessionmaker[Session], key: Key | None, fingerprint: Callable[[], str], work: Callable[[], Made]
+) -> Made:
+    """Do what takes several transactions while the key is held; the last of them finishes it.
+
+    Raises
+    ------
+    ProblemError
+        As `work` raises it, then with the key given up; else as from `once`.
+    """
+    if key is None:
+        return work()
+    try:
+        with writers.begin() as session:
+            idempotency.hold(session, key)
+    except KeyTaken:
+        return Made(first_answer(writers, key, fingerprint))
+    try:
+        return work()
+    except BaseException as error:
+        with suppress(SQLAlchemyError), writers.begin() as session:
+            idempotency.release(session, key)
+        if isinstance(error, KeyTaken):
+            raise _in_flight() from error
+        raise
+
+
+def first_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callable[[], str]) -> Response:
+    """Return the first answer under a key; the fingerprint of the request is only asked for if there is one.
+
+    Raises
+    ------
+    ProblemError
+        409 if there is none yet, 422 if it is another request's.
+    """
+    with sessions() as session:
+        found = idempotency.find(session, key)
+    if found is None:
+        raise _in_flight()
+    first, answer = found
+    if first != fingerprint():
+        raise ProblemError(ProblemKind.KEY_REUSED, "This Idempotency-Key was used for another request.")
+    headers = {**answer.headers, _REPLAYED: "true"}
+    return Response(answer.body, answer.status, headers=headers, media_type=JSONResponse.media_type)
+
+
+def as_kept(answer: Response) -> Answer:
+    """Return what is kept of an answer."""
+    headers = {name: value for name, value in answer.headers.items() if name not in _OF_THE_BODY}
+    return Answer(answer.status_code, headers, bytes(answer.body).decode())
+
+
+def _keeping(
+    key: Key | None, fingerprint: Callable[[], str], make: Callable[[Session], Made]
+) -> Callable[[Session], Made]:
+    def kept(session: Session) -> Made:
+        made = make(session)
+        if key is not None:
+            idempotency.keep(session, key, fingerprint(), as_kept(made.answer))
+        return made
+
+    return kept
+
+
+def _in_flight() -> ProblemError:
+    detail = "A request with this Idempotency-Key is still at work."
+    return ProblemError(ProblemKind.REQUEST_IN_FLIGHT, detail, headers={"Retry-After": RETRY_SECONDS})

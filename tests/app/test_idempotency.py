@@ -1,0 +1,115 @@
+from datetime import timedelta
+
+import pytest
+from sqlalchemy import func, select, update
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import idempotency
+from app.idempotency import Answer, Key, KeyTaken, new_key
+from app.settings import Settings
+from app.tables import IdempotencyKey
+from worker.sweep import sweep
+
+ANSWER = Answer(202, {"location": "/v1/jobs/1"}, '{"id":"1"}')
+OTHER = Answer(202, {}, '{"id":"2"}')
+
+
+def age(sessions: sessionmaker[Session], by: timedelta) -> None:
+    """Let time pass for all keys."""
+    with sessions.begin() as session:
+        (end,) = session.scalars(select(IdempotencyKey.expires_at))
+        session.execute(update(IdempotencyKey).values(expires_at=end - by))
+
+
+def keep(sessions: sessionmaker[Session], key: Key, request: str, answer: Answer) -> None:
+    with sessions.begin() as session:
+        idempotency.keep(session, key, request, answer)
+
+
+def found(sessions: sessionmaker[Session], key: Key) -> tuple[str, Answer] | None:
+    with sessions() as session:
+        return idempotency.find(session, key)
+
+
+def test_the_first_answer_stays(sessions: sessionmaker[Session]) -> None:
+    keep(sessions, new_key("a", "k"), "f", ANSWER)
+    with pytest.raises(KeyTaken):
+        keep(sessions, new_key("a", "k"), "g", OTHER)
+    assert found(sessions, new_key("a", "k")) == ("f", ANSWER)
+
+
+def test_keys_of_two_owners_are_two(sessions: sessionmaker[Session]) -> None:
+    keep(sessions, new_key("a", "k"), "f", ANSWER)
+    assert found(sessions, new_key("b", "k")) is None
+    keep(sessions, new_key("b", "k"), "g", OTHER)
+    assert found(sessions, new_key("b", "k")) == ("g", OTHER)
+
+
+def test_a_key_is_free_again_after_a_day(sessions: sessionmaker[Session]) -> None:
+    keep(sessions, new_key("a", "k"), "f", ANSWER)
+    age(sessions, timedelta(hours=23, minutes=59))
+    with pytest.raises(KeyTaken):
+        keep(sessions, new_key("a", "k"), "g", OTHER)
+    age(sessions, timedelta(minutes=2))
+    keep(sessions, new_key("a", "k"), "g", OTHER)
+    assert found(sessions, new_key("a", "k")) == ("g", OTHER)
+
+
+def test_a_held_key_has_no_answer_until_it_is_finished(sessions: sessionmaker[Session]) -> None:
+    key = new_key("a", "k")
+    with sessions.begin() as session:
+        idempotency.hold(session, key)
+    assert found(sessions, key) is None
+    with pytest.raises(KeyTaken), sessions.begin() as session:
+        idempotency.hold(session, new_key("a", "k"))
+    with sessions.begin() as session:
+        idempotency.finish(session, key, "f", ANSWER)
+    assert found(sessions, key) == ("f", ANSWER)
+
+
+def test_who_comes_back_late_finds_the_key_taken(sessions: sessionmaker[Session]) -> None:
+    late, next_one = new_key("a", "k"), new_key("a", "k")
+    with sessions.begin() as session:
+        idempotency.hold(session, late)
+    age(sessions, idempotency.HELD + timedelta(seconds=1))
+    with sessions.begin() as session:
+        idempotency.hold(session, next_one)
+    with pytest.raises(KeyTaken), sessions.begin() as session:
+        idempotency.renew(session, late)
+    with pytest.raises(KeyTaken), sessions.begin() as session:
+        idempotency.finish(session, late, "f", ANSWER)
+    with sessions.begin() as session:
+        idempotency.release(session, late)
+        idempotency.finish(session, next_one, "g", OTHER)
+    assert found(sessions, late) == ("g", OTHER)
+
+
+def test_who_shows_life_keeps_the_key(sessions: sessionmaker[Session]) -> None:
+    slow = new_key("a", "k")
+    with sessions.begin() as session:
+        idempotency.hold(session, slow)
+    age(sessions, idempotency.HELD + timedelta(seconds=1))
+    with sessions.begin() as session:
+        idempotency.renew(session, slow)
+    with pytest.raises(KeyTaken), sessions.begin() as session:
+        idempotency.hold(session, new_key("a", "k"))
+
+
+def test_the_sweeper_forgets_what_is_over(sessions: sessionmaker[Session], settings: Settings) -> None:
+    def kept() -> int:
+        with sessions() as session:
+            return session.scalar(select(func.count()).select_from(IdempotencyKey)) or 0
+
+    slow = new_key("a", "k")
+    with sessions.begin() as session:
+        idempotency.hold(session, slow)
+    age(sessions, idempotency.HELD + timedelta(seconds=1))
+    sweep(sessions, settings)
+    assert kept() == 1  # nobody else has wanted it, so the slow sender may go on
+    with sessions.begin() as session:
+        idempotency.finish(session, slow, "f", ANSWER)
+    sweep(sessions, settings)
+    assert kept() == 1
+    age(sessions, idempotency.KEPT + timedelta(seconds=1))
+    sweep(sessions, settings)
+    assert kept() == 0
