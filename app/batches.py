@@ -4,6 +4,7 @@ The lines of a batch are worked on in chunks, and a chunk is a job. What state a
 from its result, and is written nowhere else. The caller commits the transaction.
 """
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -121,6 +122,13 @@ def counts(session: Session, batch_ids: Sequence[UUID]) -> dict[UUID, Counts]:
     for found in session.execute(statement.group_by(Job.batch_id, Job.status)):
         grouped[found[0]].append(_Group(*found[1:]))
     return {batch_id: _counted(grouped[batch_id]) for batch_id in batch_ids}
+
+
+def outcome(session: Session, batch_id: UUID) -> str:
+    """Return what the results of a batch that has ended depend on: its chunks, and how each of them ended."""
+    columns = Job.id, Job.status, Job.engine_version, Job.finished_at, Job.lines, Job.failed_lines
+    statement = select(*columns).where(Job.batch_id == batch_id).order_by(Job.id)
+    return hashlib.sha256(repr(session.execute(statement).all()).encode()).hexdigest()
 
 
 def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:

@@ -15,6 +15,7 @@ from starlette.routing import Match
 
 from app import convert
 from app.bodies import BodyLimit, Limit
+from app.conditional import Bodiless
 from app.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer, parse_json
 
 MEDIA_TYPE = "application/problem+json"
@@ -111,6 +112,7 @@ def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequ
 def install(app: FastAPI, max_body_bytes: Mapping[str, int]) -> None:
     """Let an application answer every fault with a problem, and limit its bodies by path, "" being all others."""
     app.add_exception_handler(ProblemError, answer)
+    app.add_exception_handler(Bodiless, _on_bodiless)
     app.add_exception_handler(HTTPException, _on_http)
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(OperationalError, _on_database)
@@ -175,6 +177,11 @@ async def answer(request: Request, error: Exception) -> Response:
     """Answer with a problem that was raised."""
     assert isinstance(error, ProblemError)
     return _respond(request, error)
+
+
+async def _on_bodiless(_: Request, error: Exception) -> Response:
+    assert isinstance(error, Bodiless)
+    return Response(status_code=error.status_code, headers=error.headers)
 
 
 async def _on_http(request: Request, error: Exception) -> Response:

@@ -17,6 +17,7 @@ from app.groups import Groups, committed_together
 from app.head import HeadAsGet
 from app.headers import SecurityHeaders
 from app.jobs import look_up
+from app.observe import batches_seen, jobs_seen
 from app.queue import Sender, celery_application
 from app.rates import Meter
 from app.routes import (
@@ -26,12 +27,14 @@ from app.routes import (
     batch_results,
     batches,
     documentation,
+    events,
     health,
     jobs,
     reference,
     results,
 )
 from app.settings import Settings, get_settings
+from app.watch import Watch
 
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
 
@@ -70,6 +73,8 @@ def create_app(settings: Settings | None = None) -> Service:
         for groups in (app.state.inbox, app.state.dispatcher, app.state.statuses):  # in the order of their work
             await groups.close()
         await meter.close()
+        for watch in (app.state.job_watch, app.state.batch_watch):
+            await watch.close()
         app.state.sender.close()
         database.dispose()
         app.state.prober.dispose()
@@ -94,8 +99,12 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
     meter = Meter(settings)
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
+    app.state.job_watch = Watch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
+    app.state.batch_watch = Watch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, aerodynamics, reference, health):
+    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, events):
+        app.include_router(module.router)
+    for module in (aerodynamics, reference, health):
         app.include_router(module.router)
     return app

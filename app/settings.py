@@ -55,6 +55,9 @@ class Settings(BaseSettings):
     chunk_seconds: Seconds = Field(default=1.0, description="Estimated work that one message of a batch carries")
     most_chunk_lines: Count = Field(default=256, description="Most lines that one message of a batch carries")
 
+    longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait that `Prefer: wait` is granted")
+    watch_seconds: Seconds = Field(default=0.3, description="Between two looks at what clients wait for")
+
     lease_seconds: Seconds = Field(default=30.0, description="A worker silent for so long has lost its job")
     heartbeat_seconds: Seconds = Field(default=1.0, description="Between two reports of a worker on its job")
     max_attempts: Count = Field(default=3, description="Attempts before a job counts as lost with its workers")

@@ -10,8 +10,8 @@ from app import batch_results, batches
 from app.auth import Caller
 from app.batches import Counts
 from app.errors import ProblemError, ProblemKind
-from app.routes.common import ENDED, PREFIX, RETRY_SECONDS
-from app.tables import Batch
+from app.routes.common import PREFIX, RETRY_SECONDS
+from app.tables import ENDED, Batch
 
 BATCHES = f"{PREFIX}/batches"
 
@@ -32,8 +32,10 @@ def find_batch(session: Session, caller: Caller, batch_id: UUID) -> Batch:
     return batch
 
 
-def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, partial: bool) -> None:
+def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, partial: bool) -> str | None:
     """See to it that a batch has results to show: all of them, or with partial what there is.
+
+    Returns what the results of a batch that has ended depend on, None if it has not.
 
     Raises
     ------
@@ -43,13 +45,16 @@ def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UU
     with readers() as session:
         find_batch(session, caller, batch_id)
         counts = batches.counts(session, [batch_id])[batch_id]
-    if not partial and counts.status not in ENDED:
-        raise ProblemError(
-            ProblemKind.NOT_READY,
-            f"The batch is {counts.status.value}, {counts.progress:.0%} done; ?partial=true takes what there is.",
-            links=[{"rel": "status", "href": batch_address(batch_id)}],
-            headers={"Retry-After": RETRY_SECONDS},
-        )
+        if counts.status in ENDED:
+            return batches.outcome(session, batch_id)
+    if partial:
+        return None
+    raise ProblemError(
+        ProblemKind.NOT_READY,
+        f"The batch is {counts.status.value}, {counts.progress:.0%} done; ?partial=true takes what there is.",
+        links=[{"rel": "status", "href": batch_address(batch_id)}],
+        headers={"Retry-After": RETRY_SECONDS},
+    )
 
 
 def batch_address(batch_id: UUID) -> str:
@@ -63,19 +68,24 @@ def batch_summary(batch: Batch, counts: Counts) -> dict[str, Any]:
         "id": str(batch.id),
         "status": counts.status.value,
         "progress": counts.progress,
-        "lines": {
-            "total": counts.lines + batch.rejected_lines,
-            "accepted": counts.accepted,
-            "running": counts.running,
-            "successful": counts.successful,
-            "failed": counts.failed,
-            "dismissed": counts.dismissed,
-            "rejected": batch.rejected_lines,
-        },
+        "lines": line_counts(counts, batch.rejected_lines),
         "created_at": batch.created_at.isoformat(),
         "started_at": counts.started_at.isoformat() if counts.started_at else None,
         "finished_at": counts.finished_at.isoformat() if counts.finished_at else None,
         "links": _links(batch, counts),
+    }
+
+
+def line_counts(counts: Counts, rejected: int) -> dict[str, int]:
+    """Return how many lines of a batch are in which state."""
+    return {
+        "total": counts.lines + rejected,
+        "accepted": counts.accepted,
+        "running": counts.running,
+        "successful": counts.successful,
+        "failed": counts.failed,
+        "dismissed": counts.dismissed,
+        "rejected": rejected,
     }
 
 

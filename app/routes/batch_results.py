@@ -12,10 +12,12 @@ from sqlalchemy.orm import Session
 from app import batch_results, export
 from app.batch_results import BatchTable
 from app.columns import columns_of
+from app.conditional import strong_tag, unless_known
 from app.errors import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import require_results
 from app.routes.common import PREFIX, CallerOf, Readers, streamed
+from app.routes.ended import Known
 from app.schemas.batch import BatchErrors
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
@@ -55,6 +57,7 @@ class ResultsQuery(BaseModel):
     response_class=StreamingResponse,
     responses={
         200: batch_documentation.RESULTS_ANSWER,
+        **documentation.UNCHANGED,
         **documentation.problems(
             ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_FOUND, ProblemKind.NOT_ACCEPTABLE, ProblemKind.NOT_READY
         ),
@@ -66,6 +69,7 @@ def results(
     caller: CallerOf,
     readers: Readers,
     asked: Annotated[ResultsQuery, Query()],
+    known: Known = "",
 ) -> StreamingResponse:
     """Return what came of the lines in the order of their numbers: everything, one object a line, or one table.
 
@@ -76,7 +80,9 @@ def results(
         raise ProblemError(
             ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {export.PARQUET}."
         )
-    require_results(readers, caller, batch_id, partial=asked.partial)
+    state = require_results(readers, caller, batch_id, partial=asked.partial)
+    # What still changes has no tag: a strong one would have to be known before the last row is read.
+    headers = unless_known(known, strong_tag(state, form)) if state else {"Vary": "Accept"}
     name: BatchTable = _TABLES[asked.table or "summary"]
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
@@ -90,7 +96,7 @@ def results(
         text = export.csv_text(batch_results.columns(name), rows) if form == "csv" else export.ndjson_text(rows)
         return export.in_blocks(text)
 
-    return streamed(readers, pieces, _MEDIA_TYPES[form])
+    return streamed(readers, pieces, _MEDIA_TYPES[form], headers)
 
 
 @router.get(
@@ -111,4 +117,4 @@ def errors(batch_id: UUID, caller: CallerOf, readers: Readers) -> StreamingRespo
     def pieces(session: Session) -> Iterator[str]:
         return export.in_blocks(export.json_text("errors", batch_results.errors(session, batch_id)))
 
-    return streamed(readers, pieces, "application/json")
+    return streamed(readers, pieces, "application/json", {})

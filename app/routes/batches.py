@@ -4,7 +4,7 @@ from typing import Annotated
 from urllib.parse import urlencode
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Depends, Query, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
@@ -20,27 +20,46 @@ from app.routes.batch_common import (
     batch_summary,
     find_batch,
 )
-from app.routes.common import ENDED, RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
+from app.routes.common import RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
+from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
 from app.schemas.batch import BatchDocument, BatchPage
 from app.settings import cursor_key
+from app.tables import ENDED
 
 router = APIRouter(prefix=BATCHES, tags=["batches"])
 
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
 
 
+async def _waited(batch_id: UUID, caller: CallerOf, watch: BatchWatch, wait: Wait) -> int | None:
+    """Wait as long as is asked for, and return how long that is."""
+    await wait_for_end(watch, caller, batch_id, wait)
+    return wait
+
+
 @router.get(
     "/{batch_id}",
     response_model=BatchDocument,
-    responses={200: documentation.body("Status", ("application/json", batch_documentation.FINISHED)), **_COMMON},
+    responses={
+        200: {
+            **documentation.body("Status", ("application/json", batch_documentation.FINISHED)),
+            "headers": APPLIED_HEADER,
+        },
+        **_COMMON,
+    },
 )
-def status(batch_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
-    """Tell how far a batch is: its lines by state, and what is wrong with the first that were rejected."""
+def status(
+    batch_id: UUID, caller: CallerOf, readers: Readers, wait: Annotated[int | None, Depends(_waited)]
+) -> JSONResponse:
+    """Tell how far a batch is: its lines by state, and what is wrong with the first that were rejected.
+
+    With `Prefer: wait=N` the answer comes at the end of the batch, or after N seconds.
+    """
     with readers() as session:
         batch = find_batch(session, caller, batch_id)
         counts = batches.counts(session, [batch_id])[batch_id]
-        headers = {} if counts.status in ENDED else {"Retry-After": RETRY_SECONDS}
+        headers = applied(wait) if counts.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
         return JSONResponse(batch_document(session, batch, counts), headers=headers)
 
 

@@ -1,6 +1,6 @@
 """What several routes share: the state of the application, finding a job, and its status document."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Annotated, Any
 from uuid import UUID
 
@@ -20,7 +20,6 @@ Change = Callable[[Session], Any]
 
 PREFIX = "/v1"
 RETRY_SECONDS = "1"
-ENDED = frozenset({JobStatus.SUCCESSFUL, JobStatus.FAILED, JobStatus.DISMISSED})
 
 _TABLE_LINKS = ("frequencies", "internal-resonances", "critical-wind-speeds", "limit-cycles")
 _PLOT_LINKS = ("amplitude", "orbit", "modes", "study")
@@ -92,7 +91,10 @@ async def find_status(statuses: Groups[UUID, Job | None], caller: Caller, job_id
 
 
 def streamed(
-    readers: sessionmaker[Session], pieces: Callable[[Session], Iterator[str] | Iterator[bytes]], media_type: str
+    readers: sessionmaker[Session],
+    pieces: Callable[[Session], Iterator[str] | Iterator[bytes]],
+    media_type: str,
+    headers: Mapping[str, str],
 ) -> StreamingResponse:
     """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
 
@@ -100,7 +102,7 @@ def streamed(
         with readers() as session:
             yield from pieces(session)
 
-    return StreamingResponse(stream(), media_type=media_type, headers={"Vary": "Accept"})
+    return StreamingResponse(stream(), media_type=media_type, headers=headers)
 
 
 def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:

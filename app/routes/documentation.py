@@ -13,6 +13,7 @@ from app.schemas.placement import EXAMPLE as PLACEMENT
 _NULL = "\0null"
 _JOB = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e"
 _ADDRESS = f"/v1/jobs/{_JOB}"
+_PROBLEM_SCHEMA = {"$ref": "#/components/schemas/Problem"}
 
 
 def _marked(value: Any) -> Any:
@@ -224,6 +225,12 @@ _FAULTS = {
 }
 
 # The model brings its schema into the document; the example says under which media type it is sent.
+UNCHANGED: dict[int | str, dict[str, Any]] = {
+    304: {
+        "description": "The client has it: the `ETag` is among those of `If-None-Match`",
+        "headers": {"ETag": {"description": "Strong tag of the answer", "schema": {"type": "string"}}},
+    }
+}
 ANY_PROBLEM: dict[str, Any] = {
     "model": Problem,
     "description": "Problem details (RFC 9457), as application/problem+json",
@@ -231,6 +238,13 @@ ANY_PROBLEM: dict[str, Any] = {
         "application/json": {
             "example": problem_document(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description, _ADDRESS)
         }
+    },
+}
+# Where the good answer is no JSON, FastAPI would give the problem its media type.
+PROBLEM_OF_A_STREAM: dict[str, Any] = {
+    "description": ANY_PROBLEM["description"],
+    "content": {
+        MEDIA_TYPE: {"schema": _PROBLEM_SCHEMA, "example": ANY_PROBLEM["content"]["application/json"]["example"]}
     },
 }
 
@@ -278,4 +292,4 @@ def _content(kinds: Sequence[ProblemKind]) -> dict[str, Any]:
         kind.slug: {"value": problem_document(kind, kind.description, _ADDRESS, _FAULTS.get(kind, ()))}
         for kind in kinds
     }
-    return {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}, "examples": samples}}
+    return {MEDIA_TYPE: {"schema": _PROBLEM_SCHEMA, "examples": samples}}

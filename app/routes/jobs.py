@@ -19,7 +19,6 @@ from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fau
 from app.jobs import CancelOutcome, JobFilters
 from app.routes import documentation
 from app.routes.common import (
-    ENDED,
     PREFIX,
     RETRY_SECONDS,
     CallerOf,
@@ -35,10 +34,11 @@ from app.routes.common import (
     job_document,
 )
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once_together
+from app.routes.waiting import APPLIED_HEADER, JobWatch, Wait, applied, wait_for_end
 from app.schemas.answers import JobDocument, JobPage
 from app.schemas.fields import Label
 from app.settings import cursor_key
-from app.tables import JobStatus
+from app.tables import ENDED, JobStatus
 
 router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
 
@@ -143,12 +143,21 @@ async def submit(
 @router.get(
     "/{job_id}",
     response_model=JobDocument,
-    responses={200: documentation.body("Status", ("application/json", documentation.FINISHED_JOB)), **_COMMON},
+    responses={
+        200: {
+            **documentation.body("Status", ("application/json", documentation.FINISHED_JOB)),
+            "headers": APPLIED_HEADER,
+        },
+        **_COMMON,
+    },
 )
-async def status(job_id: UUID, caller: CallerOf, statuses: Statuses) -> JSONResponse:
-    """Tell how far a job is."""
+async def status(job_id: UUID, caller: CallerOf, statuses: Statuses, watch: JobWatch, wait: Wait) -> JSONResponse:
+    """Tell how far a job is, at once or, with `Prefer: wait=N`, at its end."""
     job = await find_status(statuses, caller, job_id)
-    headers = {} if job.status in ENDED else {"Retry-After": RETRY_SECONDS}
+    if wait and job.status not in ENDED:
+        await wait_for_end(watch, caller, job_id, wait)
+        job = await find_status(statuses, caller, job_id)
+    headers = applied(wait) if job.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
     return JSONResponse(job_document(job), headers=headers)
 
 

@@ -6,18 +6,18 @@ from uuid import UUID
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
-from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.orm import Session
 
 from app import batches, convert, export, results
-from app.auth import Caller
 from app.columns import axis_columns, columns_of
 from app.convert import Table
 from app.errors import ProblemError, ProblemKind
 from app.export import Format
 from app.routes import documentation
-from app.routes.common import PREFIX, RETRY_SECONDS, CallerOf, Readers, failure_of, find_job, job_address, streamed
+from app.routes.common import PREFIX, Readers, failure_of, streamed
+from app.routes.ended import EndedJob
 from app.schemas.answers import ResultDocument
-from app.tables import Job, JobStatus
+from app.tables import Job
 
 router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
 
@@ -45,14 +45,14 @@ _TABLES: dict[TableName, Table] = {
     "device-effects": "device_effects",
     "placements": "placements",
 }
-_PROBLEMS = documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED)
-_TABLE_PROBLEMS = documentation.problems(
-    ProblemKind.INVALID_PARAMETER,
-    ProblemKind.NOT_FOUND,
-    ProblemKind.NOT_ACCEPTABLE,
-    ProblemKind.NOT_READY,
-    ProblemKind.DISMISSED,
-)
+_PROBLEMS = {
+    **documentation.UNCHANGED,
+    **documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED),
+}
+_TABLE_PROBLEMS = {
+    **_PROBLEMS,
+    **documentation.problems(ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_ACCEPTABLE),
+}
 
 
 @router.get(
@@ -66,16 +66,16 @@ _TABLE_PROBLEMS = documentation.problems(
         **_PROBLEMS,
     },
 )
-def whole(job_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
+def whole(ended: EndedJob, readers: Readers) -> StreamingResponse:
     """Return everything that was found; a failed job answers with the rows that it has and its failure."""
-    job = _ended_job(readers, caller, job_id)
+    job, headers = ended.job, ended.headers("json")
 
     def pieces(session: Session) -> Iterator[str]:
-        points = list(results.points(session, job_id))
-        tables: dict[str, Rows] = {name: results.rows(session, job_id, name) for name in convert.TABLES}
+        points = list(results.points(session, job.id))
+        tables: dict[str, Rows] = {name: results.rows(session, job.id, name) for name in convert.TABLES}
         return export.in_blocks(export.result_text(job.document, points, tables, failure_of(job)))
 
-    return streamed(readers, pieces, export.MEDIA_TYPES["json"])
+    return streamed(readers, pieces, export.MEDIA_TYPES["json"], headers)
 
 
 @router.get(
@@ -84,10 +84,9 @@ def whole(job_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse
     responses={200: documentation.TABLE_ANSWER, **_TABLE_PROBLEMS},
 )
 def table(
-    job_id: UUID,
     table: TableName,
     request: Request,
-    caller: CallerOf,
+    ended: EndedJob,
     readers: Readers,
     format: Annotated[Format | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
 ) -> StreamingResponse:
@@ -95,18 +94,18 @@ def table(
     chosen = format or export.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {export.PARQUET}.")
-    job = _ended_job(readers, caller, job_id)
+    job, headers = ended.job, ended.headers(chosen)
     name = _TABLES[table]
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
-        rows = results.rows(session, job_id, name)
+        rows = results.rows(session, job.id, name)
         if chosen == "parquet":
             return _parquet(job, name, rows)
         if chosen == "csv":
             return export.in_blocks(export.csv_text([*_axes(job), *convert.columns(name)], rows))
         return export.in_blocks(export.json_text(name, rows))
 
-    return streamed(readers, pieces, export.MEDIA_TYPES[chosen])
+    return streamed(readers, pieces, export.MEDIA_TYPES[chosen], headers)
 
 
 @router.get(
@@ -115,9 +114,8 @@ def table(
     responses={200: documentation.PICTURE_ANSWER, **_PROBLEMS},
 )
 def study_plot(
-    job_id: UUID,
     extension: PictureFormat,
-    caller: CallerOf,
+    ended: EndedJob,
     readers: Readers,
     abscissa: Annotated[
         Literal["reduced", "parameter"], Query(description="The source's ratios, or values in the field's own unit")
@@ -126,12 +124,12 @@ def study_plot(
     """Draw all points of a study over what it varies; a study of two fields gives a map."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
-    job = _ended_job(readers, caller, job_id)
+    job, headers = ended.job, ended.headers(extension)
     with readers() as session:
-        found = _study_rows(session, job_id)
+        found = _study_rows(session, job.id)
     length = job.document.get("line", {"span": {"length_m": 0.0}})["span"]["length_m"]
     drawn = plots.study(job.name or str(job.id), {"": plots.Study(_axes(job), length, found)}, extension, abscissa)
-    return Response(drawn, media_type=plots.MEDIA_TYPES[extension])
+    return Response(drawn, headers=headers, media_type=plots.MEDIA_TYPES[extension])
 
 
 @router.get(
@@ -140,24 +138,23 @@ def study_plot(
     responses={200: documentation.PICTURE_ANSWER, **_PROBLEMS},
 )
 def plot(
-    job_id: UUID,
     picture: Picture,
     extension: PictureFormat,
-    caller: CallerOf,
+    ended: EndedJob,
     readers: Readers,
     point: Annotated[int, Query(ge=0, description="Point of a study")] = 0,
 ) -> Response:
     """Draw the amplitudes over wind speed, the orbits where they are observed, or the mode shapes of both models."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
-    job = _ended_job(readers, caller, job_id)
+    job, headers = ended.job, ended.headers(extension)
     with readers() as session:
-        found = _point_rows(session, job_id, point)
+        found = _point_rows(session, job.id, point)
         if picture == "modes":
             found["shapes"] = _shapes(session, job, point)
     title = job.name or str(job.id)
     draw = {"amplitude": plots.amplitude, "orbit": plots.orbit, "modes": plots.modes}[picture]
-    return Response(draw(title, found, extension), media_type=plots.MEDIA_TYPES[extension])
+    return Response(draw(title, found, extension), headers=headers, media_type=plots.MEDIA_TYPES[extension])
 
 
 def _shapes(session: Session, job: Job, point: int) -> list[dict[str, Any]]:
@@ -176,21 +173,6 @@ def _shapes(session: Session, job: Job, point: int) -> list[dict[str, Any]]:
         return convert.mode_shapes(document, place)
     except (ArithmeticError, ValueError) as error:
         raise ProblemError(ProblemKind.NOT_FOUND, f"The line has no mode shapes at point {point}.") from error
-
-
-def _ended_job(readers: sessionmaker[Session], caller: Caller, job_id: UUID) -> Job:
-    with readers() as session:
-        job = find_job(session, caller, job_id)
-    if job.status is JobStatus.DISMISSED:
-        raise ProblemError(ProblemKind.DISMISSED, "The job was cancelled and has no results.")
-    if job.status in {JobStatus.ACCEPTED, JobStatus.RUNNING}:
-        raise ProblemError(
-            ProblemKind.NOT_READY,
-            f"The job is {job.status.value}, {job.progress:.0%} done.",
-            links=[{"rel": "status", "href": job_address(job_id)}],
-            headers={"Retry-After": RETRY_SECONDS},
-        )
-    return job
 
 
 def _parquet(job: Job, name: Table, rows: Rows) -> Iterator[bytes]:

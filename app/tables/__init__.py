@@ -1,7 +1,7 @@
 """The tables: jobs with tags and events, batches, results, keys, audit, workers. One schema for both databases."""
 
 from app.tables.access import ApiKey, AuditAction, AuditEvent
-from app.tables.base import Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
+from app.tables.base import ENDED, Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
 from app.tables.batches import Batch, BatchItem
 from app.tables.idempotency import IdempotencyKey
 from app.tables.jobs import Job, JobEvent, JobTag
@@ -10,6 +10,7 @@ from app.tables.tallies import Tally
 from app.tables.workers import Worker
 
 __all__ = [
+    "ENDED",
     "ApiKey",
     "AuditAction",
     "AuditEvent",

@@ -19,6 +19,10 @@ class JobStatus(StrEnum):
     DISMISSED = "dismissed"
 
 
+ENDED = frozenset({JobStatus.SUCCESSFUL, JobStatus.FAILED, JobStatus.DISMISSED})
+"""The final states."""
+
+
 class FailureKind(StrEnum):
     """Whose fault a failure is: the first three are of the input or the model, the others of the service."""
 

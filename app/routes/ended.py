@@ -1,0 +1,53 @@
+"""The gate to results and pictures: a job that has ended, and what of it the client has already."""
+
+from dataclasses import dataclass
+from typing import Annotated
+from uuid import UUID
+
+from fastapi import Depends, Header
+
+from app.conditional import strong_tag, unless_known
+from app.errors import ProblemError, ProblemKind
+from app.routes.common import RETRY_SECONDS, CallerOf, Readers, find_job, job_address
+from app.tables import Job, JobStatus
+
+Known = Annotated[
+    str, Header(alias="If-None-Match", description="Entity tags of what the client has", examples=['"4f1d"'])
+]
+
+
+@dataclass(frozen=True, slots=True)
+class _Ended:
+    """A job that has ended, and the tags of the answers about it that the client has."""
+
+    job: Job
+    known: str
+
+    def headers(self, form: str) -> dict[str, str]:
+        """Return the headers of an answer in this form.
+
+        Raises
+        ------
+        Bodiless
+            304 if the client has it.
+        """
+        job = self.job
+        return unless_known(self.known, strong_tag(job.input_hash, job.engine_version, job.status, form))
+
+
+def _ended_job(job_id: UUID, caller: CallerOf, readers: Readers, known: Known = "") -> _Ended:
+    with readers() as session:
+        job = find_job(session, caller, job_id)
+    if job.status is JobStatus.DISMISSED:
+        raise ProblemError(ProblemKind.DISMISSED, "The job was cancelled and has no results.")
+    if job.status in {JobStatus.ACCEPTED, JobStatus.RUNNING}:
+        raise ProblemError(
+            ProblemKind.NOT_READY,
+            f"The job is {job.status.value}, {job.progress:.0%} done.",
+            links=[{"rel": "status", "href": job_address(job_id)}],
+            headers={"Retry-After": RETRY_SECONDS},
+        )
+    return _Ended(job, known)
+
+
+EndedJob = Annotated[_Ended, Depends(_ended_job)]

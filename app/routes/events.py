@@ -1,0 +1,131 @@
+"""Server-sent events: what happens to a job or a batch, as it happens."""
+
+import re
+from collections.abc import AsyncIterator
+from contextlib import aclosing
+from typing import Annotated, Any
+from uuid import UUID
+
+from fastapi import APIRouter, Depends, Header
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+from sqlalchemy import func, select
+
+from app import batches
+from app.conditional import Bodiless
+from app.errors import ProblemKind
+from app.observe import BatchSeen, Happening
+from app.routes import documentation
+from app.routes.batch_common import find_batch, line_counts
+from app.routes.common import PREFIX, CallerOf, Readers, find_job
+from app.routes.waiting import BatchWatch, JobWatch
+from app.tables import ENDED, JobEvent, JobEventKind
+
+router = APIRouter(prefix=PREFIX)
+
+_NUMBER = re.compile(r"[0-9]{1,18}")
+_TOLD = frozenset({JobEventKind.FAILED, JobEventKind.RELEASED})
+_LastId = Annotated[
+    str | None,
+    Header(alias="Last-Event-ID", description="The last id that has arrived; what follows it is sent", examples=["17"]),
+]
+_STREAM: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "Events until the final state; a comment every 15 s shows that the connection lives",
+        "content": {
+            "text/event-stream": {
+                "schema": {"type": "string"},
+                "example": 'event: running\ndata: {"status": "running", "at": "2026-11-22T10:00:01+00:00", '
+                '"attempt": 1, "detail": null}\nid: 17\n\n',
+            }
+        },
+    },
+    204: {"description": "Everything was sent before; a browser then asks no more"},
+    **documentation.problems(ProblemKind.NOT_FOUND),
+    "default": documentation.PROBLEM_OF_A_STREAM,
+}
+
+
+def _event_of_job(job_id: UUID, caller: CallerOf, readers: Readers, last_event_id: _LastId = None) -> int:
+    """Return the id of the last event that has arrived, 0 if none has.
+
+    Raises
+    ------
+    ProblemError
+        404 if there is no such job.
+    Bodiless
+        204 if the job has ended, and its last event has arrived.
+    """
+    last = int(last_event_id) if last_event_id and _NUMBER.fullmatch(last_event_id) else 0
+    with readers() as session:
+        job = find_job(session, caller, job_id)
+        newest = session.scalar(select(func.max(JobEvent.id)).where(JobEvent.job_id == job_id)) or 0
+    if job.status in ENDED and last >= newest:
+        raise Bodiless(204)
+    return last
+
+
+def _event_of_batch(batch_id: UUID, caller: CallerOf, readers: Readers, last_event_id: _LastId = None) -> str:
+    """Return the id of the last event that has arrived; 404 and 204 as for jobs."""
+    with readers() as session:
+        find_batch(session, caller, batch_id)
+        counts = batches.counts(session, [batch_id])[batch_id]
+    if counts.status in ENDED and last_event_id == _batch_event_id(counts):
+        raise Bodiless(204)
+    return last_event_id or ""
+
+
+@router.get("/jobs/{job_id}/events", response_class=EventSourceResponse, responses=_STREAM, tags=["jobs"])
+async def job_events(
+    job_id: UUID, watch: JobWatch, last: Annotated[int, Depends(_event_of_job)]
+) -> AsyncIterator[ServerSentEvent]:
+    """Send what happens to a job: an event with an id for every change of its state, and its progress between them.
+
+    A client that comes back with `Last-Event-ID` gets what it has missed. The stream ends with the final state.
+    """
+    async with aclosing(watch.follow(job_id)) as states:
+        async for job in states:
+            for happening in job.events:
+                if happening.id > last:
+                    last = happening.id
+                    yield _happened(happening)
+            if job.ended:
+                return
+            if job.progress:
+                yield ServerSentEvent(event="progress", data={"progress": job.progress, "step": job.step})
+
+
+@router.get("/batches/{batch_id}/events", response_class=EventSourceResponse, responses=_STREAM, tags=["batches"])
+async def batch_events(
+    batch_id: UUID, watch: BatchWatch, last: Annotated[str, Depends(_event_of_batch)]
+) -> AsyncIterator[ServerSentEvent]:
+    """Send the state of a batch and the counts of its lines whenever they change, until nothing waits or runs."""
+    async with aclosing(watch.follow(batch_id)) as states:
+        async for batch in states:
+            if _batch_event_id(batch.counts) != last:
+                yield _counted(batch)
+            if batch.ended:
+                return
+
+
+def _happened(happening: Happening) -> ServerSentEvent:
+    data = {
+        "status": happening.kind.value,
+        "at": happening.at.isoformat(),
+        "attempt": happening.attempt,
+        # What is noted of other events concerns the operator alone.
+        "detail": happening.detail if happening.kind in _TOLD else None,
+    }
+    return ServerSentEvent(id=str(happening.id), event=happening.kind.value, data=data)
+
+
+def _counted(batch: BatchSeen) -> ServerSentEvent:
+    counts = batch.counts
+    lines = line_counts(counts, batch.rejected_lines)
+    data = {"status": counts.status.value, "progress": counts.progress, "lines": lines}
+    return ServerSentEvent(id=_batch_event_id(counts), event=counts.status.value, data=data)
+
+
+def _batch_event_id(counts: batches.Counts) -> str:
+    """Return what two equal states of a batch have in common."""
+    lines = counts.accepted, counts.running, counts.successful, counts.failed, counts.dismissed
+    return "-".join(map(str, (*lines, f"{counts.progress:.6f}")))

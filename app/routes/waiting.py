@@ -1,0 +1,68 @@
+"""Waiting for the end of a job or a batch: `Prefer: wait=` (RFC 7240), bounded, without a thread or a connection."""
+
+import re
+from contextlib import aclosing
+from typing import Annotated, Any
+from uuid import UUID
+
+import anyio
+from fastapi import Depends, Header, Request
+
+from app.auth import Caller
+from app.observe import BatchSeen, JobSeen
+from app.routes.common import SettingsOf
+from app.watch import Watch
+
+_WAIT = re.compile(r'(?:^|,)\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=[,;]|$)', re.IGNORECASE)
+APPLIED_HEADER: dict[str, Any] = {
+    "Preference-Applied": {
+        "description": "`wait=` with the seconds that were waited at most, if waiting was asked for",
+        "schema": {"type": "string"},
+        "example": "wait=10",
+    }
+}
+
+
+async def _job_watch(request: Request) -> Watch[UUID, JobSeen]:
+    watch: Watch[UUID, JobSeen] = request.app.state.job_watch
+    return watch
+
+
+async def _batch_watch(request: Request) -> Watch[UUID, BatchSeen]:
+    watch: Watch[UUID, BatchSeen] = request.app.state.batch_watch
+    return watch
+
+
+async def _wait(
+    request: Request,
+    settings: SettingsOf,
+    prefer: Annotated[  # read below from all headers of the name, of which there may be several
+        str | None,
+        Header(description="`wait=N` answers at the end, or after N seconds if it has not come by then"),
+    ] = None,
+) -> int | None:
+    found = _WAIT.search(", ".join(request.headers.getlist("prefer")))
+    return min(int(found[1]), int(settings.longest_wait_seconds)) if found else None
+
+
+JobWatch = Annotated[Watch[UUID, JobSeen], Depends(_job_watch)]
+BatchWatch = Annotated[Watch[UUID, BatchSeen], Depends(_batch_watch)]
+Wait = Annotated[int | None, Depends(_wait)]
+
+
+def applied(wait: int | None) -> dict[str, str]:
+    """Return the header that says that a preference was heeded."""
+    return {"Preference-Applied": f"wait={wait}"} if wait is not None else {}
+
+
+async def wait_for_end(
+    watch: Watch[UUID, JobSeen] | Watch[UUID, BatchSeen], caller: Caller, subject: UUID, seconds: int | None
+) -> None:
+    """Return at the end of a job or a batch of the caller's owner, when the time is over, or if there is none."""
+    if not seconds:
+        return
+    with anyio.move_on_after(seconds):
+        async with aclosing(watch.follow(subject)) as states:
+            async for state in states:
+                if state.ended or state.owner != caller.owner:
+                    return
