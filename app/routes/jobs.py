@@ -132,9 +132,8 @@ async def submit(
     def fingerprint() -> str:
         return idempotency.fingerprint(router.prefix, jobs.canonical(kept))
 
-    made = await once_together(
-        inbox, readers, key, fingerprint, partial(copy_context().run, make)
-    )  # with the ids of this request
+    context = copy_context()  # with the ids of this request
+    made = await once_together(inbox, readers, key, fingerprint, lambda session: context.run(make, session))
     for job_id in made.job_ids:
         dispatcher.put(job_id)
     return made.answer
