@@ -20,8 +20,10 @@ from engine.harmonic import half_peak_to_peak, pick, states
 from engine.hybrid import ReducedModel, take
 from engine.result import Result
 from engine.spec import Analysis, Line, Model
+from engine.stability import critical_wind_speeds
 
 HARMONICS = 5
+HIGHEST_WIND = 30.0  # m/s
 STACK = 32  # lines a stack: the arrays of one stay in the processor's cache
 STANDARD_JOB = Analysis(
     loops=(1, 2),
@@ -35,7 +37,8 @@ LONGEST = 6000  # cycles of direct integration
 
 def found_cycles(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Cycles:
     """Find all cycles with stability as the product does."""
-    return find_cycles(model, winds, explicit_starts(published, winds, HARMONICS), HARMONICS)
+    crossings = critical_wind_speeds(model, HIGHEST_WIND)
+    return find_cycles(model, crossings, winds, explicit_starts(published, winds, HARMONICS), HARMONICS)
 
 
 def settled_amplitude(model: ReducedModel, wind: float) -> tuple[FloatArray, int]:

@@ -129,13 +129,14 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     published = take(with_published_load(prepared.made, grid), (line, column))
     winds = _winds(analysis)
     starts = explicit_starts(published, winds, analysis.harmonics)
+    crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
     return Found(
         name=Model.HYBRID,
         model=model,
         line=line,
         loops=np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp),
-        crossings=critical_wind_speeds(model, analysis.critical_wind_limit),
-        cycles=find_cycles(model, winds, starts, analysis.harmonics),
+        crossings=crossings,
+        cycles=find_cycles(model, crossings, winds, starts, analysis.harmonics),
         winds=winds,
     )
 
@@ -156,7 +157,7 @@ def _finite_element(
         line=np.arange(len(prepared.made.lines)),
         loops=np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
         crossings=crossings,
-        cycles=find_cycles(model, winds, starts, analysis.harmonics),
+        cycles=find_cycles(model, crossings, winds, starts, analysis.harmonics),
         winds=winds,
     )
 

@@ -1,7 +1,7 @@
 """All limit cycles that can be reached at the requested wind speeds. Theory sections 7.1 to 7.3.
 
-Every start is balanced; every cycle found is carried to the neighbouring wind speeds until nothing new appears. Cycles
-that lead to one another form a branch.
+Branches are followed from every Hopf point; whatever starts lead to besides is followed both ways until nothing new
+appears. Cycles on one branch, or on branches that meet, form a family.
 """
 
 from dataclasses import dataclass
@@ -9,17 +9,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.branches import SLOWEST, Traces, at_winds, traced_from_cycles, traced_from_hopf
 from engine.describing import FirstHarmonic, energy_balance_cycles, explicit_cycles
 from engine.family import CycleFamily, Starts
 from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, balance, oscillation_size, pick, resized
 from engine.hybrid import ReducedModel, take
+from engine.stability import Crossings
 
 TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which more effort is taken
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 12
 FINENESS = 4  # times the steps of the Floquet integration for cycles that need more harmonics
-SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static one in disguise
+REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +29,8 @@ class Cycles:
     """Limit cycles of a stack of models.
 
     member, wind: (cycles,), indices of model and wind speed; branch: (cycles,), number of the connected family within
-    its member, in the order of discovery from low wind speeds up; dropped: (members,), solutions left out because
-    more harmonics did not resolve them either.
+    its member, by the lowest Hopf point that it comes from, families without one after those; dropped: (members,),
+    solutions left out because more harmonics did not resolve them either; traces: the branches that were followed.
     """
 
     member: IntArray
@@ -37,6 +39,7 @@ class Cycles:
     orbits: Orbits
     floquet: Floquet
     dropped: IntArray
+    traces: tuple[Traces, ...]
 
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
@@ -53,15 +56,19 @@ def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics:
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
-def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts, harmonics: int) -> Cycles:
-    """Find every cycle that the starts and continuation over the wind speeds reach.
+def find_cycles(
+    model: ReducedModel, crossings: Crossings, wind_speeds: FloatArray, starts: Starts, harmonics: int
+) -> Cycles:
+    """Find every cycle at the wind speeds that lies on a branch from a Hopf point or is reached from a start.
 
-    The balance of energy of every unstable mode is tried as well, unless it points to a cycle that is known already.
+    The balance of energy of every unstable mode is tried as well; starts that point to a known cycle are left out.
 
     Parameters
     ----------
     model : ReducedModel
         Leading axis (members,).
+    crossings : Crossings
+        All that were asked for; branches begin at their Hopf points.
     wind_speeds : (winds,)
         In rising order [m/s].
     starts : Starts
@@ -73,17 +80,42 @@ def find_cycles(model: ReducedModel, wind_speeds: FloatArray, starts: Starts, ha
         Sorted by member, wind speed and branch.
     """
     family = CycleFamily(model)
-    family.add(*_solved(model, starts))
+    traces = _from_hopf(model, crossings, wind_speeds, harmonics)
+    for trace in traces:
+        _cover(family, trace, wind_speeds)
+    family.add(*_solved(model, family.unlike_known(starts)))
     family.add(*_solved(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))))
-    frontier = np.arange(len(family))
-    while frontier.size:
-        origin, wind = family.loose_ends(frontier, wind_speeds.size)
-        here = family.orbits_of(origin)
-        orbits = Orbits(here.coefficients, here.angular_frequency, wind_speeds[wind])
-        before = len(family)
-        family.add(*_solved(model, Starts(family.places(origin)[0], wind, orbits)), origin)
-        frontier = np.arange(before, len(family))
-    return _judged(model, family)
+    while (apart := family.apart()).size:
+        member, _ = family.places(apart)
+        trace = traced_from_cycles(model, member, family.orbits_of(apart), wind_speeds)
+        both = np.arange(2 * apart.size)
+        family.join(both, np.tile(apart, 2), trace.born)
+        _cover(family, trace, wind_speeds)
+        traces.append(trace)
+    return _judged(model, family, tuple(traces))
+
+
+def _from_hopf(model: ReducedModel, crossings: Crossings, winds: FloatArray, harmonics: int) -> list[Traces]:
+    """Follow the branches of all onsets, then of the Hopf points at which none of those ended."""
+    onset = np.flatnonzero(crossings.oscillation & crossings.onset)
+    first = traced_from_hopf(model, crossings, onset, harmonics, winds)
+    rest = np.flatnonzero(crossings.oscillation & ~crossings.onset)
+    last = first.last
+    ended = np.flatnonzero(first.returned)
+    place = np.stack([first.orbits.wind_speed, first.orbits.angular_frequency], axis=-1)[last[ended]]
+    there = np.stack([crossings.wind_speed, crossings.angular_frequency], axis=-1)[rest]
+    close = (np.abs(place[:, None] / there - 1.0) < REACHED).all(axis=-1)
+    same = first.problem.member[ended][:, None] == crossings.member[rest]
+    unreached = rest[~(close & same).any(axis=0)]
+    return [first, traced_from_hopf(model, crossings, unreached, harmonics, winds)]
+
+
+def _cover(family: CycleFamily, trace: Traces, winds: FloatArray) -> None:
+    """Solve for the cycles at the wind speeds that a followed branch passes."""
+    branch, wind, orbits = at_winds(trace, winds)
+    starts, good = _solved(trace.problem.model, Starts(trace.problem.member[branch], wind, orbits))
+    numbers = family.add(starts, good)
+    family.join(branch[good], numbers[good], trace.born)
 
 
 def _grid(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
@@ -115,10 +147,10 @@ def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
     return Starts(starts.member, starts.wind, orbits), good
 
 
-def _judged(model: ReducedModel, family: CycleFamily) -> Cycles:
+def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]) -> Cycles:
     """Judge the stability of all cycles, with more harmonics and finer steps where those taken were too few."""
     if not len(family):
-        return _nothing(model)
+        return _nothing(model, traces)
     everything = np.arange(len(family))
     member, wind = family.places(everything)
     orbits = family.orbits_of(everything)
@@ -134,10 +166,11 @@ def _judged(model: ReducedModel, family: CycleFamily) -> Cycles:
     return Cycles(
         member[order],
         wind[order],
-        _renumbered(member[order], wind[order], branch[order]),
+        branch[order],
         pick(orbits, order),
         Floquet(judged.multipliers[order], judged.trivial_error[order], judged.stability[order]),
         np.bincount(member[~kept], minlength=model.mass.shape[0]),
+        traces,
     )
 
 
@@ -166,22 +199,10 @@ def _refined(
     return Orbits(orbits.coefficients, frequency, orbits.wind_speed), Floquet(multipliers, error, stability), resolved
 
 
-def _renumbered(member: IntArray, wind: IntArray, branch: IntArray) -> IntArray:
-    """Count the branches of each member from 0 in the order of their lowest wind speed."""
-    numbers: dict[tuple[int, int], int] = {}
-    count: dict[int, int] = {}
-    for i in np.lexsort((branch, wind, member)):
-        key = (int(member[i]), int(branch[i]))
-        if key not in numbers:
-            numbers[key] = count.get(key[0], 0)
-            count[key[0]] = numbers[key] + 1
-    return np.array([numbers[(int(m), int(b))] for m, b in zip(member, branch, strict=True)], dtype=np.intp)
-
-
-def _nothing(model: ReducedModel) -> Cycles:
+def _nothing(model: ReducedModel, traces: tuple[Traces, ...]) -> Cycles:
     m = model.mass.shape[-1]
     none = np.zeros(0, dtype=np.intp)
     empty = np.zeros(0)
     judged = Floquet(np.zeros((0, 2 * m), dtype=np.complex128), empty, np.zeros(0, dtype=np.object_))
     orbits = Orbits(np.zeros((0, m, 3)), empty, empty)
-    return Cycles(none, none, none, orbits, judged, np.zeros(model.mass.shape[0], dtype=np.intp))
+    return Cycles(none, none, none, orbits, judged, np.zeros(model.mass.shape[0], dtype=np.intp), traces)

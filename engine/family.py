@@ -1,17 +1,17 @@
-"""Bookkeeping of limit cycles over wind speeds: which are distinct, which are the same motion, which form a branch."""
+"""Bookkeeping of limit cycles at the wind speeds asked for: which are distinct and which lie on one branch."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 
 from engine.arrays import BoolArray, FloatArray, IntArray, merged
 from engine.harmonic import Orbits, pick
 from engine.hybrid import ReducedModel
 
 SAME = 1e-3  # relative distance below which two solutions are one
-NEAR = 0.02  # relative difference of frequency up to which neighbours may be the same motion
-ALIKE = 3.0  # ratio of sizes, likewise
-GUESSED = 1.05  # ratio of sizes up to which a guess by energy leads to a cycle that is known
+NEAR = 0.02  # relative difference of frequency up to which a guess may point to a known cycle
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Starts:
 
 
 class CycleFamily:
-    """Distinct cycles as they are found, numbered from 0, and the links between neighbours in wind speed."""
+    """Distinct cycles as they are found, numbered from 0, and the branches that they lie on."""
 
     def __init__(self, model: ReducedModel) -> None:
         """Begin without cycles of a stack of models."""
@@ -32,7 +32,7 @@ class CycleFamily:
         self._place: list[tuple[int, int]] = []
         self._orbits: list[tuple[FloatArray, float, float]] = []
         self._links: list[tuple[int, int]] = []
-        self._signatures: list[FloatArray] = []
+        self._born: dict[int, float] = {}
         self._sizes: list[float] = []
         self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
 
@@ -54,28 +54,49 @@ class CycleFamily:
         return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
 
     def unlike_known(self, starts: Starts) -> Starts:
-        """Keep the starts that do not resemble a known cycle of their member and wind speed in frequency and size."""
-        sizes = np.linalg.norm(_signature(self._model, starts), axis=-1).tolist()
-        places = zip(starts.member.tolist(), starts.wind.tolist(), strict=True)
-        frequencies = starts.orbits.angular_frequency.tolist()
-        new = [
-            not any(self._alike(number, *guess) for number, _ in self._known.get(place, []))
-            for place, *guess in zip(places, frequencies, sizes, strict=True)
-        ]
-        index = np.flatnonzero(new)
+        """Leave out the starts that point to a known cycle of their member and wind speed.
+
+        A start points to the cycle of nearest size among those of nearly its frequency; of several that point to one,
+        all but the nearest are kept.
+        """
+        unlike = self._difference(starts)
+        nearest = unlike.argmin(axis=-1) if unlike.size else np.zeros(unlike.shape[0], dtype=np.intp)
+        distance = unlike.min(axis=-1, initial=np.inf)
+        order = np.lexsort((distance, nearest, starts.wind, starts.member))
+        target = np.stack([starts.member, starts.wind, nearest], axis=-1)[order]
+        first = np.ones(order.size, dtype=np.bool_)
+        first[1:] = (target[1:] != target[:-1]).any(axis=-1)
+        index = np.sort(order[~(first & np.isfinite(distance[order]))])
         return Starts(starts.member[index], starts.wind[index], pick(starts.orbits, index))
 
-    def _alike(self, number: int, frequency: float, size: float) -> bool:
-        near = abs(self._orbits[number][1] - frequency) <= NEAR * frequency
-        return near and max(size, self._sizes[number]) <= GUESSED * min(size, self._sizes[number])
+    def _difference(self, starts: Starts) -> FloatArray:
+        """Compare the sizes of starts with those of the known cycles of their places: (starts, most cycles of a place).
 
-    def add(self, starts: Starts, good: BoolArray, origin: IntArray | None = None) -> None:
-        """Record the good ones of these solutions, and links to the cycles that they were carried from."""
+        Infinite where the frequencies differ or there is no such cycle.
+        """
+        place = np.array(self._place, dtype=np.intp).reshape(-1, 2)
+        winds = int(max(place[:, 1].max(initial=0), starts.wind.max(initial=0))) + 1
+        key, asked = place[:, 0] * winds + place[:, 1], starts.member * winds + starts.wind
+        order = np.argsort(key, kind="stable")
+        first = np.searchsorted(key[order], asked)
+        count = np.searchsorted(key[order], asked, side="right") - first
+        column = np.arange(count.max(initial=0))
+        known = order[np.minimum(first[:, None] + column, max(order.size - 1, 0))] if order.size else order[:, None]
+        frequency = np.array([orbit[1] for orbit in self._orbits])[known]
+        sizes = np.array(self._sizes)[known]
+        size = np.linalg.norm(_signature(self._model, starts), axis=-1)[:, None]
+        near = np.abs(frequency / starts.orbits.angular_frequency[:, None] - 1.0) <= NEAR
+        return np.where(near & (column < count[:, None]), np.abs(np.log(sizes / size)), np.inf)
+
+    def add(self, starts: Starts, good: BoolArray) -> IntArray:
+        """Record the good ones of these solutions and return the number of each, -1 for the others: (starts,)."""
         signatures = _signature(self._model, starts)
         sizes = np.linalg.norm(signatures, axis=-1).tolist()
+        numbers = np.full(good.size, -1, dtype=np.intp)
         for i in np.flatnonzero(good).tolist():
             key = (int(starts.member[i]), int(starts.wind[i]))
             number, new = self._number(key, signatures[i])
+            numbers[i] = number
             if new:
                 self._place.append(key)
                 self._sizes.append(sizes[i])
@@ -83,38 +104,7 @@ class CycleFamily:
                 self._orbits.append(
                     (orbits.coefficients[i], float(orbits.angular_frequency[i]), float(orbits.wind_speed[i]))
                 )
-            if origin is not None:
-                self._links.append((int(origin[i]), number))
-
-    def loose_ends(self, ids: IntArray, winds: int) -> tuple[IntArray, IntArray]:
-        """Link neighbours that are plainly the same motion; return the cycles and winds that remain to be tried."""
-        origin, wind = [], []
-        for i in ids.tolist():
-            for step in (-1, 1):
-                there = self._place[i][1] + step
-                if 0 <= there < winds:
-                    mate = self._mate(i, there)
-                    if mate is None:
-                        origin.append(i)
-                        wind.append(there)
-                    else:
-                        self._links.append((i, mate))
-        return np.array(origin, dtype=np.intp), np.array(wind, dtype=np.intp)
-
-    def _mate(self, i: int, wind: int) -> int | None:
-        """Return the mutually nearest cycle at another wind speed if frequency and size agree with this one."""
-        there = self._nearest((self._place[i][0], wind), self._signatures[i])
-        if there is None or self._nearest(self._place[i], self._signatures[there]) != i:
-            return None
-        near = abs(self._orbits[i][1] - self._orbits[there][1]) <= NEAR * self._orbits[i][1]
-        small, large = sorted((self._sizes[i], self._sizes[there]))
-        return there if near and large <= ALIKE * small else None
-
-    def _nearest(self, key: tuple[int, int], signature: FloatArray) -> int | None:
-        known = self._known.get(key, [])
-        if len(known) < 2:
-            return known[0][0] if known else None
-        return min(known, key=lambda item: float(np.linalg.norm(item[1] - signature)))[0]
+        return numbers
 
     def _number(self, key: tuple[int, int], signature: FloatArray) -> tuple[int, bool]:
         known = self._known.setdefault(key, [])
@@ -122,21 +112,54 @@ class CycleFamily:
             if np.linalg.norm(signature - other) <= SAME * self._sizes[number]:
                 return number, False
         known.append((len(self._orbits), signature))
-        self._signatures.append(signature)
         return len(self._orbits), True
 
+    def join(self, threads: IntArray, numbers: IntArray, born: FloatArray) -> None:
+        """Put the cycles that lie on one followed branch together.
+
+        Parameters
+        ----------
+        threads : (cycles,)
+            The branch that each lies on.
+        numbers : (cycles,)
+            Their numbers.
+        born : (branches,)
+            Wind speed of the Hopf point that each branch comes from, infinite where it has none [m/s].
+        """
+        first: dict[int, int] = {}
+        for thread, number in zip(threads.tolist(), numbers.tolist(), strict=True):
+            self._links.append((first.setdefault(thread, number), number))
+            self._born[number] = min(self._born.get(number, np.inf), float(born[thread]))
+
+    def apart(self) -> IntArray:
+        """Return the cycle at the lowest wind speed of each member that lies on no followed branch."""
+        lowest: dict[int, int] = {}
+        for number, (member, wind) in enumerate(self._place):
+            if number not in self._born and (member not in lowest or wind < self._place[lowest[member]][1]):
+                lowest[member] = number
+        return np.array(list(lowest.values()), dtype=np.intp)
+
     def branches(self) -> IntArray:
+        """Number the connected families of each member from 0 by their lowest Hopf point, then by wind speed."""
+        label = self._labels()
+        keys: dict[int, tuple[int, float, float, int]] = {}
+        for number, root in enumerate(label.tolist()):
+            member, wind = self._place[number]
+            key = (member, self._born.get(number, np.inf), float(wind), root)
+            keys[root] = min(key, keys.get(root, key))
+        result = np.zeros(label.size, dtype=np.intp)
+        counts: dict[int, int] = {}
+        for member, _, _, root in sorted(keys.values()):
+            result[label == root] = counts.get(member, 0)
+            counts[member] = counts.get(member, 0) + 1
+        return result
+
+    def _labels(self) -> IntArray:
         """Return the smallest number in the connected family of each cycle."""
-        label = np.arange(len(self._orbits))
-        changed = True
-        while changed:
-            changed = False
-            for a, b in self._links:
-                low = min(label[a], label[b])
-                if label[a] != low or label[b] != low:
-                    label[a] = label[b] = low
-                    changed = True
-        return label
+        size = len(self._orbits)
+        ends = np.array(self._links, dtype=np.intp).reshape(-1, 2).T
+        graph = csr_array((np.ones(ends.shape[1]), (ends[0], ends[1])), shape=(size, size))
+        return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
 
 
 def _signature(model: ReducedModel, starts: Starts) -> FloatArray:

@@ -93,18 +93,18 @@ def _changes(system: System, x: FloatArray, active: IntArray) -> FloatArray:
     """Solve for the steps of the active members, block by block, so that memory stays flat however many there are."""
     size = max(1, BLOCK_NUMBERS // x.shape[1] ** 2)
     blocks = [active[first : first + size] for first in range(0, active.size, size)]
-    return np.concatenate([_solve(*system(x[block], block)) for block in blocks])
+    return np.concatenate([_step(*system(x[block], block)) for block in blocks])
 
 
-def _solve(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
+def _step(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
+    return -solved(jacobian, residual)
+
+
+def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve linear systems (..., n, n) side by side: (..., n), NaN for those that are singular."""
     try:
-        return np.asarray(-np.linalg.solve(jacobian, residual[..., None])[..., 0], dtype=np.float64)
+        return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], dtype=np.float64)
     except np.linalg.LinAlgError:
-        return np.stack([_solve_one(r, j) for r, j in zip(residual, jacobian, strict=True)])
-
-
-def _solve_one(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
-    try:
-        return np.asarray(-np.linalg.solve(jacobian, residual), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        return np.full_like(residual, np.nan)
+        if matrix.ndim == 2:
+            return np.full_like(right, np.nan)
+        return np.stack([solved(m, r) for m, r in zip(matrix, right, strict=True)])

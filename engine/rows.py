@@ -185,7 +185,6 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
     mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[cycles.member]
     shares = motion_shares(mass, cycles.orbits.coefficients, found.model.direction)
     outside = _outside_fit(found, made.sections.fitted_range[line])
-    branch = _branch_numbers(found)
     for i in range(cycles.member.size):
         place = _Place(found.name, int(loops[i]), float(cycles.orbits.wind_speed[i]), int(line[i]))
         state = _State(
@@ -195,7 +194,7 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
             amplitude=tuple(amplitude[i].tolist()),
             shares=tuple(shares[i].tolist()),
             frequency=float(cycles.orbits.angular_frequency[i] / (2.0 * np.pi)),
-            branch=int(branch[i]),
+            branch=int(cycles.branch[i]),
         )
         yield int(line[i]), Motion(_row(place, scales, state), series[i])
 
@@ -287,17 +286,3 @@ def _outside_fit(found: Found, fitted_range: FloatArray) -> BoolArray:
         angle = take(found.model, cycles.member[known]).load.angle
         result[known] = np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2)) > fitted_range[known]
     return result
-
-
-def _branch_numbers(found: Found) -> IntArray:
-    """Number the branches of each member by the onset they are born from: the one of nearest frequency."""
-    cycles, crossings = found.cycles, found.crossings
-    order: dict[int, list[tuple[float, float, int]]] = {}
-    for member, branch in dict.fromkeys(zip(cycles.member.tolist(), cycles.branch.tolist(), strict=True)):
-        first = np.flatnonzero((cycles.member == member) & (cycles.branch == branch))[0]
-        onsets = (crossings.member == member) & crossings.onset & crossings.oscillation
-        distance = np.abs(crossings.angular_frequency[onsets] - cycles.orbits.angular_frequency[first])
-        born = crossings.wind_speed[onsets][distance.argmin()] if distance.size else np.inf
-        order.setdefault(member, []).append((float(born), float(cycles.orbits.wind_speed[first]), branch))
-    number = {(member, branch): i for member, keys in order.items() for i, (_, _, branch) in enumerate(sorted(keys))}
-    return np.array([number[key] for key in zip(cycles.member.tolist(), cycles.branch.tolist(), strict=True)])

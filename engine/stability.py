@@ -114,6 +114,13 @@ def critical_wind_speeds(model: ReducedModel, limit: float) -> Crossings:
     return _described(_pick(matrices, member), member, speed, oscillation, limit)
 
 
+def critical_modes(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> ComplexArray:
+    """Return the mode nearest to the imaginary axis at wind speeds (k,) of models (k,): (k, m), of any size."""
+    _, _, vector = _nearest_pair(_pick(state_matrices(model), member), wind_speed)
+    m = model.mass.shape[-1]
+    return np.asarray(vector[:, :m] / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member])
+
+
 def unstable_pairs(eigenvalues: ComplexArray) -> IntArray:
     """Count unstable pairs, a real eigenvalue as one, of eigenvalues (..., n): (...)."""
     size = np.abs(eigenvalues).max(axis=-1, keepdims=True)

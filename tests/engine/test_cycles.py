@@ -8,14 +8,16 @@ from engine.cycles import Cycles, energy_starts, find_cycles
 from engine.harmonic import half_peak_to_peak, residual
 from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability
+from engine.stability import critical_wind_speeds
 from tests.builders import Oscillators, hand_made, hybrid, source_line
 
 WINDS = np.array([4.0, 5.0, 6.0])
 
 
 def found_for(model: ReducedModel, winds: FloatArray) -> Cycles:
-    """Find the cycles from the energy balance alone."""
-    return find_cycles(model, winds, energy_starts(model, winds, 5), 5)
+    """Find the cycles without the explicit formula."""
+    crossings = critical_wind_speeds(model, 30.0)
+    return find_cycles(model, crossings, winds, energy_starts(model, winds, 5), 5)
 
 
 def test_every_cycle_solves_its_equations() -> None:

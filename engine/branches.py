@@ -1,0 +1,253 @@
+"""Branches of limit cycles over the wind speed: where they start, how they are followed and where they end.
+
+Theory section 7.2. A point of a branch holds the coefficients of the cycle, its angular frequency and the wind speed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, merged
+from engine.continuation import Points, Steps, branches, interpolated, tangents
+from engine.harmonic import Orbits, basis, jacobian, residual, wind_slopes
+from engine.hybrid import ReducedModel, take
+from engine.stability import Crossings, critical_modes
+
+STEPS = Steps(first=0.2)
+REFERENCE_ANGLE = 0.05  # rad; amplitudes below the one with this angle of attack are measured by it
+SMALLEST_SHARE = 0.2  # of the whole size, by which a co-ordinate that hardly moves is measured
+LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
+SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static one in disguise
+PARTS = 8  # of a segment between two points, in which crossings of a wind speed are looked for
+LOWEST_WIND = 0.25  # of the lowest wind speed asked for: branches are not followed below
+
+
+@dataclass(frozen=True, slots=True)
+class CycleProblem:
+    """Harmonic balance of models with the wind speed as parameter, for `engine.continuation`.
+
+    model: leading axis (members,); member: (branches,); reference: (branches,), smallest size by which the amplitudes
+    of each branch are measured, in the root of M_ii |q_i|^2.
+    """
+
+    model: ReducedModel
+    member: IntArray
+    reference: FloatArray
+
+    def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return the balance and the phase condition <q - q_anchor, dq_anchor/dtau> = 0 with their slopes."""
+        here = take(self.model, self.member[branch])
+        orbits = orbits_of(z, here.mass.shape[-1])
+        near = orbits_of(anchor, here.mass.shape[-1]).coefficients
+        weight = np.diagonal(here.mass, axis1=-2, axis2=-1)[..., None]
+        phase = merged(weight * (near @ basis(near.shape[-1] // 2).derivative.T), -2)
+        drift = np.einsum("kx,kx->k", phase, z[:, :-2] - anchor[:, :-2])
+        rows = np.concatenate([merged(residual(here, orbits), -2), drift[:, None]], axis=-1)
+        slopes = np.zeros((*rows.shape, rows.shape[-1] + 1))
+        slopes[:, :-1, :-1] = jacobian(here, orbits)
+        slopes[:, :-1, -1] = merged(wind_slopes(here, orbits), -2)
+        slopes[:, -1, :-2] = phase
+        return rows, slopes
+
+    def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
+        """Measure each co-ordinate by its own size, or by a share of the whole, frequency and wind by themselves."""
+        weight = np.sqrt(np.diagonal(self.model.mass, axis1=-2, axis2=-1))[self.member[branch]]
+        coefficients = orbits_of(z, weight.shape[-1]).coefficients
+        own = weight * np.linalg.norm(coefficients, axis=-1)
+        whole = np.maximum(np.linalg.norm(own, axis=-1), self.reference[branch])
+        size = np.maximum(own, SMALLEST_SHARE * whole[:, None]) / weight
+        return np.concatenate([np.repeat(size, coefficients.shape[-1], axis=-1), np.abs(z[:, -2:])], axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class Traces:
+    """Branches that were followed.
+
+    problem: with one entry a branch; points: sorted by branch, in the order in which they were met; outcome:
+    (branches,) of Outcome, CONVERGED where a branch ended by itself or left the range of wind speeds; returned:
+    (branches,), whether it ended in the equilibrium, at another Hopf point; born: (branches,), the wind speed of the
+    Hopf point where it started, infinite if it did not start at one [m/s].
+    """
+
+    problem: CycleProblem
+    points: Points
+    outcome: ObjectArray
+    returned: BoolArray
+    born: FloatArray
+
+    @property
+    def orbits(self) -> Orbits:
+        """The cycles of the points."""
+        return orbits_of(self.points.z, self.problem.model.mass.shape[-1])
+
+    @property
+    def last(self) -> IntArray:
+        """Index of the last point of each branch."""
+        return np.searchsorted(self.points.branch, np.arange(self.problem.member.size), side="right") - 1
+
+    @property
+    def member(self) -> IntArray:
+        """The model of each point."""
+        return self.problem.member[self.points.branch]
+
+
+def orbits_of(z: FloatArray, m: int) -> Orbits:
+    """Read points (k, m (2 H + 1) + 2) as orbits."""
+    return Orbits(z[:, :-2].reshape(z.shape[0], m, (z.shape[1] - 2) // m), z[:, -2], z[:, -1])
+
+
+def points_of(orbits: Orbits) -> FloatArray:
+    """Write orbits as points (k, m (2 H + 1) + 2)."""
+    tail = np.stack([orbits.angular_frequency, orbits.wind_speed], axis=-1)
+    return np.concatenate([merged(orbits.coefficients, -2), tail], axis=-1)
+
+
+def traced_from_hopf(
+    model: ReducedModel, crossings: Crossings, hopf: IntArray, harmonics: int, winds: FloatArray
+) -> Traces:
+    """Follow the branch that each of some Hopf points gives birth to.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    crossings : Crossings
+    hopf : (branches,)
+        Indices of crossings that are oscillations.
+    harmonics : int
+    winds : (winds,)
+        In rising order; branches are followed to the highest [m/s].
+
+    Returns
+    -------
+    Traces
+    """
+    member, speed = crossings.member[hopf], crossings.wind_speed[hopf]
+    shape = critical_modes(model, member, speed)
+    first = np.zeros((hopf.size, shape.shape[-1], 2 * harmonics + 1))
+    first[..., 1], first[..., 2] = shape.real, -shape.imag
+    born = Orbits(first, crossings.angular_frequency[hopf], speed)
+    size, angle = _size(model, member, first), first_angle(model, member, born)
+    reference = size * REFERENCE_ANGLE / np.maximum(angle, 1e-300)
+    problem = CycleProblem(model, member, reference)
+    start = points_of(Orbits(np.zeros_like(first), born.angular_frequency, speed))
+    direction = points_of(Orbits(first, np.zeros(hopf.size), np.zeros(hopf.size)))
+    return _traced(problem, start, direction, winds, speed)
+
+
+def traced_from_cycles(model: ReducedModel, member: IntArray, orbits: Orbits, winds: FloatArray) -> Traces:
+    """Follow the branch of each cycle, first all to higher, then all to lower wind speeds: 2 k branches."""
+    both = np.tile(np.arange(member.size), 2)
+    angle = first_angle(model, member, orbits)
+    reference = _size(model, member, orbits.coefficients) * REFERENCE_ANGLE / np.maximum(angle, REFERENCE_ANGLE)
+    problem = CycleProblem(model, member[both], reference[both])
+    start = points_of(orbits)[both]
+    along = np.zeros_like(start)
+    along[:, -1] = np.where(np.arange(both.size) < member.size, 1.0, -1.0) * start[:, -1]
+    direction = tangents(problem, start, np.arange(both.size), along)
+    # At a fold the branch has no direction over the wind: nothing is followed from there.
+    direction = np.where(np.isfinite(direction).all(axis=-1, keepdims=True), direction, along)
+    return _traced(problem, start, direction, winds, np.full(both.size, np.inf))
+
+
+def at_winds(traces: Traces, winds: FloatArray) -> tuple[IntArray, IntArray, Orbits]:
+    """Guess the cycles of the branches at wind speeds (winds,) by Hermite's interpolation.
+
+    Returns
+    -------
+    (guesses,), (guesses,), Orbits
+        Branch and index of the wind speed of each guess, and the orbit guessed.
+    """
+    points, problem = traces.points, traces.problem
+    segment = np.flatnonzero(points.branch[1:] == points.branch[:-1])
+    left, right = points.pick(segment), points.pick(segment + 1)
+    part = np.linspace(0.0, 1.0, PARTS + 1)
+    speed = interpolated(problem, left, right, np.broadcast_to(part, (segment.size, part.size)))[..., -1]
+    above = speed[:, :, None] >= winds
+    row, cell, wind = np.nonzero(above[:, 1:] != above[:, :-1])
+    share = (cell + (winds[wind] - speed[row, cell]) / (speed[row, cell + 1] - speed[row, cell])) / PARTS
+    guess = interpolated(problem, left.pick(row), right.pick(row), share)
+    guess[:, -1] = winds[wind]
+    return left.branch[row], wind, orbits_of(guess, problem.model.mass.shape[-1])
+
+
+def first_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return the largest amplitude along the span of the angle of attack in the first harmonic: (k,) [rad]."""
+    forms = model.load.angle[member]
+    m = orbits.coefficients.shape[1]
+    cosine, sine = orbits.coefficients[:, :, 1], orbits.coefficients[:, :, 2]
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None]
+    states = np.stack([np.concatenate([cosine, rate * sine], -1), np.concatenate([sine, -rate * cosine], -1)], axis=-1)
+    if m == 0 or forms.shape[1] == 0:
+        return np.zeros(member.size)
+    return np.asarray(np.linalg.norm(forms @ states, axis=-1).max(axis=-1))
+
+
+def _size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
+    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
+
+
+def _traced(
+    problem: CycleProblem, start: FloatArray, direction: FloatArray, winds: FloatArray, born: FloatArray
+) -> Traces:
+    """Run the continuation and tell it where branches end."""
+    scale = problem.scale(start, np.arange(start.shape[0]))
+    unit = direction / np.linalg.norm(direction / scale, axis=-1, keepdims=True)
+    found = [Points(np.arange(start.shape[0]), start, unit)]
+    before = found[0]
+    last = Points(before.branch, start.copy(), unit.copy())
+    steps = branches(problem, start, direction, STEPS)
+    ended = np.zeros(start.shape[0], dtype=np.bool_)
+    alive: BoolArray | None = None
+    while True:
+        try:
+            new = steps.send(alive)
+        except StopIteration as stop:
+            outcome = stop.value
+            break
+        returned = _returned(problem, last.pick(new.branch), new)
+        ended[new.branch] = returned
+        found.append(new.pick(~returned))
+        alive = ~returned & _goes_on(problem, new, winds) & ~_closed(problem, before.pick(new.branch), new, len(found))
+        last.z[new.branch], last.tangent[new.branch] = new.z, new.tangent
+    every = Points(*(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "tangent")))
+    return Traces(problem, every.pick(np.argsort(every.branch, kind="stable")), outcome, ended, born)
+
+
+def _returned(problem: CycleProblem, before: Points, new: Points) -> BoolArray:
+    """Tell which branches passed through the equilibrium, where the first harmonic turns over."""
+    m = problem.model.mass.shape[-1]
+    weight = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[problem.member[new.branch]]
+    first, second = (orbits_of(p.z, m).coefficients[..., 1:3] for p in (before, new))
+    return np.asarray(np.einsum("kmc,kmc,km->k", first, second, weight) < 0.0)
+
+
+def _goes_on(problem: CycleProblem, new: Points, winds: FloatArray) -> BoolArray:
+    """Tell which branches stay inside the range of wind speeds, angles and frequencies."""
+    member = problem.member[new.branch]
+    orbits = orbits_of(new.z, problem.model.mass.shape[-1])
+    rising = new.tangent[:, -1] > 0.0
+    wind = orbits.wind_speed
+    inside = (rising | (wind > LOWEST_WIND * winds[0])) & (~rising | (wind < winds[-1]))
+    natural = np.diagonal(problem.model.stiffness, axis1=-2, axis2=-1)
+    natural = np.sqrt((natural / np.diagonal(problem.model.mass, axis1=-2, axis2=-1)).min(axis=-1))
+    quick = orbits.angular_frequency > SLOWEST * natural[member]
+    return np.asarray(inside & quick & (first_angle(problem.model, member, orbits) < LARGEST_ANGLE))
+
+
+def _closed(problem: CycleProblem, start: Points, new: Points, count: int) -> BoolArray:
+    """Tell which branches came back to where they started, so that they are closed."""
+    if count < 5:
+        return np.zeros(new.branch.size, dtype=np.bool_)
+    scale = problem.scale(start.z, start.branch)
+    first, second = (_invariant(p.z / scale, problem.model.mass.shape[-1]) for p in (start, new))
+    near = np.linalg.norm(first - second, axis=-1) < STEPS.largest
+    along = np.einsum("ki,ki->k", (start.tangent / scale)[:, -2:], (new.tangent / scale)[:, -2:]) > 0.0
+    return np.asarray(near & along)
+
+
+def _invariant(z: FloatArray, m: int) -> FloatArray:
+    """Return what of scaled points does not depend on the phase."""
+    c = orbits_of(z, m).coefficients
+    return np.concatenate([c[..., 0], merged(np.hypot(c[..., 1::2], c[..., 2::2]), -2), z[:, -2:]], axis=-1)

@@ -1,0 +1,245 @@
+"""Pseudo-arclength continuation of stacks of branches, and points on them where a test function vanishes.
+
+It knows no physics: a problem gives residuals and their slopes by the unknowns and by one parameter, the last entry of
+each point. Branches run side by side, each with a step of its own. Theory section 7.2.
+"""
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
+from engine.newton import Options, Solution, newton, solved
+from engine.outcome import Outcome
+
+FOLLOWING = Options(tolerance=1e-4, iterations=8)
+LOCATING = Options(iterations=8)
+MOST_SECANTS = 30
+
+
+class Problem(Protocol):
+    """Equations of a stack of branches: n of them in n unknowns and a parameter, which is the last of n + 1 entries."""
+
+    def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return residuals (k, n) and slopes (k, n, n + 1) at points (k, n + 1) of branches (k,).
+
+        anchor (k, n + 1) is a point nearby, for conditions that fix a phase relative to it.
+        """
+        ...
+
+    def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
+        """Return the size by which each entry of the points is measured: (k, n + 1)."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Points on branches: branch (k,), z (k, n + 1), tangent (k, n + 1) of unit length in the problem's scale there."""
+
+    branch: IntArray
+    z: FloatArray
+    tangent: FloatArray
+
+    def pick(self, index: IntArray | BoolArray) -> "Points":
+        """Pick points of the stack."""
+        return Points(self.branch[index], self.z[index], self.tangent[index])
+
+
+Test = Callable[[Points], FloatArray]
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """Lengths of steps in the problem's scale, and when a branch is given up.
+
+    A step grows where Newton's method needs fewer than `iterations` and shrinks where it needs more; it is halved where
+    the method fails, the direction turns by more than the angle whose cosine is `straightness`, or the prediction
+    missed by more than the share `miss` of the step.
+    """
+
+    first: float = 0.05
+    largest: float = 0.7
+    smallest: float = 1e-5
+    iterations: int = 2
+    straightness: float = 0.85
+    miss: float = 0.08
+    points: int = 400
+
+
+def tangents(problem: Problem, z: FloatArray, branch: IntArray, along: FloatArray) -> FloatArray:
+    """Return the unit tangents at points of branches on the side of `along`, all (k, n + 1).
+
+    NaN where the branch has no single direction.
+    """
+    scale = problem.scale(z, branch)
+    _, slopes = problem.system(z, z, branch)
+    matrix = np.concatenate([slopes, (along / scale**2)[:, None]], axis=1)
+    return _unit(problem, z, branch, matrix)
+
+
+def branches(
+    problem: Problem, start: FloatArray, direction: FloatArray, steps: Steps | None = None
+) -> Generator[Points, BoolArray | None, ObjectArray]:
+    """Follow branches from a point each, side by side, also through folds.
+
+    Parameters
+    ----------
+    problem : Problem
+    start : (branches, n + 1)
+        A point on each branch.
+    direction : (branches, n + 1)
+        Tangent along which each is left, of any length.
+    steps : Steps, optional
+
+    Yields
+    ------
+    Points
+        The next point of every branch whose step was accepted. Send back which of them go on, (k,); all do if nothing
+        is sent.
+
+    Returns
+    -------
+    (branches,) of Outcome
+        CONVERGED where the caller ended the branch, LIMIT_REACHED after the largest number of points, NO_CONVERGENCE
+        where the smallest step failed.
+    """
+    steps = steps or Steps()
+    active = np.arange(start.shape[0])
+    unit = direction / np.linalg.norm(direction / problem.scale(start, active), axis=-1, keepdims=True)
+    last, before = Points(active, start.copy(), unit), Points(active, np.full_like(start, np.nan), unit.copy())
+    length, count = np.full(active.size, steps.first), np.zeros(active.size, dtype=np.intp)
+    outcome = np.full(active.size, Outcome.CONVERGED, dtype=np.object_)
+    while active.size:
+        here = last.pick(active)
+        guess = _predicted(problem, before.pick(active), here, length[active])
+        anchor = np.where(np.isnan(before.z[active]), guess, here.z)  # a start may have no phase of its own
+        new, solution = _at_length(problem, here, length[active], guess, anchor, FOLLOWING)
+        good = solution.converged & _faithful(problem, here, new, guess, steps)
+        growth = 2.0 ** ((steps.iterations - solution.iterations) / steps.iterations)
+        length[active] = np.minimum(length[active] * np.where(good, growth, 0.5), steps.largest)
+        accepted = new.pick(good)
+        for old, then in ((before, here.pick(good)), (last, accepted)):
+            old.z[accepted.branch], old.tangent[accepted.branch] = then.z, then.tangent
+        count[accepted.branch] += 1
+        outcome[active[length[active] < steps.smallest]] = Outcome.NO_CONVERGENCE
+        outcome[active[count[active] >= steps.points]] = Outcome.LIMIT_REACHED
+        goes_on = outcome == Outcome.CONVERGED
+        if accepted.branch.size:
+            alive = yield accepted
+            if alive is not None:
+                goes_on[accepted.branch[~alive]] = False
+        active = active[goes_on[active]]
+    return outcome
+
+
+def interpolated(problem: Problem, left: Points, right: Points, share: FloatArray) -> FloatArray:
+    """Return Hermite's cubic through successive points of branches at shares (k, ...) of the way: (k, ..., n + 1)."""
+    scale = problem.scale(left.z, left.branch)
+    length = np.linalg.norm((right.z - left.z) / scale, axis=-1, keepdims=True)
+    after = length * right.tangent / np.linalg.norm(right.tangent / scale, axis=-1, keepdims=True)
+    ends = np.stack([left.z, right.z, length * left.tangent, after], axis=1)
+    cube, square = share**3, share**2
+    weights = [2.0 * cube - 3.0 * square + 1.0, 3.0 * square - 2.0 * cube, cube - 2.0 * square + share, cube - square]
+    return np.asarray(np.einsum("k...e,kez->k...z", np.stack(weights, axis=-1), ends))
+
+
+def _predicted(problem: Problem, before: Points, here: Points, length: FloatArray) -> FloatArray:
+    """Extrapolate Hermite's cubic through the last two points, or the tangent where there is only one."""
+    scale = problem.scale(before.z, before.branch)
+    step = np.linalg.norm((here.z - before.z) / scale, axis=-1)
+    along = np.linalg.norm(here.tangent / scale, axis=-1)
+    cubic = interpolated(problem, before, here, 1.0 + length * along / step)
+    return np.where(np.isnan(cubic), here.z + length[:, None] * here.tangent, cubic)
+
+
+def _faithful(problem: Problem, here: Points, new: Points, guess: FloatArray, steps: Steps) -> BoolArray:
+    """Tell where a point found lies near its guess and in the direction of the branch: else it may be on another."""
+    scale = problem.scale(here.z, here.branch)
+    turned = new.tangent / scale
+    cosine = np.einsum("ki,ki->k", turned, here.tangent / scale) / np.linalg.norm(turned, axis=-1)
+    far, missed = (np.linalg.norm((new.z - z) / scale, axis=-1) for z in (here.z, guess))
+    return np.asarray((cosine > steps.straightness) & (missed < steps.miss * far))
+
+
+def _at_length(
+    problem: Problem, base: Points, length: FloatArray, guess: FloatArray, anchor: FloatArray, options: Options
+) -> tuple[Points, Solution]:
+    """Solve for the points at a given length along the tangents of the base points; NaN where that failed."""
+    scale = problem.scale(base.z, base.branch)
+    row = base.tangent / scale**2
+    matrices = np.full((*row.shape, row.shape[-1]), np.nan)
+
+    def system(z: FloatArray, index: IntArray) -> tuple[FloatArray, FloatArray]:
+        residual, slopes = problem.system(z, anchor[index], base.branch[index])
+        off = np.einsum("ki,ki->k", row[index], z - base.z[index]) - length[index]
+        matrices[index] = np.concatenate([slopes, row[index][:, None]], axis=1)
+        return np.concatenate([residual, off[:, None]], axis=-1), matrices[index]
+
+    solution = newton(system, guess, scale / np.sqrt(scale.shape[-1]), options)
+    good = np.flatnonzero(solution.converged)
+    z, tangent = np.full_like(guess, np.nan), np.full_like(guess, np.nan)
+    z[good] = solution.x[good]
+    # The matrix of the last iteration is that of the point to within the last step: its tangent serves as well.
+    tangent[good] = _unit(problem, z[good], base.branch[good], matrices[good])
+    return Points(base.branch, z, tangent), solution
+
+
+def _unit(problem: Problem, z: FloatArray, branch: IntArray, matrix: FloatArray) -> FloatArray:
+    """Solve for the direction in which the last row of the matrix alone grows, of unit length in the scale at z."""
+    right = np.zeros(z.shape)
+    right[:, -1] = 1.0
+    tangent = solved(matrix, right)
+    return np.asarray(tangent / np.linalg.norm(tangent / problem.scale(z, branch), axis=-1, keepdims=True))
+
+
+@dataclass(frozen=True, slots=True)
+class Located:
+    """Zeros of a test function: the points, and how far the parameter moved in the last step towards each, (k,)."""
+
+    points: Points
+    uncertainty: FloatArray
+
+
+def located(problem: Problem, left: Points, right: Points, test: Test, accuracy: float) -> Located:
+    """Find where a test function vanishes between two successive points of branches, by the Illinois method.
+
+    Parameters
+    ----------
+    problem : Problem
+    left, right : Points
+        Of the same branches; the test function has opposite signs there.
+    test : callable
+        Takes Points, returns (k,).
+    accuracy : float
+        Relative change of the parameter at which the search stops.
+
+    Returns
+    -------
+    Located
+        The uncertainty is infinite where the search left the branch.
+    """
+    scale = problem.scale(left.z, left.branch)
+    whole = np.einsum("ki,ki->k", left.tangent / scale, (right.z - left.z) / scale)
+    end, other = whole.copy(), np.zeros_like(whole)
+    value, other_value = test(right), test(left)
+    found = Points(right.branch, right.z.copy(), right.tangent.copy())
+    moved = np.full(whole.size, np.inf)
+    active = np.arange(whole.size)
+    for _ in range(MOST_SECANTS):
+        a, b, f_a, f_b = other[active], end[active], other_value[active], value[active]
+        middle = (a * f_b - b * f_a) / np.where(f_b == f_a, np.nan, f_b - f_a)
+        guess = interpolated(problem, left.pick(active), right.pick(active), middle / whole[active])
+        point, _ = _at_length(problem, left.pick(active), middle, guess, left.z[active], LOCATING)
+        f = test(point)
+        moved[active] = np.abs(point.z[:, -1] - found.z[active, -1])
+        found.z[active], found.tangent[active] = point.z, point.tangent
+        flips = f * f_b < 0.0
+        # The end that stays has its value halved, so that it moves in the next step.
+        other[active], other_value[active] = np.where(flips, b, a), np.where(flips, f_b, 0.5 * f_a)
+        end[active], value[active] = middle, f
+        active = active[np.isfinite(f) & (moved[active] > accuracy * np.abs(point.z[:, -1]))]
+        if active.size == 0:
+            break
+    return Located(found, np.where(np.isfinite(moved), moved, np.inf))
