@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray, merged
+from engine.bifurcations import bifurcations
 from engine.competition import loop_competitions
 from engine.cycles import Cycles, explicit_starts, find_cycles
 from engine.effects import device_effects
@@ -130,13 +131,15 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     winds = _winds(analysis)
     starts = explicit_starts(published, winds, analysis.harmonics)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
+    cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
     return Found(
         name=Model.HYBRID,
         model=model,
         line=line,
         loops=np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp),
         crossings=crossings,
-        cycles=find_cycles(model, crossings, winds, starts, analysis.harmonics),
+        cycles=cycles,
+        bifurcations=bifurcations(cycles.traces, cycles.followed, model, crossings),
         winds=winds,
     )
 
@@ -151,13 +154,15 @@ def _finite_element(
     yield Progress(0.5, "limit cycles of the finite element model")
     winds = hybrid.winds
     starts = _lifted(prepared.made, modes, hybrid, model, analysis.harmonics)
+    cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
     return Found(
         name=Model.FINITE_ELEMENT,
         model=model,
         line=np.arange(len(prepared.made.lines)),
         loops=np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
         crossings=crossings,
-        cycles=find_cycles(model, crossings, winds, starts, analysis.harmonics),
+        cycles=cycles,
+        bifurcations=bifurcations(cycles.traces, cycles.followed, model, crossings),
         winds=winds,
     )
 

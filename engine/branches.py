@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, merged
 from engine.continuation import Points, Steps, branches, interpolated, tangents
-from engine.harmonic import Orbits, basis, jacobian, residual, wind_slopes
+from engine.harmonic import Orbits, basis, jacobian, pick, residual, wind_slopes
 from engine.hybrid import ReducedModel, take
 from engine.stability import Crossings, critical_modes
 
@@ -18,6 +18,7 @@ REFERENCE_ANGLE = 0.05  # rad; amplitudes below the one with this angle of attac
 SMALLEST_SHARE = 0.2  # of the whole size, by which a co-ordinate that hardly moves is measured
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static one in disguise
+REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
 PARTS = 8  # of a segment between two points, in which crossings of a wind speed are looked for
 LOWEST_WIND = 0.25  # of the lowest wind speed asked for: branches are not followed below
 
@@ -150,6 +151,15 @@ def traced_from_cycles(model: ReducedModel, member: IntArray, orbits: Orbits, wi
     return _traced(problem, start, direction, winds, np.full(both.size, np.inf))
 
 
+def reaches(traces: Traces, crossings: Crossings, hopf: IntArray) -> BoolArray:
+    """Tell which branches ended in which Hopf points (k,), whatever their models: (branches, k)."""
+    orbits = pick(traces.orbits, traces.last)
+    ends = np.stack([orbits.wind_speed, orbits.angular_frequency], axis=-1)
+    there = np.stack([crossings.wind_speed[hopf], crossings.angular_frequency[hopf]], axis=-1)
+    near = (np.abs(ends[:, None] / there - 1.0) < REACHED).all(axis=-1)
+    return np.asarray(near & traces.returned[:, None])
+
+
 def at_winds(traces: Traces, winds: FloatArray) -> tuple[IntArray, IntArray, Orbits]:
     """Guess the cycles of the branches at wind speeds (winds,) by Hermite's interpolation.
 
@@ -231,7 +241,7 @@ def _goes_on(problem: CycleProblem, new: Points, winds: FloatArray) -> BoolArray
     wind = orbits.wind_speed
     inside = (rising | (wind > LOWEST_WIND * winds[0])) & (~rising | (wind < winds[-1]))
     natural = np.diagonal(problem.model.stiffness, axis1=-2, axis2=-1)
-    natural = np.sqrt((natural / np.diagonal(problem.model.mass, axis1=-2, axis2=-1)).min(axis=-1))
+    natural = np.sqrt(np.abs(natural / np.diagonal(problem.model.mass, axis1=-2, axis2=-1)).min(axis=-1))
     quick = orbits.angular_frequency > SLOWEST * natural[member]
     return np.asarray(inside & quick & (first_angle(problem.model, member, orbits) < LARGEST_ANGLE))
 

@@ -194,6 +194,11 @@ def _unit(problem: Problem, z: FloatArray, branch: IntArray, matrix: FloatArray)
     return np.asarray(tangent / np.linalg.norm(tangent / problem.scale(z, branch), axis=-1, keepdims=True))
 
 
+def onto(problem: Problem, points: Points) -> Points:
+    """Solve for the points of the branches next to these, normal to their tangents; NaN where that failed."""
+    return _at_length(problem, points, np.zeros(points.branch.size), points.z, points.z, LOCATING)[0]
+
+
 @dataclass(frozen=True, slots=True)
 class Located:
     """Zeros of a test function: the points, and how far the parameter moved in the last step towards each, (k,)."""

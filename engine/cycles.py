@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.branches import SLOWEST, Traces, at_winds, traced_from_cycles, traced_from_hopf
+from engine.branches import SLOWEST, Traces, at_winds, reaches, traced_from_cycles, traced_from_hopf
 from engine.describing import FirstHarmonic, energy_balance_cycles, explicit_cycles
 from engine.family import CycleFamily, Starts
 from engine.floquet import Floquet, floquet
@@ -21,7 +21,6 @@ TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 12
 FINENESS = 4  # times the steps of the Floquet integration for cycles that need more harmonics
-REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +29,8 @@ class Cycles:
 
     member, wind: (cycles,), indices of model and wind speed; branch: (cycles,), number of the connected family within
     its member, by the lowest Hopf point that it comes from, families without one after those; dropped: (members,),
-    solutions left out because more harmonics did not resolve them either; traces: the branches that were followed.
+    solutions left out because more harmonics did not resolve them either; traces: the branches that were followed;
+    followed: (branches,) of all traces one after another, the family of each.
     """
 
     member: IntArray
@@ -40,6 +40,7 @@ class Cycles:
     floquet: Floquet
     dropped: IntArray
     traces: tuple[Traces, ...]
+    followed: IntArray
 
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
@@ -80,6 +81,8 @@ def find_cycles(
         Sorted by member, wind speed and branch.
     """
     family = CycleFamily(model)
+    if wind_speeds.size == 0:
+        return _judged(model, family, ())
     traces = _from_hopf(model, crossings, wind_speeds, harmonics)
     for trace in traces:
         _cover(family, trace, wind_speeds)
@@ -88,9 +91,7 @@ def find_cycles(
     while (apart := family.apart()).size:
         member, _ = family.places(apart)
         trace = traced_from_cycles(model, member, family.orbits_of(apart), wind_speeds)
-        both = np.arange(2 * apart.size)
-        family.join(both, np.tile(apart, 2), trace.born)
-        _cover(family, trace, wind_speeds)
+        family.join(_cover(family, trace, wind_speeds), np.tile(apart, 2))
         traces.append(trace)
     return _judged(model, family, tuple(traces))
 
@@ -100,22 +101,19 @@ def _from_hopf(model: ReducedModel, crossings: Crossings, winds: FloatArray, har
     onset = np.flatnonzero(crossings.oscillation & crossings.onset)
     first = traced_from_hopf(model, crossings, onset, harmonics, winds)
     rest = np.flatnonzero(crossings.oscillation & ~crossings.onset)
-    last = first.last
-    ended = np.flatnonzero(first.returned)
-    place = np.stack([first.orbits.wind_speed, first.orbits.angular_frequency], axis=-1)[last[ended]]
-    there = np.stack([crossings.wind_speed, crossings.angular_frequency], axis=-1)[rest]
-    close = (np.abs(place[:, None] / there - 1.0) < REACHED).all(axis=-1)
-    same = first.problem.member[ended][:, None] == crossings.member[rest]
-    unreached = rest[~(close & same).any(axis=0)]
+    same = first.problem.member[:, None] == crossings.member[rest]
+    unreached = rest[~(same & reaches(first, crossings, rest)).any(axis=0)]
     return [first, traced_from_hopf(model, crossings, unreached, harmonics, winds)]
 
 
-def _cover(family: CycleFamily, trace: Traces, winds: FloatArray) -> None:
-    """Solve for the cycles at the wind speeds that a followed branch passes."""
+def _cover(family: CycleFamily, trace: Traces, winds: FloatArray) -> IntArray:
+    """Solve for the cycles at the wind speeds that followed branches pass; return the numbers of these branches."""
+    followed = family.follow(trace.problem.member, trace.born)
     branch, wind, orbits = at_winds(trace, winds)
     starts, good = _solved(trace.problem.model, Starts(trace.problem.member[branch], wind, orbits))
     numbers = family.add(starts, good)
-    family.join(branch[good], numbers[good], trace.born)
+    family.join(followed[branch[good]], numbers[good])
+    return followed
 
 
 def _grid(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
@@ -150,7 +148,7 @@ def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
 def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]) -> Cycles:
     """Judge the stability of all cycles, with more harmonics and finer steps where those taken were too few."""
     if not len(family):
-        return _nothing(model, traces)
+        return _nothing(model, traces, family.branches()[1])
     everything = np.arange(len(family))
     member, wind = family.places(everything)
     orbits = family.orbits_of(everything)
@@ -160,7 +158,7 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
     kept = np.ones(member.size, dtype=np.bool_)
     if coarse.size:
         orbits, judged, kept[coarse] = _refined(model, member, orbits, judged, coarse)
-    branch = family.branches()
+    branch, followed = family.branches()
     order = np.flatnonzero(kept)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]
     return Cycles(
@@ -171,6 +169,7 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
         Floquet(judged.multipliers[order], judged.trivial_error[order], judged.stability[order]),
         np.bincount(member[~kept], minlength=model.mass.shape[0]),
         traces,
+        followed,
     )
 
 
@@ -199,10 +198,11 @@ def _refined(
     return Orbits(orbits.coefficients, frequency, orbits.wind_speed), Floquet(multipliers, error, stability), resolved
 
 
-def _nothing(model: ReducedModel, traces: tuple[Traces, ...]) -> Cycles:
+def _nothing(model: ReducedModel, traces: tuple[Traces, ...], followed: IntArray) -> Cycles:
     m = model.mass.shape[-1]
     none = np.zeros(0, dtype=np.intp)
     empty = np.zeros(0)
     judged = Floquet(np.zeros((0, 2 * m), dtype=np.complex128), empty, np.zeros(0, dtype=np.object_))
     orbits = Orbits(np.zeros((0, m, 3)), empty, empty)
-    return Cycles(none, none, none, orbits, judged, np.zeros(model.mass.shape[0], dtype=np.intp), traces)
+    dropped = np.zeros(model.mass.shape[0], dtype=np.intp)
+    return Cycles(none, none, none, orbits, judged, dropped, traces, followed)

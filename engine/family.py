@@ -32,7 +32,7 @@ class CycleFamily:
         self._place: list[tuple[int, int]] = []
         self._orbits: list[tuple[FloatArray, float, float]] = []
         self._links: list[tuple[int, int]] = []
-        self._born: dict[int, float] = {}
+        self._followed: list[tuple[int, float]] = []
         self._sizes: list[float] = []
         self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
 
@@ -60,8 +60,7 @@ class CycleFamily:
         all but the nearest are kept.
         """
         unlike = self._difference(starts)
-        nearest = unlike.argmin(axis=-1) if unlike.size else np.zeros(unlike.shape[0], dtype=np.intp)
-        distance = unlike.min(axis=-1, initial=np.inf)
+        nearest, distance = unlike.argmin(axis=-1), unlike.min(axis=-1)
         order = np.lexsort((distance, nearest, starts.wind, starts.member))
         target = np.stack([starts.member, starts.wind, nearest], axis=-1)[order]
         first = np.ones(order.size, dtype=np.bool_)
@@ -74,14 +73,16 @@ class CycleFamily:
 
         Infinite where the frequencies differ or there is no such cycle.
         """
-        place = np.array(self._place, dtype=np.intp).reshape(-1, 2)
+        if not self._place:
+            return np.full((starts.member.size, 1), np.inf)
+        place = np.array(self._place, dtype=np.intp)
         winds = int(max(place[:, 1].max(initial=0), starts.wind.max(initial=0))) + 1
         key, asked = place[:, 0] * winds + place[:, 1], starts.member * winds + starts.wind
         order = np.argsort(key, kind="stable")
         first = np.searchsorted(key[order], asked)
         count = np.searchsorted(key[order], asked, side="right") - first
-        column = np.arange(count.max(initial=0))
-        known = order[np.minimum(first[:, None] + column, max(order.size - 1, 0))] if order.size else order[:, None]
+        column = np.arange(count.max(initial=1))
+        known = order[np.minimum(first[:, None] + column, order.size - 1)]
         frequency = np.array([orbit[1] for orbit in self._orbits])[known]
         sizes = np.array(self._sizes)[known]
         size = np.linalg.norm(_signature(self._model, starts), axis=-1)[:, None]
@@ -114,51 +115,62 @@ class CycleFamily:
         known.append((len(self._orbits), signature))
         return len(self._orbits), True
 
-    def join(self, threads: IntArray, numbers: IntArray, born: FloatArray) -> None:
-        """Put the cycles that lie on one followed branch together.
+    def follow(self, members: IntArray, born: FloatArray) -> IntArray:
+        """Take note of followed branches and number them: (branches,).
 
         Parameters
         ----------
-        threads : (cycles,)
-            The branch that each lies on.
-        numbers : (cycles,)
-            Their numbers.
+        members : (branches,)
+            Their models.
         born : (branches,)
-            Wind speed of the Hopf point that each branch comes from, infinite where it has none [m/s].
+            Wind speed of the Hopf point that each comes from, infinite where it has none [m/s].
         """
-        first: dict[int, int] = {}
-        for thread, number in zip(threads.tolist(), numbers.tolist(), strict=True):
-            self._links.append((first.setdefault(thread, number), number))
-            self._born[number] = min(self._born.get(number, np.inf), float(born[thread]))
+        first = len(self._followed)
+        self._followed += zip(members.tolist(), born.tolist(), strict=True)
+        return np.arange(first, len(self._followed))
+
+    def join(self, followed: IntArray, numbers: IntArray) -> None:
+        """Say that cycles (k,) lie on these followed branches (k,)."""
+        self._links += zip(numbers.tolist(), followed.tolist(), strict=True)
 
     def apart(self) -> IntArray:
         """Return the cycle at the lowest wind speed of each member that lies on no followed branch."""
         lowest: dict[int, int] = {}
+        lies_on_one = {number for number, _ in self._links}
         for number, (member, wind) in enumerate(self._place):
-            if number not in self._born and (member not in lowest or wind < self._place[lowest[member]][1]):
+            if number not in lies_on_one and (member not in lowest or wind < self._place[lowest[member]][1]):
                 lowest[member] = number
         return np.array(list(lowest.values()), dtype=np.intp)
 
-    def branches(self) -> IntArray:
-        """Number the connected families of each member from 0 by their lowest Hopf point, then by wind speed."""
+    def branches(self) -> tuple[IntArray, IntArray]:
+        """Number the families of connected cycles and followed branches of each member from 0.
+
+        They are ordered by their lowest Hopf point, those without one by their lowest wind speed after them.
+
+        Returns
+        -------
+        (cycles,), (branches,)
+            The family of each cycle and of each followed branch.
+        """
         label = self._labels()
         keys: dict[int, tuple[int, float, float, int]] = {}
-        for number, root in enumerate(label.tolist()):
-            member, wind = self._place[number]
-            key = (member, self._born.get(number, np.inf), float(wind), root)
-            keys[root] = min(key, keys.get(root, key))
-        result = np.zeros(label.size, dtype=np.intp)
+        nodes = [(member, np.inf, float(wind)) for member, wind in self._place]
+        nodes += [(member, born, np.inf) for member, born in self._followed]
+        for root, node in zip(label.tolist(), nodes, strict=True):
+            keys[root] = min((*node, root), keys.get(root, (*node, root)))
+        number: dict[int, int] = {}
         counts: dict[int, int] = {}
         for member, _, _, root in sorted(keys.values()):
-            result[label == root] = counts.get(member, 0)
-            counts[member] = counts.get(member, 0) + 1
-        return result
+            number[root] = counts.get(member, 0)
+            counts[member] = number[root] + 1
+        numbers = np.array([number[root] for root in label.tolist()], dtype=np.intp)
+        return numbers[: len(self)], numbers[len(self) :]
 
     def _labels(self) -> IntArray:
-        """Return the smallest number in the connected family of each cycle."""
-        size = len(self._orbits)
-        ends = np.array(self._links, dtype=np.intp).reshape(-1, 2).T
-        graph = csr_array((np.ones(ends.shape[1]), (ends[0], ends[1])), shape=(size, size))
+        """Label the connected families of cycles and followed branches: (cycles + branches,)."""
+        size = len(self._place) + len(self._followed)
+        cycle, branch = np.array(self._links, dtype=np.intp).reshape(-1, 2).T
+        graph = csr_array((np.ones(cycle.size), (cycle, branch + len(self._place))), shape=(size, size))
         return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
 
 

@@ -6,11 +6,19 @@ from engine import ENGINE_VERSION
 from engine.comparison import model_comparisons
 from engine.hybrid import Discretization
 from engine.modes import DirectionalShapes
+from engine.motions import Motion, motion_rows
 from engine.outcome import Outcome
 from engine.profile import mean_mass
 from engine.resonance import resonance_rows
 from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
-from engine.rows import Found, FrequencyTable, Motion, critical_rows, dropped_warnings, frequency_rows, motion_rows
+from engine.rows import (
+    Found,
+    FrequencyTable,
+    bifurcation_rows,
+    critical_rows,
+    dropped_warnings,
+    frequency_rows,
+)
 from engine.spec import AirflowSpoiler, Analysis, Ice, IceSegment, Line, ice_properties
 
 HEAVY_DEVICES = 0.1  # of the span's weight
@@ -47,6 +55,7 @@ def assembled(
     lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
     frequencies = [frequency_rows(table, analysis.loops) for table in squares]
     critical = [critical_rows(one) for one in found]
+    turning = [bifurcation_rows(one) for one in found]
     motions = [motion_rows(made, one, analysis.loops, lowest) for one in found]
     dropped = [dropped_warnings(one, len(made.lines)) for one in found]
     results = []
@@ -64,7 +73,7 @@ def assembled(
                 internal_resonances=resonance_rows(natural),
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 limit_cycles=cycles,
-                bifurcations=(),
+                bifurcations=tuple(row for table in turning for row in table[i]),
                 model_comparisons=model_comparisons(cycles),
                 loop_competitions=tuple(competitions[i]),
                 device_effects=(),

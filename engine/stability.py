@@ -121,6 +121,12 @@ def critical_modes(model: ReducedModel, member: IntArray, wind_speed: FloatArray
     return np.asarray(vector[:, :m] / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member])
 
 
+def crossing_error(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> FloatArray:
+    """Return how far crossings (k,) would still move in a step of Newton's method on the growth rate: (k,) [m/s]."""
+    value, slope, _ = _nearest_pair(_pick(state_matrices(model), member), wind_speed)
+    return np.asarray(np.abs(value.real / slope.real))
+
+
 def unstable_pairs(eigenvalues: ComplexArray) -> IntArray:
     """Count unstable pairs, a real eigenvalue as one, of eigenvalues (..., n): (...)."""
     size = np.abs(eigenvalues).max(axis=-1, keepdims=True)

@@ -16,6 +16,7 @@ from engine.harmonic import Orbits, balance, linearized
 from engine.hybrid import ReducedModel, take
 from engine.newton import Options, Solution
 from engine.spec import Analysis, Closure
+from engine.stability import critical_wind_speeds
 from tests.builders import hybrid, source_line
 from tests.engine.test_harmonic import MODELS, random_orbits
 
@@ -108,7 +109,7 @@ def test_explicit_cycles_are_those_of_the_numpy_form(both: pytest.MonkeyPatch) -
 
 def cycles_of(model: ReducedModel) -> Cycles:
     winds = np.array([4.0, 6.0, 8.0])
-    return find_cycles(model, winds, energy_starts(model, winds, 5), 5)
+    return find_cycles(model, critical_wind_speeds(model, 30.0), winds, energy_starts(model, winds, 5), 5)
 
 
 def test_the_numpy_form_finds_the_same_cycles(both: pytest.MonkeyPatch) -> None:
