@@ -21,7 +21,7 @@ from engine.modes import solve_symmetric
 from engine.stability import Crossings, crossing_error
 
 MORE_HARMONICS = 4  # than the branch was followed with
-FINENESS = 2  # of Floquet's steps
+FINENESS = 4  # of Floquet's steps
 ACCURACY = 1e-8  # relative change of the wind speed in the last step
 ON_CIRCLE = 1e-5  # distance of the critical multiplier from where it should be
 SAME = 1e-6  # relative distance below which two points are one
@@ -221,8 +221,8 @@ def _hopf(
     for trace, numbers in zip(traces, branch, strict=True):
         same = trace.problem.member[:, None] == crossings.member[hopf]
         reached = same & (reaches(trace, crossings, hopf) | (trace.born[:, None] == crossings.wind_speed[hopf]))
-        where = reached.any(axis=0) if reached.size else np.zeros(hopf.size, dtype=np.bool_)
-        number[where] = numbers[reached.argmax(axis=0)[where]]
+        which, where = np.nonzero(reached)
+        number[where] = numbers[which]
     index = hopf[number >= 0]
     member, speed = crossings.member[index], crossings.wind_speed[index]
     return Bifurcations(

@@ -62,7 +62,7 @@ class Steps:
     first: float = 0.05
     largest: float = 0.7
     smallest: float = 1e-5
-    iterations: int = 2
+    iterations: float = 2.5
     straightness: float = 0.85
     miss: float = 0.08
     points: int = 400

@@ -163,7 +163,7 @@ def hand_made(system: Oscillators, copies: int = 1) -> ReducedModel:
         mass=spread(system.mass),
         damping=spread(system.damping),
         stiffness=spread(system.stiffness),
-        load=polynomial_load(forms, table, np.zeros((copies, 1, 2 * m))),
+        load=polynomial_load(forms, table, 0.1 * forms[:, 0]),
         shapes=np.zeros((copies, m, 3, 3)),
         direction=np.arange(m) % 3,
         statically_unstable=np.zeros(copies, dtype=np.bool_),
