@@ -9,8 +9,8 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, merged
 from engine.continuation import Points, Steps, branches, interpolated, tangents
-from engine.harmonic import Orbits, basis, jacobian, pick, residual, wind_slopes
-from engine.hybrid import ReducedModel, take
+from engine.harmonic import Orbits, basis, linearized, pick
+from engine.hybrid import ReducedModel
 from engine.stability import Crossings, critical_modes
 
 STEPS = Steps(first=0.2)
@@ -37,18 +37,15 @@ class CycleProblem:
 
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the balance and the phase condition <q - q_anchor, dq_anchor/dtau> = 0 with their slopes."""
-        here = take(self.model, self.member[branch])
-        orbits = orbits_of(z, here.mass.shape[-1])
-        near = orbits_of(anchor, here.mass.shape[-1]).coefficients
-        weight = np.diagonal(here.mass, axis1=-2, axis2=-1)[..., None]
+        member = self.member[branch]
+        m = self.model.mass.shape[-1]
+        near = orbits_of(anchor, m).coefficients
+        weight = np.diagonal(self.model.mass, axis1=-2, axis2=-1)[member][..., None]
         phase = merged(weight * (near @ basis(near.shape[-1] // 2).derivative.T), -2)
         drift = np.einsum("kx,kx->k", phase, z[:, :-2] - anchor[:, :-2])
-        rows = np.concatenate([merged(residual(here, orbits), -2), drift[:, None]], axis=-1)
-        slopes = np.zeros((*rows.shape, rows.shape[-1] + 1))
-        slopes[:, :-1, :-1] = jacobian(here, orbits)
-        slopes[:, :-1, -1] = merged(wind_slopes(here, orbits), -2)
-        slopes[:, -1, :-2] = phase
-        return rows, slopes
+        rows, slopes = linearized(self.model, member, orbits_of(z, m))
+        last = np.concatenate([phase, np.zeros((phase.shape[0], 2))], axis=-1)
+        return np.concatenate([rows, drift[:, None]], axis=-1), np.concatenate([slopes, last[:, None]], axis=1)
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
         """Measure each co-ordinate by its own size, or by a share of the whole, frequency and wind by themselves."""
