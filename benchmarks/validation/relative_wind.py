@@ -16,6 +16,7 @@ from engine.hybrid import Discretization, ReducedModel, hybrid_model, observatio
 from engine.modes import at_points, directional_shapes
 from engine.result import LimitCycleRow
 from engine.spec import AerodynamicModel, Analysis, Line, Model
+from engine.stability import critical_wind_speeds
 
 DRAG_AT_REST = 1.0
 OTHER_DRAGS = (0.5, 1.5)
@@ -115,7 +116,9 @@ def unexpanded_rows(subconductors: int, cycles: int = CYCLES) -> Iterator[list[o
     grid = hybrid_model(made, shapes, (1, 2), analysis)
     model, published = take(grid, 0), take(with_published_load(made, grid), 0)
     winds = np.array(WINDS)
-    found = find_cycles(model, winds, explicit_starts(published, winds, analysis.harmonics), analysis.harmonics)
+    crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
+    starts = explicit_starts(published, winds, analysis.harmonics)
+    found = find_cycles(model, crossings, winds, starts, analysis.harmonics)
     stable = np.flatnonzero(found.floquet.stability == "stable")
     orbits, member = pick(found.orbits, stable), found.member[stable]
     settled, moved = settle(
