@@ -123,9 +123,14 @@ def _segments(trace: Traces) -> IntArray:
 def _crosses(judged: Floquet, segment: IntArray, kind: Kind) -> BoolArray:
     """Tell in which segments the product of the factors changes its sign by more than the error of the multipliers."""
     factors = FACTORS[kind](judged.multipliers[:, 1:])
-    value = np.prod(factors, axis=-1).real
+    value = _product(factors)
     clear = np.abs(factors).min(axis=-1, initial=np.inf) > 3.0 * judged.trivial_error
     return np.asarray((value[segment] * value[segment + 1] < 0.0) & clear[segment] & clear[segment + 1])
+
+
+def _product(factors: ComplexArray) -> FloatArray:
+    """Multiply the factors (..., n), large ones cut to size 1, so that the product does not overflow: (...)."""
+    return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
 
 
 def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) -> Bifurcations:
@@ -179,7 +184,7 @@ def _multipliers(problem: CycleProblem, points: Points) -> tuple[ComplexArray, F
 def _test(problem: CycleProblem, points: Points, kind: Kind) -> FloatArray:
     if kind is Kind.FOLD:
         return points.tangent[:, -1]
-    return np.asarray(np.prod(FACTORS[kind](_multipliers(problem, points)[0]), axis=-1).real)
+    return _product(FACTORS[kind](_multipliers(problem, points)[0]))
 
 
 def _critical(multipliers: ComplexArray, kind: Kind) -> tuple[ComplexArray, FloatArray]:
