@@ -130,8 +130,9 @@ def _take(session: Session, key: Key, lasting: timedelta, values: Mapping[str, o
     statement = insert(IdempotencyKey).values(owner=key.owner, key=key.value, **changed)
     over = IdempotencyKey.expires_at <= now
     taken = statement.on_conflict_do_update(index_elements=["owner", "key"], set_=changed, where=over)
-    if session.execute(taken.returning(IdempotencyKey.key)).first() is None:
-        raise KeyTaken
+    with session.no_autoflush:  # jobs that are made together are written together
+        if session.execute(taken.returning(IdempotencyKey.key)).first() is None:
+            raise KeyTaken
 
 
 def _change(session: Session, key: Key, values: Mapping[str, object]) -> None:

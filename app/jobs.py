@@ -18,6 +18,8 @@ from app.auth import Caller
 from app.db import database_time
 from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
+_LABELS = frozenset({"name", "asset_id", "tags"})
+
 
 class CancelOutcome(StrEnum):
     """What a cancel did: ended a queued job, asked a running one to stop, removed a finished one, or found none."""
@@ -84,14 +86,16 @@ def create(
 
 
 def input_hash(document: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of a document in its canonical form, whatever the order of its fields.
+    """Return the SHA-256 of what a document asks, whatever the order of its fields and the labels of its line.
 
     Raises
     ------
     ValueError
         If the document holds NaN or an infinity.
     """
-    return hashlib.sha256(canonical(document).encode()).hexdigest()
+    line = {name: value for name, value in document.get("line", {}).items() if name not in _LABELS}
+    asked = {**document, "line": line} if line else document
+    return hashlib.sha256(canonical(asked).encode()).hexdigest()
 
 
 def canonical(document: Mapping[str, Any]) -> str:

@@ -150,6 +150,7 @@ def job_document(job: Job) -> dict[str, Any]:
         "cancel_requested": job.cancel_requested,
         "failure": failure_of(job),
         "engine_version": job.engine_version,
+        "reused_from": str(job.reused_from) if job.reused_from else None,
         "links": _links(job),
     }
 

@@ -102,6 +102,7 @@ ACCEPTED_JOB: dict[str, Any] = {
     "cancel_requested": False,
     "failure": None,
     "engine_version": None,
+    "reused_from": None,
     "links": [{"rel": "self", "href": _ADDRESS}],
 }
 FINISHED_JOB: dict[str, Any] = {

@@ -8,13 +8,13 @@ from urllib.parse import urlencode
 from uuid import UUID
 
 from anyio import to_thread
-from fastapi import APIRouter, Body, Query, Request, Response
+from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 from sqlalchemy.orm import Session
 
-from app import convert, idempotency, jobs, paging, schemas
+from app import convert, idempotency, jobs, paging, reuse, schemas
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
 from app.jobs import CancelOutcome, JobFilters
 from app.routes import documentation
@@ -91,6 +91,14 @@ class ListQuery(BaseModel):
         return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after)
 
 
+async def _may_reuse(
+    cache_control: Annotated[
+        str, Header(description="`no-cache` computes even what is stored already", examples=["no-cache"])
+    ] = "",
+) -> bool:
+    return "no-cache" not in cache_control.lower()
+
+
 @router.post(
     "",
     status_code=202,
@@ -111,11 +119,15 @@ async def submit(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
     caller: CallerOf,
     key: KeyOf,
-    readers: Readers,
     inbox: Inbox,
     dispatcher: Dispatcher,
+    may_reuse: Annotated[bool, Depends(_may_reuse)],
 ) -> Response:
-    """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already."""
+    """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already.
+
+    If the owner has results of the same input by this version of the engine, the job has ended with them already, and
+    `reused_from` names theirs. `Cache-Control: no-cache` computes anew.
+    """
     # Every point of a study is looked at, which may take a while; a line alone takes less than the way to a thread.
     check = partial(convert.request_faults, document)
     faults = check() if document.study is None else await to_thread.run_sync(check)
@@ -125,15 +137,18 @@ async def submit(
     kept = document.kept()
 
     def make(session: Session) -> Made:
+        source = reuse.find(session, caller.owner, kept, convert.ENGINE_VERSION) if may_reuse else None
         job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
         headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
-        return Made(JSONResponse(job_document(job), 202, headers), [job.id])
+        if source is not None:
+            reuse.answer(session, job, source, convert.ENGINE_VERSION)
+        return Made(JSONResponse(job_document(job), 202, headers), [job.id] if source is None else [])
 
     def fingerprint() -> str:
         return idempotency.fingerprint(router.prefix, jobs.canonical(kept))
 
     context = copy_context()  # with the ids of this request
-    made = await once_together(inbox, readers, key, fingerprint, lambda session: context.run(make, session))
+    made = await once_together(inbox, key, fingerprint, lambda session: context.run(make, session))
     for job_id in made.job_ids:
         dispatcher.put(job_id)
     return made.answer

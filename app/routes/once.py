@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 from uuid import UUID
 
-from anyio import to_thread
 from fastapi import Depends, Header
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.exc import SQLAlchemyError
@@ -71,7 +70,6 @@ def once(
 
 async def once_together(
     inbox: Groups[Change, Any],
-    readers: sessionmaker[Session],
     key: Key | None,
     fingerprint: Callable[[], str],
     make: Callable[[Session], Made],
@@ -87,7 +85,8 @@ async def once_together(
         made: Made = await inbox.ask(_keeping(key, fingerprint, make))
     except KeyTaken:
         assert key is not None
-        return Made(await to_thread.run_sync(first_answer, readers, key, fingerprint))
+        found = await inbox.ask(lambda session: idempotency.find(session, key))
+        return Made(_replayed(found, fingerprint))
     return made
 
 
@@ -128,6 +127,10 @@ def first_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callabl
     """
     with sessions() as session:
         found = idempotency.find(session, key)
+    return _replayed(found, fingerprint)
+
+
+def _replayed(found: tuple[str, Answer] | None, fingerprint: Callable[[], str]) -> Response:
     if found is None:
         raise _in_flight()
     first, answer = found

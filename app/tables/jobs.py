@@ -15,7 +15,7 @@ class Job(Base):
     """One request, or a chunk of a batch: the document, the state, and who works on it until when.
 
     batch_id, lines and failed_lines are those of a chunk, and null for a job of its own. request_id and trace_parent
-    are those of the request that made it.
+    are those of the request that made it. reused_from is the job whose results it was given; that may be gone since.
     """
 
     __tablename__ = "jobs"
@@ -27,6 +27,7 @@ class Job(Base):
         Index(None, "status", "lease_expires_at"),
         Index(None, "owner", "asset_id", "created_at"),
         Index(None, "batch_id", "created_at"),
+        Index(None, "owner", "input_hash"),
     )
 
     id: Mapped[UUID] = mapped_column(primary_key=True)
@@ -54,6 +55,7 @@ class Job(Base):
     owner: Mapped[str] = mapped_column(String(64))
     request_id: Mapped[str | None] = mapped_column(String(correlation.LONGEST_REQUEST_ID))
     trace_parent: Mapped[str | None] = mapped_column(String(correlation.TRACE_PARENT_LENGTH))
+    reused_from: Mapped[UUID | None]
 
     tags: Mapped[list["JobTag"]] = relationship(order_by="JobTag.key", lazy="selectin", passive_deletes=True)
     events: Mapped[list["JobEvent"]] = relationship(order_by="JobEvent.id", lazy="select", passive_deletes=True)

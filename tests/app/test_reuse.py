@@ -1,0 +1,83 @@
+"""Jobs answered from what is stored, over HTTP on either database."""
+
+from collections.abc import Iterator
+from typing import Any
+from uuid import UUID
+
+import httpx
+import pytest
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import jobs, leases, reuse
+from app.auth import LOCAL
+from app.convert import ENGINE_VERSION
+from app.leases import Failure
+from app.settings import Settings
+from app.tables import FailureKind
+from tests.app import service
+from tests.documents import point_result, short_request
+
+
+@pytest.fixture
+def client(settings: Settings) -> Iterator[httpx.Client]:
+    """Give a client of a service on either kind of database."""
+    with service.running(settings) as running:
+        yield running
+
+
+def labelled(**labels: Any) -> dict[str, Any]:
+    return {**short_request(), "line": {**short_request()["line"], **labels}}
+
+
+def test_the_same_line_is_answered_from_what_is_stored(client: httpx.Client, settings: Settings) -> None:
+    first = service.finished(client, settings)
+    again = service.submit(client, labelled(name="another name", asset_id="L9", tags={"a": "b"}))
+    assert (again["status"], again["progress"], again["attempt"]) == ("successful", 1.0, 0)
+    assert again["reused_from"] == first[-36:]
+    assert (again["name"], again["engine_version"]) == ("another name", ENGINE_VERSION)
+    address = f"/v1/jobs/{again['id']}"
+    assert client.get(address).json() == again
+    tables = ("frequencies", "critical-wind-speeds", "limit-cycles")
+    for table in tables:
+        assert client.get(f"{address}/results/{table}").json() == client.get(f"{first}/results/{table}").json()
+    assert client.get(f"{address}/plots/orbit.svg").status_code == 200
+    assert client.delete(first).status_code == 204
+    assert client.get(f"{address}/results/limit-cycles").json()["limit_cycles"]
+    third = service.submit(client)
+    assert third["reused_from"] == again["id"]
+
+
+def test_another_question_is_computed(client: httpx.Client, settings: Settings) -> None:
+    service.finished(client, settings)
+    other = {**short_request(), "analysis": {**short_request()["analysis"], "harmonics": 6}}
+    assert service.submit(client, other)["status"] == "accepted"
+    anew = client.post("/v1/jobs", json=short_request(), headers={"Cache-Control": "no-cache"}).json()
+    assert (anew["status"], anew["reused_from"]) == ("accepted", None)
+
+
+def test_nothing_is_reused_that_failed_or_was_dismissed(client: httpx.Client, sessions: sessionmaker[Session]) -> None:
+    failed = service.submit(client)
+    with sessions.begin() as session:
+        held = leases.claim(session, UUID(failed["id"]), "test", 30.0)
+        assert held is not None
+        leases.fail(session, held, Failure(FailureKind.TIME_LIMIT, "too long"), [point_result()])
+    dismissed = service.submit(client)
+    client.delete(f"/v1/jobs/{dismissed['id']}")
+    assert (dismissed["status"], service.submit(client)["status"]) == ("accepted", "accepted")
+
+
+def test_nothing_of_another_owner_or_engine_is_reused(client: httpx.Client, sessions: sessionmaker[Session]) -> None:
+    job = service.submit(client)
+    with sessions.begin() as session:
+        held = leases.claim(session, UUID(job["id"]), "test", 30.0)
+        assert held is not None
+        leases.finish(session, held, [point_result()])  # of engine 9.9.9
+        assert reuse.find(session, LOCAL.owner, held.document, ENGINE_VERSION) is None
+        assert reuse.find(session, "another", held.document, "9.9.9") is None
+        assert reuse.find(session, LOCAL.owner, held.document, "9.9.9") == held.job_id
+    assert service.submit(client)["status"] == "accepted"
+
+
+def test_labels_are_no_part_of_the_input() -> None:
+    assert jobs.input_hash(labelled(name="a")) == jobs.input_hash(labelled(name="b", tags={"x": "y"}))
+    assert jobs.input_hash(labelled(conductor={})) != jobs.input_hash(labelled())
