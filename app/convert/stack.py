@@ -24,6 +24,8 @@ _NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
 _HYBRID_SECONDS = (0.001, 0.0006)
 _FINITE_ELEMENT_SECONDS = (0.035, 0.02)
 _FULL_MODES_SECONDS = 0.003
+_STATIC_TWIST_SECONDS = 0.015
+_COMPETITION_SECONDS = 0.002  # a cycle
 
 _logger = logging.getLogger(__name__)
 
@@ -83,7 +85,11 @@ def seconds_a_line(analysis: schemas.Analysis) -> float:
         cost += _FULL_MODES_SECONDS
         if analysis.finite_element_loops:
             cost += _FINITE_ELEMENT_SECONDS[0] + _FINITE_ELEMENT_SECONDS[1] * winds
-    return cost
+    if analysis.static_twist == "solved":
+        cost += _STATIC_TWIST_SECONDS
+    if analysis.loop_competition == "checked":
+        cost += _COMPETITION_SECONDS * len(analysis.loops) * winds
+    return 2.0 * cost if analysis.device_effect == "reported" else cost
 
 
 def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> Iterator[Advance | PointResult]:

@@ -11,6 +11,7 @@ import pytest
 
 from app.examples import EXAMPLE_NAMES, example
 from app.schemas.answers import ResultDocument
+from app.schemas.placement import EXAMPLE
 from app.settings import Settings
 from app.studies import study_request
 from tests.app.lines import SHORT, changed
@@ -115,6 +116,17 @@ def test_a_study_gives_the_same_tables_with_its_axes(tmp_path: Path) -> None:
     result = json.loads(galloping("analyse", request, "--study", study).stdout)
     assert [row["span.horizontal_tension_n"] for row in result["frequencies"]] == [24000, 36000]
     assert [row["horizontal_tension_n"] for row in result["static"]] == [24000, 36000]
+
+
+def test_places_are_sought_beside_the_devices_of_the_line(tmp_path: Path) -> None:
+    analysis = written(tmp_path, "analysis", SHORT | {"wind_speeds_m_per_s": []})
+    placement = written(tmp_path, "placement", EXAMPLE | {"generations": 1, "population": 5})
+    line = written(tmp_path, "line", example("c11-twin"))
+    ended = galloping("analyse", line, "--analysis", analysis, "--placement", placement)
+    result = json.loads(ended.stdout)
+    assert [row["device"] for row in result["placements"]] == [0, 1]
+    assert [row["loops"] for row in result["device_effects"]] == [1]
+    assert result["input"]["placement"]["generations"] == 1
 
 
 def test_a_statically_divergent_line_is_an_answer(tmp_path: Path) -> None:

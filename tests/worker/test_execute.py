@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import convert, jobs, leases, results
 from app.auth import LOCAL
 from app.convert import Advance, PointResult
+from app.schemas.placement import EXAMPLE
 from app.settings import Settings
 from app.tables import FailureKind, Job, JobStatus
 from tests.documents import (
@@ -74,6 +75,13 @@ def test_running_job_stops_when_cancelled(sessions: sessionmaker[Session], setti
     assert count_points(sessions, job_id) == 0
     kinds = [kind for kind, _ in history(sessions, job_id)]
     assert kinds == ["accepted", "running", "cancel_requested", "dismissed"]
+
+
+def test_a_search_for_places_stops_between_generations(sessions: sessionmaker[Session], settings: Settings) -> None:
+    job_id = add_job(sessions, short_request() | {"placement": EXAMPLE | {"generations": 200, "population": 60}})
+    stopped_while_running(sessions, settings, job_id, 60.0)
+    assert look(sessions, job_id).status is JobStatus.DISMISSED
+    assert count_points(sessions, job_id) == 0
 
 
 def test_job_past_the_soft_limit_keeps_the_points_it_has(sessions: sessionmaker[Session], settings: Settings) -> None:
