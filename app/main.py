@@ -26,6 +26,7 @@ from app.routes import (
     batch_ranking,
     batch_results,
     batches,
+    clearance,
     documentation,
     events,
     health,
@@ -103,7 +104,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.batch_watch = Watch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, events):
+    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance, events):
         app.include_router(module.router)
     for module in (aerodynamics, reference, health):
         app.include_router(module.router)

@@ -1,7 +1,7 @@
 """The border to the engine: JSON documents in, plain rows out. Units change here and nowhere else."""
 
 from app.convert.check import check, read, request_faults, with_further_faults
-from app.convert.clearance import ellipse
+from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
 from app.convert.run import TABLES, Advance, PointResult, Table, columns, run
 from app.convert.shapes import mode_shapes
@@ -12,10 +12,12 @@ __all__ = [
     "ENGINE_VERSION",
     "TABLES",
     "Advance",
+    "EllipseMethodName",
     "NumberedLine",
     "PointResult",
     "Table",
     "check",
+    "clearances",
     "columns",
     "ellipse",
     "fit",

@@ -1,7 +1,14 @@
-"""Ellipses of design practice for the command line."""
+"""Ellipses of design practice, and the clearance that they and the computed motions leave between two phases."""
 
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+from app.convert.run import specification_of_point
 from app.faults import BadInput, Fault
 from engine.outcome import InvalidSpec
+
+EllipseMethodName = Literal["davison", "toye", "cigre", "aeso"]
+MOTION = ("model", "loops", "wind_speed_m_per_s", "branch", "kind", "stability", "observed_at_m")
 
 # What the engine names -> the option that gives it.
 _OPTIONS = {"sag": "--sag-m", "span_length": "--span-m", "diameter": "--diameter-m", "subconductors": "--subconductors"}
@@ -30,6 +37,62 @@ def ellipse(
         "major_axis_m": found.major_axis if found else None,
         "minor_axis_m": found.minor_axis if found else None,
         "b_m": found.b_distance if found else None,
+    }
+
+
+def clearances(
+    request: tuple[Mapping[str, object], int],
+    found: Mapping[str, Sequence[Mapping[str, Any]]],
+    offset: tuple[float, float],
+    method: EllipseMethodName,
+) -> dict[str, Any]:
+    """Return the clearance that is left between two phases which gallop alike, motion by motion, beside the ellipse's.
+
+    Parameters
+    ----------
+    request : tuple
+        A request document, and the number of a point.
+    found : mapping
+        The point's rows of `limit_cycles`, `orbits` and `static`.
+    offset : tuple of float
+        How far the other phase lies above, and downwind [m].
+    method : str
+        Whose ellipse.
+
+    Raises
+    ------
+    ValueError, LookupError
+        If the line of the point is at fault, or there is no such point.
+    """
+    import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
+
+    from engine import clearance as room  # noqa: PLC0415
+
+    line, _ = specification_of_point(*request)
+    positions, away = np.array(line.bundle.positions), np.array(offset)
+    rows = []
+    for orbit in found["orbits"]:
+        cycle = found["limit_cycles"][orbit["cycle"]]
+        series = np.array([orbit["vertical"], orbit["horizontal"], orbit["torsional"]])
+        paths = room.subconductor_paths(series, positions)
+        region = room.path_support(paths.reshape(-1, 2))
+        height, width = room.extents(paths).tolist()
+        left = float(room.clearance(region, region, away))
+        rows.append({**{n: cycle[n] for n in MOTION}, "height_m": height, "width_m": width, "clearance_m": left})
+    sag = found["static"][0]["sag_m"]
+    ellipse = room.galloping_ellipse(
+        room.EllipseMethod(method), sag, line.span.length, line.conductor.diameter, len(positions)
+    )
+    taken = room.ellipse_support(ellipse) if ellipse else None
+    return {
+        "motions": rows,
+        "ellipse": {
+            "method": method,
+            "major_axis_m": ellipse.major_axis if ellipse else None,
+            "minor_axis_m": ellipse.minor_axis if ellipse else None,
+            "b_m": ellipse.b_distance if ellipse else None,
+            "clearance_m": None if taken is None else float(room.clearance(taken, taken, away)),
+        },
     }
 
 

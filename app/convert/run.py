@@ -4,6 +4,7 @@ import math
 from collections.abc import Generator, Iterator, Mapping
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
+from itertools import islice
 from typing import Any, Literal
 
 import orjson
@@ -175,6 +176,22 @@ def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[
     if line is None or faults:
         raise InvalidSpec(*faults)
     return line, analysis
+
+
+def specification_of_point(document: Mapping[str, object], point: int) -> tuple[spec.Line, spec.Analysis]:
+    """Return what the engine is asked at a point of a request document, by its number.
+
+    Raises
+    ------
+    pydantic.ValidationError, InvalidSpec
+        If the line is at fault there.
+    LookupError
+        If there is no such point.
+    """
+    request = schemas.JobRequest.model_validate(document)
+    for values in islice(study.points(request.study), point, None):
+        return specification(request, values)
+    raise LookupError(point)
 
 
 def point_result(line: spec.Line, result: Result, number: int, values: dict[str, Any]) -> PointResult:

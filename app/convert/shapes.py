@@ -1,12 +1,9 @@
 """A request and the number of a point -> the mode shapes of its line, as plain rows for a picture."""
 
 from collections.abc import Mapping
-from itertools import islice
 from typing import Any
 
-from app import schemas
-from app.convert import study
-from app.convert.run import specification
+from app.convert.run import specification_of_point
 
 _COMPONENTS = ("longitudinal", "vertical", "horizontal", "torsional")
 
@@ -21,14 +18,12 @@ def mode_shapes(document: Mapping[str, object], point: int) -> list[dict[str, An
     ------
     ValueError, ArithmeticError
         If the line of the point is at fault or numerically out of reach.
-    StopIteration
+    LookupError
         If there is no such point.
     """
     from engine.shapes import mode_shapes as compute  # noqa: PLC0415 - the API and `galloping --help` need no solver
 
-    request = schemas.JobRequest.model_validate(document)
-    values = next(islice(study.points(request.study), point, None))
-    line, analysis = specification(request, values)
+    line, analysis = specification_of_point(document, point)
     found = compute(line, analysis)
     return [
         {

@@ -1,6 +1,6 @@
 """Results of a job: the whole document, single tables as JSON, CSV or Parquet, and pictures. Everything is streamed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
@@ -149,7 +149,7 @@ def plot(
 
     job, headers = ended.job, ended.headers(extension)
     with readers() as session:
-        found = _point_rows(session, job.id, point)
+        found = point_rows(session, job.id, point)
         if picture == "modes":
             found["shapes"] = _shapes(session, job, point)
     title = job.name or str(job.id)
@@ -165,14 +165,18 @@ def _shapes(session: Session, job: Job, point: int) -> list[dict[str, Any]]:
     ProblemError
         404 if the line of the point has none.
     """
-    document, place = job.document, point
-    if job.batch_id is not None:  # a chunk, whose points are lines of the batch
-        analysis, lines = batches.lines_of_chunk(session, job.id, job.batch_id)
-        document, place = {"line": next(x.document for x in lines if x.number == point), "analysis": analysis}, 0
     try:
-        return convert.mode_shapes(document, place)
+        return convert.mode_shapes(*request_of_point(session, job, point))
     except (ArithmeticError, ValueError) as error:
         raise ProblemError(ProblemKind.NOT_FOUND, f"The line has no mode shapes at point {point}.") from error
+
+
+def request_of_point(session: Session, job: Job, point: int) -> tuple[Mapping[str, Any], int]:
+    """Return the request that a point of a job belongs to, and its number there; a chunk's points are lines."""
+    if job.batch_id is None:
+        return job.document, point
+    analysis, lines = batches.lines_of_chunk(session, job.id, job.batch_id)
+    return {"line": next(line.document for line in lines if line.number == point), "analysis": analysis}, 0
 
 
 def _parquet(job: Job, name: Table, rows: Rows) -> Iterator[bytes]:
@@ -189,7 +193,7 @@ def _axes(job: Job) -> list[str]:
     return ["number"] if job.batch_id is not None else [axis["parameter"] for axis in study["axes"]]
 
 
-def _point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dict[str, Any]]]:
+def point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dict[str, Any]]]:
     """Return the rows that pictures show of one point of a job.
 
     Raises

@@ -1,0 +1,64 @@
+from typing import Any
+
+import httpx
+import pytest
+
+from app import convert
+from app.schemas.clearance import Clearance
+from app.settings import Settings
+from tests.app import service
+from tests.documents import short_request
+
+
+@pytest.fixture(scope="module")
+def address(shared_client: httpx.Client, shared_settings: Settings) -> str:
+    """Give the address of a finished job of the twin line, one loop at 4, 5 and 6 m/s."""
+    return service.finished(shared_client, shared_settings)
+
+
+def clearance(client: httpx.Client, address: str, **query: Any) -> dict[str, Any]:
+    answer = client.get(f"{address}/clearance", params=query)
+    assert answer.status_code == 200, answer.text
+    Clearance.model_validate_json(answer.content)
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def test_phases_above_each_other_keep_their_spacing_less_the_height(shared_client: httpx.Client, address: str) -> None:
+    motions = clearance(shared_client, address, vertical_spacing_m=4.0)["motions"]
+    assert [row["wind_speed_m_per_s"] for row in motions] == [4.0, 5.0, 6.0]
+    for row in motions:
+        assert row["clearance_m"] == pytest.approx(4.0 - row["height_m"], abs=0.02)
+    # Theory section 10: 0.2884 m of amplitude, and the bundle turns by 0.0041 rad.
+    assert motions[-1]["height_m"] == pytest.approx(2.0 * 0.2884, rel=0.02)
+    assert motions[-1]["width_m"] == pytest.approx(2.0 * (0.2355 + 0.0275), rel=0.02)
+
+
+def test_phases_beside_each_other_keep_their_spacing_less_the_width(shared_client: httpx.Client, address: str) -> None:
+    motions = clearance(shared_client, address, horizontal_spacing_m=-5.0)["motions"]
+    assert all(row["clearance_m"] == pytest.approx(5.0 - row["width_m"], abs=0.02) for row in motions)
+
+
+def test_envelopes_overlap_where_phases_are_too_near(shared_client: httpx.Client, address: str) -> None:
+    assert clearance(shared_client, address, vertical_spacing_m=0.1)["motions"][-1]["clearance_m"] < 0.0
+
+
+def test_the_ellipse_is_that_of_the_command_line(shared_client: httpx.Client, address: str) -> None:
+    sag = shared_client.get(f"{address}/results").json()["static"]["sag_m"]
+    found = clearance(shared_client, address, vertical_spacing_m=4.0, method="davison")["ellipse"]
+    expected = convert.ellipse("davison", sag, None, None, 1)
+    assert {name: found[name] for name in expected} == pytest.approx(expected)
+    assert found["clearance_m"] == pytest.approx(4.0 - found["major_axis_m"], abs=1e-3)
+    bundle = clearance(shared_client, address, vertical_spacing_m=4.0)["ellipse"]
+    assert bundle["major_axis_m"] is None  # CIGRE sees no galloping of a bundle that sags by 54 diameters
+
+
+@pytest.mark.parametrize("query", ["", "vertical_spacing_m=x", "vertical_spacing_m=3&method=mine", "colour=1"])
+def test_queries_that_make_no_sense_are_refused(shared_client: httpx.Client, address: str, query: str) -> None:
+    assert shared_client.get(f"{address}/clearance?{query}").status_code == 400
+
+
+def test_a_point_that_there_is_not_is_404_and_a_waiting_job_409(shared_client: httpx.Client, address: str) -> None:
+    assert shared_client.get(f"{address}/clearance?vertical_spacing_m=3&point=1").status_code == 404
+    waiting = service.submit(shared_client, short_request())
+    assert shared_client.get(f"/v1/jobs/{waiting['id']}/clearance").status_code == 409
