@@ -21,9 +21,12 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from rich.table import Table
 
 from app import client
+from app.client import Client
 from app.examples import EXAMPLE_NAMES, example
+from app.schemas.answers import JobDocument
 
 Json = Mapping[str, Any]
+Jobs = dict[str, dict[str, JobDocument]]
 
 _CYCLES: Json = {"loops": [1, 2], "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 5}}
 _FREQUENCIES: Json = {"loops": [1, 2, 3], "wind_speeds_m_per_s": [], "finite_element_loops": []}
@@ -45,12 +48,12 @@ def main(
     console = Console()
     output.mkdir(parents=True, exist_ok=True)
     try:
-        with _service(output) as address, client.connect(address) as service:
+        with _service(output) as address, Client(address) as service:
             console.print(f"The service runs at {address}; its documentation is at {address}/docs while this runs.")
             jobs = _run_jobs(service, console)
             console.print("Models: hybrid, and finite element (FE); beside them the number of loops a span.")
             console.print(_frequency_table({name: job["frequencies"] for name, job in jobs.items()}, service))
-            finished = {name: client.results(service, job["cycles"]) for name, job in jobs.items()}
+            finished = {name: service.results(job["cycles"]).model_dump() for name, job in jobs.items()}
             console.print(_critical_table(finished))
             console.print(_cycle_table(finished))
             _save(service, jobs, output)
@@ -101,27 +104,22 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
         process.kill()
 
 
-def _run_jobs(service: httpx.Client, console: Console) -> dict[str, dict[str, Json]]:
+def _run_jobs(service: Client, console: Console) -> Jobs:
     """Submit everything first, then follow each job to its end."""
     wanted = {"frequencies": _FREQUENCIES, "cycles": _CYCLES}
-    jobs: dict[str, dict[str, Json]] = {
-        name: {kind: client.submit(service, _request(name, asked)) for kind, asked in wanted.items()}
-        for name in EXAMPLE_NAMES
+    jobs: Jobs = {
+        name: {kind: service.submit(example(name), asked) for kind, asked in wanted.items()} for name in EXAMPLE_NAMES
     }
     with _progress(console) as show:
         for name, kinds in jobs.items():
             for kind, job in kinds.items():
-                kinds[kind] = _successful(client.follow(service, job, show(name, kind)))
+                kinds[kind] = _successful(service.wait(job, show(name, kind)))
     return jobs
 
 
-def _request(name: str, analysis: Json) -> Json:
-    return {"line": example(name), "analysis": analysis}
-
-
-def _successful(job: Json) -> Json:
-    if job["status"] != "successful":
-        raise client.ServiceError(f"the job of {job['name']} ended as {job['status']}: {job['failure']}")
+def _successful(job: JobDocument) -> JobDocument:
+    if job.status != "successful":
+        raise client.JobFailed(job)
     return job
 
 
@@ -140,13 +138,13 @@ def _progress(console: Console) -> Iterator[Callable[[str, str], client.Show]]:
         yield bar
 
 
-def _frequency_table(jobs: Mapping[str, Json], service: httpx.Client) -> Table:
+def _frequency_table(jobs: Mapping[str, JobDocument], service: Client) -> Table:
     """Set our frequencies beside Table 2 of the source."""
     source = json.loads((files("app") / "data" / "table2.json").read_text(encoding="utf-8"))
     printed = {(row["subconductors"], row["model"]): row["loops"] for row in source["rows"]}
     table = _table("Natural frequencies [Hz]: ours, Table 2 of the source, difference in %", *_DIRECTIONS)
     for subconductors, (name, job) in enumerate(jobs.items(), start=1):
-        for row in client.results(service, job)["frequencies"]:
+        for row in service.results(job).model_dump()["frequencies"]:
             theirs = printed[subconductors, row["model"]][str(row["loops"])]
             cells = [_beside(row[f"{d}_hz"], value) for d, value in zip(_DIRECTIONS, theirs, strict=True)]
             table.add_row(*_whose(name, row), *cells)
@@ -196,14 +194,14 @@ def _stable(rows: Sequence[Json]) -> list[Json]:
     return [row for row in rows if row["stability"] == "stable" and row["kind"] == "periodic"]
 
 
-def _save(service: httpx.Client, jobs: Mapping[str, Mapping[str, Json]], output: Path) -> None:
+def _save(service: Client, jobs: Jobs, output: Path) -> None:
     for name, kinds in jobs.items():
         for table in _TABLES:
             job = kinds["frequencies" if table == "frequencies" else "cycles"]
-            content = client.download(service, job, f"results/{table}?format=csv")
+            content = service.download(job, f"results/{table}?format=csv")
             (output / f"{name}-{table}.csv").write_bytes(content)
         for picture in _PICTURES:
-            content = client.download(service, kinds["cycles"], f"plots/{picture}.svg")
+            content = service.plot(kinds["cycles"], picture)
             (output / f"{name}-{picture}.svg").write_bytes(content)
 
 

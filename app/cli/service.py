@@ -1,7 +1,7 @@
 """Commands that run the service, and the one that sends it a line: `serve`, `api`, `worker`, `migrate`, `submit`."""
 # ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
 
-import os
+import json
 from typing import Annotated
 
 import typer
@@ -22,6 +22,8 @@ from app.cli.common import (
     refuse,
     write,
 )
+
+_PATIENCE_SECONDS = 5.0  # a person waits at the other end
 
 Host = Annotated[str, typer.Option(help="Address to listen on.")]
 Port = Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")]
@@ -81,19 +83,19 @@ def submit(
 
     document = read_request(line, analysis, study)
     try:
-        with client.connect(url, os.environ.get("GALLOPING_KEY")) as service:
-            job = client.submit(service, document)
+        with client.Client(url, patience_seconds=_PATIENCE_SECONDS) as service:
+            job = service.submit_document(document)
             if not wait:
-                write(job, output)
+                write(job.model_dump(mode="json"), output)
                 return
             with progress_bar() as show:
-                job = client.follow(service, job, show)
-            if job["status"] == "dismissed":
+                job = service.wait(job, show)
+            if job.status == "dismissed":
                 end("the job was cancelled", FAILED)
-            write(client.results(service, job), output)
+            write(json.loads(service.download(job, "results")), output)
     except client.Refused as error:
         refuse(error.faults)
     except client.ServiceError as error:
         end(str(error), FAILED)
-    if job["status"] == "failed":
-        end(f"the job failed: {job['failure']['detail']}", FAILED)
+    if job.failure is not None:
+        end(f"the job failed: {job.failure.detail}", FAILED)

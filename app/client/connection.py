@@ -1,0 +1,181 @@
+"""One connection to the service: asks again where that may help, and turns what goes wrong into `ServiceError`."""
+
+import os
+import random
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import IO, Any, TypeVar
+from uuid import uuid4
+
+import httpx
+from pydantic import BaseModel, ValidationError
+
+from app.faults import Fault
+
+Show = Callable[[float, str], object]
+Body = Callable[[], bytes | IO[bytes]]
+Model = TypeVar("Model", bound=BaseModel)
+
+_STRAINED = frozenset({429, 502, 503, 504})
+_IN_FLIGHT = 409  # of a POST: another with its key is being answered
+_FIRST_PAUSE_SECONDS = 0.1
+
+
+class ServiceError(Exception):
+    """Raised when the service cannot be reached or answers something else than it should."""
+
+
+class Refused(ServiceError):
+    """Raised when the service refuses a document; `faults` holds what it found."""
+
+    def __init__(self, faults: list[Fault]) -> None:
+        """Take what the service found."""
+        self.faults = faults
+        super().__init__("; ".join(str(fault) for fault in faults))
+
+
+class Unreachable(ServiceError):
+    """Raised when there was no answer at all; it may come at another try."""
+
+
+class Connection:
+    """A connection that tries again; `GALLOPING_URL` and `GALLOPING_KEY` hold what is not given."""
+
+    def __init__(self, url: str | None, key: str | None, patience_seconds: float) -> None:
+        """Open a connection.
+
+        Raises
+        ------
+        ServiceError
+            If the address is none.
+        """
+        self.url = url or os.environ.get("GALLOPING_URL", "http://127.0.0.1:8000")
+        held = key or os.environ.get("GALLOPING_KEY")
+        headers = {"Authorization": f"Bearer {held}"} if held else {}
+        self._patience_seconds = patience_seconds
+        with self._speaking():
+            self._http = httpx.Client(base_url=self.url, timeout=30.0, headers=headers)
+
+    def close(self) -> None:
+        """Close it."""
+        self._http.close()
+
+    def get(self, address: str) -> httpx.Response:
+        """Return an answer.
+
+        Raises
+        ------
+        ServiceError
+            If there is none, or it is a problem.
+        """
+        return self._send("GET", address)
+
+    def delete(self, address: str) -> httpx.Response:
+        """Remove what lies at an address, and return the answer.
+
+        Raises
+        ------
+        ServiceError
+            If there is none, or it is a problem.
+        """
+        return self._send("DELETE", address)
+
+    def post(
+        self, address: str, body: Body = bytes, headers: Mapping[str, str] | None = None, key: str | None = None
+    ) -> httpx.Response:
+        """Post a body, which is made anew for every try, under one idempotency key, and return the answer.
+
+        Raises
+        ------
+        Refused
+            If the body has faults.
+        ServiceError
+            If there is no answer, or it is another problem.
+        """
+        return self._send("POST", address, body, {**(headers or {}), "Idempotency-Key": key or str(uuid4())})
+
+    def read(self, model: type[Model], answer: httpx.Response) -> Model:
+        """Return the document of an answer; fields of a newer service are kept as they are.
+
+        Raises
+        ------
+        ServiceError
+            If it is none of ours.
+        """
+        try:
+            return model.model_validate_json(answer.content, extra="allow")
+        except ValidationError as error:
+            raise ServiceError(f"what answers at {self.url} is not this service") from error
+
+    def lines(self, address: str) -> Iterator[str]:
+        """Yield the lines of an answer as they come in.
+
+        Raises
+        ------
+        ServiceError
+            If there is no answer, it is a problem, or it breaks off.
+        """
+        with self._speaking(), self._http.stream("GET", address) as answer:
+            if answer.is_error:
+                answer.read()
+            yield from _checked(answer).iter_lines()
+
+    def _send(
+        self,
+        method: str,
+        address: str,
+        body: Body | None = None,
+        headers: Mapping[str, str] | None = None,
+    ) -> httpx.Response:
+        """Ask until there is an answer that another try would not change, or patience is at its end."""
+        deadline, pause = time.monotonic() + self._patience_seconds, _FIRST_PAUSE_SECONDS
+        while True:
+            again = time.monotonic() + pause < deadline
+            try:
+                with self._speaking():
+                    answer = self._http.request(method, address, content=body() if body else None, headers=headers)
+            except Unreachable:
+                if not again:
+                    raise
+            else:
+                busy = answer.status_code in _STRAINED or (method == "POST" and answer.status_code == _IN_FLIGHT)
+                if not (busy and again):
+                    return _checked(answer)
+                pause = max(pause, _seconds_asked_for(answer))
+            time.sleep(min(pause, max(0.0, deadline - time.monotonic())))
+            pause = 2.0 * pause * random.uniform(0.8, 1.0)  # so that many who wait do not come back together
+
+    @contextmanager
+    def _speaking(self) -> Iterator[None]:
+        try:
+            yield
+        except httpx.UnsupportedProtocol as error:
+            raise ServiceError(f"{self.url} is no address of a service: {error}") from error
+        except httpx.TransportError as error:
+            raise Unreachable(f"the service at {self.url} does not answer: {error}") from error
+        except (httpx.HTTPError, httpx.InvalidURL, ValueError) as error:
+            raise ServiceError(f"the service at {self.url} does not answer: {error}") from error
+
+
+def _seconds_asked_for(answer: httpx.Response) -> float:
+    asked = answer.headers.get("Retry-After", "")
+    return float(asked) if asked.isdecimal() else 0.0
+
+
+def _checked(answer: httpx.Response) -> httpx.Response:
+    """Return an answer that is none of a fault.
+
+    Raises
+    ------
+    Refused
+        If it names faults of what was sent.
+    ServiceError
+        If it is another problem.
+    """
+    if answer.is_success:
+        return answer
+    problem: dict[str, Any] = answer.json() if "json" in answer.headers.get("content-type", "") else {}
+    if answer.status_code == 422 and problem.get("errors"):
+        raise Refused([Fault(**fault) for fault in problem["errors"]])
+    raise ServiceError(f"the service answers {answer.status_code}: {problem.get('detail', answer.reason_phrase)}")

@@ -1,0 +1,105 @@
+"""Many lines on their way to the service: files, iterables and data frames as bodies that can be sent again."""
+
+import json
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, Union
+from urllib.parse import urlencode
+
+from pydantic import BaseModel
+
+from app.schemas import Line
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Lines = Union[Iterable[Line | Mapping[str, Any]], Path, str, "pd.DataFrame"]
+
+_IN_MEMORY_BYTES = 4_000_000
+_TYPES = {
+    ".csv": "text/csv",
+    ".ndjson": "application/x-ndjson",
+    ".jsonl": "application/x-ndjson",
+    ".json": "application/json",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Upload:
+    """A body and what belongs to it."""
+
+    file: IO[bytes]
+    headers: Mapping[str, str]
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+    def query(self, atomic: bool) -> str:
+        """Return the query of its address."""
+        return urlencode({**self.parameters, **({"atomic": "true"} if atomic else {})})
+
+
+def as_json(part: BaseModel | Mapping[str, Any]) -> dict[str, Any]:
+    """Return a document as what JSON can hold."""
+    return (
+        part.model_dump(mode="json", by_alias=True, exclude_unset=True) if isinstance(part, BaseModel) else dict(part)
+    )
+
+
+@contextmanager
+def opened(lines: Lines, analysis: Mapping[str, Any]) -> Iterator[Upload]:
+    """Give the body of a batch, in a file that is kept on the disk if it is large.
+
+    Raises
+    ------
+    ValueError
+        If a file's name tells no format, or an analysis is given for one that holds its own.
+    OSError
+        If the file cannot be read.
+    """
+    if isinstance(lines, (str, Path)):
+        headers, parameters = _of_file(Path(lines), analysis)
+        with Path(lines).open("rb") as file:
+            yield Upload(file, headers, parameters)
+        return
+    with tempfile.SpooledTemporaryFile(_IN_MEMORY_BYTES) as spool:
+        to_csv = getattr(lines, "to_csv", None)
+        if to_csv is not None:
+            to_csv(spool, index=False)
+            yield Upload(spool, {"Content-Type": _TYPES[".csv"]}, {"analysis": json.dumps(analysis)})
+            return
+        for document in _documents(lines, analysis):
+            spool.write(json.dumps(document).encode() + b"\n")
+        yield Upload(spool, {"Content-Type": _TYPES[".ndjson"]})
+
+
+def frame(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":
+    """Return rows as a data frame.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed: it is the extra `galloping[pandas]`.
+    """
+    import pandas as pd  # noqa: PLC0415 - optional, and slow to load
+
+    return pd.DataFrame.from_records(list(rows))
+
+
+def _documents(lines: Iterable[Any], analysis: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    yield {"analysis": analysis}
+    for line in lines:
+        yield as_json(line)
+
+
+def _of_file(path: Path, analysis: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the headers and parameters that go with a file."""
+    packed = path.suffix == ".gz"
+    suffix = path.with_suffix("").suffix if packed else path.suffix
+    if suffix not in _TYPES:
+        raise ValueError(f"{path.name} must end in one of {', '.join(_TYPES)}, with .gz behind it if it is packed")
+    if analysis and suffix != ".csv":
+        raise ValueError(f"{path.name} holds its analysis itself, so none can be given beside it")
+    headers = {"Content-Type": _TYPES[suffix]} | ({"Content-Encoding": "gzip"} if packed else {})
+    return headers, {"analysis": json.dumps(analysis)} if suffix == ".csv" else {}
