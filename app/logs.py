@@ -37,8 +37,8 @@ def _formatter(settings: Settings) -> ProcessorFormatter:
         structlog.processors.TimeStamper(fmt="iso", utc=True),
         structlog.stdlib.add_log_level,
         structlog.stdlib.add_logger_name,
-        _add_ids,
         ExtraAdder(),
+        _add_ids,
     ]
     return ProcessorFormatter(foreign_pre_chain=facts, processors=renderers)
 
@@ -52,4 +52,5 @@ def _add_ids(_logger: WrappedLogger, _method: str, event: EventDict) -> EventDic
         "attempt": ids.attempt,
     }
     event.update({name: value for name, value in found.items() if value is not None})
+    event.pop("color_message", None)  # uvicorn's own line once more, for terminals
     return event
