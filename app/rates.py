@@ -7,9 +7,10 @@ whole truth; that is also what counts while Redis does not answer, since a limit
 A process draws a hundredth of a quota at once and spends it by itself: one look at Redis in a hundred requests.
 """
 
+import asyncio
 import logging
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil
 from typing import Any
 
@@ -58,6 +59,7 @@ class _Purse:
 
     drawn: int = 0
     elsewhere: int | None = None
+    drawing: asyncio.Lock = field(default_factory=asyncio.Lock)
 
 
 class Meter:
@@ -79,8 +81,10 @@ class Meter:
             self._window = int(window)
             self._purses.clear()
         purse = self._purses.setdefault((quota.name, client), _Purse())
-        if purse.drawn == 0 and purse.elsewhere != 0:
-            await self._draw(purse, quota, f"{quota.name}/{client}/{window:.0f}")
+        if purse.drawn == 0:
+            async with purse.drawing:  # one draws for all who wait
+                if purse.drawn == 0 and purse.elsewhere != 0:
+                    await self._draw(purse, quota, f"{quota.name}/{client}/{window:.0f}")
         reset_seconds = ceil(WINDOW_SECONDS - passed)
         if purse.drawn == 0:
             return Standing(quota, None, reset_seconds)

@@ -9,6 +9,8 @@ from typing import Annotated, Literal
 from pydantic import Field, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from app.weak_secrets import weak_secrets
+
 _PREFIX = "GALLOPING_"
 _SECRET_FILE = "cursor-secret"
 
@@ -34,10 +36,10 @@ class Settings(BaseSettings):
     Raises
     ------
     pydantic.ValidationError
-        If a value is out of its bounds, or two contradict each other.
+        If a value is out of its bounds, two contradict each other, or a secret of a deployment could be guessed.
     """
 
-    model_config = SettingsConfigDict(env_prefix=_PREFIX, frozen=True, extra="ignore")
+    model_config = SettingsConfigDict(env_prefix=_PREFIX, frozen=True, extra="ignore", hide_input_in_errors=True)
 
     data_dir: Path = Field(default=Path("data"), description="Directory of all files of the embedded service")
     database_url: str = Field(default_factory=_default_database, description="SQLAlchemy address; SQLite or PostgreSQL")
@@ -103,6 +105,13 @@ class Settings(BaseSettings):
             raise ValueError("hard_time_limit_seconds must be greater than soft_time_limit_seconds")
         if self.heartbeat_seconds > self.lease_seconds / 2.0:
             raise ValueError("heartbeat_seconds must be at most half of lease_seconds")
+        return self
+
+    @model_validator(mode="after")
+    def _guarded(self) -> "Settings":
+        secret = self.cursor_secret.get_secret_value() if self.cursor_secret is not None else None
+        if weak := weak_secrets(self.database_url, self.broker_url, secret):
+            raise ValueError("; ".join(weak))
         return self
 
     def environment(self) -> dict[str, str]:

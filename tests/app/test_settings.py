@@ -27,7 +27,7 @@ def test_relative_data_directory_becomes_absolute(tmp_path: Path, monkeypatch: p
 
 @pytest.mark.parametrize("scheme", ["postgres", "postgresql", "postgresql+psycopg"])
 def test_postgres_gets_its_driver(scheme: str) -> None:
-    assert Settings(database_url=f"{scheme}://a:b@c/d").database_url == "postgresql+psycopg://a:b@c/d"
+    assert Settings(database_url=f"{scheme}://a:b@localhost/d").database_url == "postgresql+psycopg://a:b@localhost/d"
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,11 @@ from tests.documents import short_request
 from tests.servers import binary, free_port, postgres_database, wait_until
 
 ROOT = Path(__file__).parents[2]
-SECRETS = {"POSTGRES_PASSWORD": "pw1", "REDIS_PASSWORD": "pw2", "GALLOPING_CURSOR_SECRET": "pw3"}
+SECRETS = {
+    "POSTGRES_PASSWORD": "pw1",
+    "REDIS_PASSWORD": "pw2",
+    "GALLOPING_CURSOR_SECRET": "pw3-and-more-random-characters",
+}
 NEEDED = re.compile(r"\$\{(\w+):\?[^}]+\}")
 OURS = ("api", "worker", "migrations")
 
