@@ -50,7 +50,7 @@ class Gate:
 
     async def __call__(self, scope: types.Scope, receive: types.Receive, send: types.Send) -> None:
         """Serve one request."""
-        if scope["type"] != "http" or _is_open(scope):
+        if scope["type"] != "http" or is_open(scope["path"].removeprefix(scope.get("root_path", ""))):
             await self.app(scope, receive, send)
             return
         try:
@@ -108,8 +108,8 @@ class Gate:
         return standing
 
 
-def _is_open(scope: types.Scope) -> bool:
-    path: str = scope["path"].removeprefix(scope.get("root_path", ""))
+def is_open(path: str) -> bool:
+    """Tell whether an address needs no key."""
     return any(path == open_path or path.startswith(f"{open_path}/") for open_path in _OPEN)
 
 

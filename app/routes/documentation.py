@@ -7,6 +7,7 @@ from app.errors import MEDIA_TYPE, ProblemKind, problem_document
 from app.examples import EXAMPLE_NAMES, example
 from app.export import PARQUET
 from app.faults import Fault
+from app.gate import is_open
 from app.schemas.answers import Problem
 from app.schemas.placement import EXAMPLE as PLACEMENT
 
@@ -271,12 +272,12 @@ def with_nulls(document: Any) -> Any:
 
 
 def guarded(document: dict[str, Any]) -> dict[str, Any]:
-    """Return an OpenAPI document in which whatever is under /v1 asks for a key, and says how it refuses."""
+    """Return an OpenAPI document in which whatever needs a key asks for one, and says how it refuses."""
     scheme = {"type": "http", "scheme": "bearer", "description": "A key of `galloping keys create`; none without keys"}
     document["components"]["securitySchemes"] = {"key": scheme}
     refusals = problems(ProblemKind.UNAUTHENTICATED, ProblemKind.FORBIDDEN, ProblemKind.TOO_MANY_REQUESTS)
     for path, operations in document["paths"].items():
-        for operation in operations.values() if path.startswith("/v1/") else ():
+        for operation in () if is_open(path) else operations.values():
             operation["security"] = [{"key": []}]
             operation["responses"] |= {str(status): answer for status, answer in refusals.items()}
     return document
