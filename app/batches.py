@@ -18,7 +18,7 @@ from uuid_utils.compat import uuid7
 from app import audit, correlation, tallies
 from app.auth import Caller
 from app.convert import NumberedLine
-from app.db import database_time
+from app.db import database_time, insert_rows
 from app.jobs import CancelOutcome, input_hash
 from app.tables import AuditAction, Batch, BatchItem, Job, JobEvent, JobEventKind, JobStatus, PointRow
 
@@ -74,7 +74,7 @@ def begin(session: Session, caller: Caller, analysis: dict[str, Any]) -> UUID:
 def add_items(session: Session, items: Sequence[dict[str, Any]]) -> None:
     """Add lines, each a mapping with the columns of `BatchItem`."""
     if items:
-        session.execute(insert(BatchItem.__table__), items)  # type: ignore[arg-type]  # a table, though typed wider
+        insert_rows(session, BatchItem, items)
 
 
 def accept(session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Chunk], rejected_lines: int) -> None:

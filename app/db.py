@@ -1,16 +1,22 @@
 """Engines and sessions for SQLite and PostgreSQL, and the clock that both sides of a lease read."""
 
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from sqlite3 import Connection as SQLiteConnection
-from typing import Any
+from typing import Any, cast
 
-from sqlalchemy import Connection, Engine, NullPool, create_engine, event, make_url, select
+import orjson
+import psycopg
+from psycopg.sql import SQL, Identifier
+from sqlalchemy import JSON, Connection, Engine, NullPool, Table, create_engine, event, insert, make_url, select
+from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.functions import func
 
 from app.settings import Settings
-from app.tables import UtcDateTime
+from app.tables import Base, UtcDateTime
 
 _BUSY_SECONDS = 30.0
 _THREADS = 40
@@ -69,6 +75,42 @@ def database_time(session: Session) -> datetime:
         session.info[_CLOCK] = session.get_transaction(), moment
     found: datetime = moment
     return found
+
+
+def insert_rows(session: Session, kind: type[Base], records: Sequence[Mapping[str, Any]]) -> None:
+    """Insert many rows in one statement: by COPY on PostgreSQL, at a third of the time of INSERTs.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If the database refuses a row, or fails.
+    """
+    table = cast(Table, kind.__table__)
+    if session.get_bind().dialect.name != "postgresql":
+        session.execute(insert(table), records)
+        return
+    names = list(records[0])
+    as_json = {column.name for column in table.columns if isinstance(column.type, JSON)}
+    copied = SQL("COPY {} ({}) FROM STDIN").format(Identifier(table.name), SQL(", ").join(map(Identifier, names)))
+    cursor: Any = session.connection().connection.cursor()
+    with _as_sqlalchemy_errors(), cursor, cursor.copy(copied) as copy:
+        for record in records:
+            copy.write_row([_json_text(record[n]) if n in as_json else record[n] for n in names])
+
+
+def _json_text(value: object) -> str | None:
+    return None if value is None else orjson.dumps(value).decode()
+
+
+@contextmanager
+def _as_sqlalchemy_errors() -> Iterator[None]:
+    """Let callers see one family of errors, whichever way the rows go."""
+    try:
+        yield
+    except psycopg.IntegrityError as error:
+        raise IntegrityError(None, None, error) from error
+    except psycopg.Error as error:
+        raise DBAPIError(None, None, error) from error
 
 
 def _read_only_options(engine: Engine) -> dict[str, Any]:

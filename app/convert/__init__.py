@@ -5,11 +5,12 @@ from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
 from app.convert.run import TABLES, Advance, PointResult, Table, columns, run
 from app.convert.shapes import mode_shapes
-from app.convert.stack import NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
+from app.convert.stack import STACK, NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
 from engine import ENGINE_VERSION
 
 __all__ = [
     "ENGINE_VERSION",
+    "STACK",
     "TABLES",
     "Advance",
     "EllipseMethodName",

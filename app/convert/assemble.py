@@ -7,7 +7,7 @@ others; the neutral part itself causes no fault.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import TypedDict, TypeVar
 
 from app import schemas
@@ -125,13 +125,20 @@ def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line
 def _compare(gathered: Gathered, line: spec.Line, asked: schemas.Analysis) -> None:
     """Ask of a line each choice of an analysis by itself, so that choices that exclude each other hide nothing."""
     loops, more_loops = tuple(asked.loops), tuple(asked.finite_element_loops)
-    choices = (
-        replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops),
-        replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(asked.closure)),
-        replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(asked.aerodynamic_model)),
-    )
-    for choice in choices:
+    for choice in _choices(loops, more_loops, asked.closure, asked.aerodynamic_model):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
+
+
+@lru_cache
+def _choices(
+    loops: tuple[int, ...], more_loops: tuple[int, ...], closure: str, aerodynamic_model: str
+) -> tuple[spec.Analysis, ...]:
+    # Kept, since all lines of a batch are asked the same.
+    return (
+        replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops),
+        replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(closure)),
+        replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(aerodynamic_model)),
+    )
 
 
 def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:

@@ -16,12 +16,12 @@ from app.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.outcome import InvalidSpec
 
-_STACK = 32
+STACK = 32
 _LINE, _ANALYSIS = "/line", "/analysis"
 _NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
 
 # Seconds of one core for a line in a stack, measured with benchmarks.engine_speed's lines: fixed, and per wind speed.
-_HYBRID_SECONDS = (0.001, 0.0006)
+_HYBRID_SECONDS = (0.001, 0.0002)
 _FINITE_ELEMENT_SECONDS = (0.035, 0.02)
 _FULL_MODES_SECONDS = 0.003
 _STATIC_TWIST_SECONDS = 0.015
@@ -138,8 +138,8 @@ def _stacks(made: Iterable[_Made]) -> Iterator[list[_Made]]:
 
     for _, group in itertools.groupby(sorted(made, key=elements), key=elements):
         equal = list(group)
-        for first in range(0, len(equal), _STACK):
-            yield equal[first : first + _STACK]
+        for first in range(0, len(equal), STACK):
+            yield equal[first : first + STACK]
 
 
 def _specification(line: NumberedLine, asked: schemas.Analysis) -> tuple[spec.Line, spec.Analysis]:

@@ -106,8 +106,9 @@ def receive(
 
 
 def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:
-    """Return how many lines one message shall carry, so that it is about the wanted time of work."""
-    return max(1, min(settings.most_chunk_lines, round(settings.chunk_seconds / convert.seconds_a_line(analysis))))
+    """Return how many lines one message shall carry: about the wanted time of work, and whole stacks of the engine."""
+    lines = max(1, min(settings.most_chunk_lines, round(settings.chunk_seconds / convert.seconds_a_line(analysis))))
+    return lines - lines % convert.STACK if lines > convert.STACK else lines
 
 
 def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Iterator[list[dict[str, Any]]]:
