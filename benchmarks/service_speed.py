@@ -1,12 +1,13 @@
 """The service against the engine alone: a batch through HTTP, queue, workers and database; posts and reads under load.
 
-PostgreSQL and Redis are private instances on loopback, the API and the workers processes of their own.
+PostgreSQL and Redis are private instances on loopback, the API (two processes) and the workers processes of their own.
+What the client does with a batch before it sends it and after it has the results is not counted.
 """
 
-import asyncio
 import contextlib
 import json
 import signal
+import statistics
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +17,7 @@ from typing import Any
 
 import httpx
 import numpy as np
+import psycopg
 
 from app import processes, schemas
 from app.convert.assemble import SoundParts, gather
@@ -23,13 +25,17 @@ from app.examples import example
 from app.serve import migrate
 from app.settings import Settings
 from benchmarks.engine_speed import STACK
+from benchmarks.load import CLIENTS, Request, closed_loop, open_loop
+from benchmarks.processor import seconds_by_role
 from engine.analysis import analyse_stack
 from engine.spec import Analysis, Line
 from tests.servers import free_port, postgres_server, redis_server
 
-CLIENTS = 50
 POSTS = 1000
-READ_SECONDS = 5.0
+POSTS_PER_S = 100.0
+READS = 5000
+RUNS = 3
+LOOK_SECONDS = 0.2
 WARM_LINES = 64
 STANDARD: dict[str, Any] = {
     "loops": [1, 2],
@@ -37,8 +43,6 @@ STANDARD: dict[str, Any] = {
     "finite_element_loops": [],
     "wind_speeds_m_per_s": {"start": 4.0, "stop": 12.0, "count": 11},
 }
-
-Request = Callable[[int], bytes]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +59,16 @@ class Running:
 
 
 def service(lines: int = 1000) -> Iterator[tuple[str, float]]:
-    """Yield all figures of the service."""
+    """Yield all figures of the service: medians of several runs where a run is short."""
     documents = _documents(lines)
     alone = _engine_seconds(documents)
     with _running() as running:
         one = _batch_seconds(running, documents, workers=1)
         yield "service_overhead_ratio", one / alone
         yield "two_worker_speedup", one / _batch_seconds(running, documents, workers=2)
-        yield "post_p99_ms", _post_p99_ms(running)
-        yield "status_reads_per_s", _reads_per_s(running)
+        yield from _costs(running, documents)
+        yield from _posts(running)
+        yield from _reads(running)
 
 
 def _documents(count: int) -> list[dict[str, Any]]:
@@ -110,7 +115,10 @@ def _analyse(lines: list[Line], analysis: Analysis) -> None:
 def _running() -> Iterator[Running]:
     """Run the API on a fresh PostgreSQL and Redis."""
     with tempfile.TemporaryDirectory() as directory, postgres_server() as database, redis_server() as broker:
-        settings = Settings(data_dir=Path(directory), database_url=database, broker_url=broker)
+        unlimited = {"reads_per_minute": 10**9, "changes_per_minute": 10**9}
+        settings = Settings(
+            data_dir=Path(directory), database_url=database, broker_url=broker, api_processes=2, **unlimited
+        )
         migrate(settings)
         port = free_port()
         with (Path(directory) / "api.log").open("wb") as log:
@@ -130,29 +138,76 @@ def _is_up(running: Running) -> bool:
         return False
 
 
-def _batch_seconds(running: Running, documents: list[dict[str, Any]], workers: int) -> float:
-    """Return the time from the first byte of a batch to the last byte of its results [s]."""
+@contextlib.contextmanager
+def _working(running: Running, workers: int) -> Iterator[httpx.Client]:
+    """Run worker processes that have loaded the engine, and give a client."""
     settings = running.settings.model_copy(update={"worker_processes": workers})
     with (settings.data_dir / "worker.log").open("ab") as log:
         worker = processes.start(settings, "worker", log=log)
     try:
-        with httpx.Client(base_url=running.address, timeout=300.0) as client:
+        with httpx.Client(base_url=running.address, timeout=600.0) as client:
             for _ in range(workers):
-                _run_batch(client, documents[:WARM_LINES])  # the processes of the pool load the engine
-            begin = time.perf_counter()
-            _run_batch(client, documents)
-            return time.perf_counter() - begin
+                _run_batch(client, _body(_documents(WARM_LINES)))
+            yield client
     finally:
         processes.stop([worker], signal.SIGTERM, 30.0)
 
 
-def _run_batch(client: httpx.Client, documents: list[dict[str, Any]]) -> None:
-    body = "".join(json.dumps(item) + "\n" for item in ({"analysis": STANDARD}, *documents))
+def _batch_seconds(running: Running, documents: list[dict[str, Any]], workers: int) -> float:
+    """Return the time from the first byte of a batch to the last byte of its results [s]."""
+    body = _body(documents)
+    with _working(running, workers) as client:
+        begin = time.perf_counter()
+        found = _run_batch(client, body)
+        seconds = time.perf_counter() - begin
+    assert [json.loads(text)["status"] for text in found.splitlines()] == ["successful"] * len(documents)
+    return seconds
+
+
+def _costs(running: Running, documents: list[dict[str, Any]]) -> Iterator[tuple[str, float]]:
+    """Yield what a line of a batch costs: processor time by role [ms], messages, rows, and bytes in the database."""
+    body, lines = _body(documents), len(documents)
+    with _working(running, 1) as client, psycopg.connect(_plain(running), autocommit=True) as database:
+        spent, rows, stored, logged = seconds_by_role(), *_stored(database)
+        jobs = _number(database, "SELECT count(*) FROM jobs")
+        _run_batch(client, body)
+        spent = seconds_by_role() - spent
+        for role, name in (("worker", "worker"), ("app.serve", "api"), ("postgres", "database"), ("redis", "broker")):
+            yield f"line_{name}_ms", 1e3 * spent[role] / lines
+        after = _stored(database)
+        yield "line_messages", (_number(database, "SELECT count(*) FROM jobs") - jobs) / lines
+        for name, now, before in zip(("rows", "bytes", "log_bytes"), after, (rows, stored, logged), strict=True):
+            yield f"line_{name}", (now - before) / lines
+
+
+def _plain(running: Running) -> str:
+    return running.settings.database_url.replace("+psycopg", "")
+
+
+def _stored(database: psycopg.Connection) -> tuple[float, float, float]:
+    """Return rows and bytes of everything stored, and bytes of the write-ahead log so far."""
+    tables = ("jobs", "job_events", "batches", "batch_items", "results")
+    rows = sum(_number(database, f"SELECT count(*) FROM {table}") for table in tables)
+    stored = sum(_number(database, f"SELECT pg_total_relation_size('{table}')") for table in tables)
+    return rows, stored, _number(database, "SELECT pg_current_wal_lsn() - '0/0'::pg_lsn")
+
+
+def _number(database: psycopg.Connection, statement: str) -> float:
+    found = database.execute(statement.encode()).fetchone()
+    assert found is not None
+    return float(found[0])
+
+
+def _body(documents: list[dict[str, Any]]) -> bytes:
+    return "".join(json.dumps(item) + "\n" for item in ({"analysis": STANDARD}, *documents)).encode()
+
+
+def _run_batch(client: httpx.Client, body: bytes) -> bytes:
     answer = client.post("/v1/batches", content=body, headers={"Content-Type": "application/x-ndjson"})
     address = answer.raise_for_status().headers["location"]
-    _wait(lambda: client.get(address).json()["status"] not in {"accepted", "running"}, 600.0)
-    found = client.get(f"{address}/results").raise_for_status().text.splitlines()
-    assert [json.loads(text)["status"] for text in found] == ["successful"] * len(documents)
+    while client.get(address).raise_for_status().json()["status"] in {"accepted", "running"}:
+        time.sleep(LOOK_SECONDS)
+    return client.get(f"{address}/results").raise_for_status().content
 
 
 def _wait(condition: Callable[[], bool], seconds: float) -> None:
@@ -162,44 +217,44 @@ def _wait(condition: Callable[[], bool], seconds: float) -> None:
         time.sleep(0.05)
 
 
-def _post_p99_ms(running: Running) -> float:
+def _posts(running: Running) -> Iterator[tuple[str, float]]:
     body = json.dumps({"line": example("c11-twin")}).encode()
     head = f"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
-    request = head.encode() + body
-    times = asyncio.run(_load(running, lambda _: request, POSTS // CLIENTS, b"202"))
+    request: Request = lambda _: head.encode() + body  # noqa: E731 - as short as what it stands for
+    closed_loop(running.port, request, 2, b"202")
+    spent, latencies, rates = seconds_by_role(), [], []
+    for _ in range(RUNS):
+        begin = time.perf_counter()
+        times = closed_loop(running.port, request, POSTS // CLIENTS, b"202")
+        rates.append(POSTS / (time.perf_counter() - begin))
+        latencies.append(_p99_ms(times))
+    spent = seconds_by_role() - spent
+    yield "post_p99_ms", statistics.median(latencies)
+    yield "posts_per_s", statistics.median(rates)
+    steady = [open_loop(running.port, request, POSTS, POSTS_PER_S, b"202") for _ in range(RUNS)]
+    yield "post_open_p99_ms", statistics.median(map(_p99_ms, steady))
+    for role, name in (("app.serve", "api"), ("postgres", "database"), ("redis", "broker")):
+        yield f"post_{name}_ms", 1e3 * spent[role] / (RUNS * POSTS)
+
+
+def _p99_ms(times: list[float]) -> float:
     return 1e3 * float(np.percentile(times, 99))
 
 
-def _reads_per_s(running: Running) -> float:
+def _reads(running: Running) -> Iterator[tuple[str, float]]:
     jobs = httpx.get(f"{running.address}/v1/jobs?limit=500").json()["jobs"]
     requests = [f"GET /v1/jobs/{job['id']} HTTP/1.1\r\nHost: x\r\n\r\n".encode() for job in jobs]
-    asyncio.run(_load(running, lambda n: requests[n % len(requests)], 2, b"200"))
-    begin, done = time.perf_counter(), 0
-    while time.perf_counter() - begin < READ_SECONDS:
-        done += len(asyncio.run(_load(running, lambda n: requests[n % len(requests)], 20, b"200")))
-    return done / (time.perf_counter() - begin)
-
-
-async def _load(running: Running, request: Request, each: int, status: bytes) -> list[float]:
-    """Let all clients send requests one after another at once; return the time of each request [s]."""
-    clients = [_client(running.port, request, number * each, each, status) for number in range(CLIENTS)]
-    return [seconds for times in await asyncio.gather(*clients) for seconds in times]
-
-
-async def _client(port: int, request: Request, first: int, count: int, status: bytes) -> list[float]:
-    # Bare sockets, since a client library on the same two cores would cost more than the service.
-    reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    times = []
-    for number in range(first, first + count):
+    request: Request = lambda number: requests[number % len(requests)]  # noqa: E731 - as above
+    closed_loop(running.port, request, 2, b"200")
+    spent, rates = seconds_by_role(), []
+    for _ in range(RUNS):
         begin = time.perf_counter()
-        writer.write(request(number))
-        head = await reader.readuntil(b"\r\n\r\n")
-        fields = dict(line.lower().split(b": ", 1) for line in head.split(b"\r\n")[1:-2])
-        await reader.readexactly(int(fields[b"content-length"]))
-        times.append(time.perf_counter() - begin)
-        assert head.split(b" ", 2)[1] == status, head
-    writer.close()
-    return times
+        closed_loop(running.port, request, READS // CLIENTS, b"200")
+        rates.append(READS / (time.perf_counter() - begin))
+    spent = seconds_by_role() - spent
+    yield "status_reads_per_s", statistics.median(rates)
+    for role, name in (("app.serve", "api"), ("postgres", "database")):
+        yield f"read_{name}_ms", 1e3 * spent[role] / (RUNS * READS)
 
 
 if __name__ == "__main__":

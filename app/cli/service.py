@@ -2,7 +2,7 @@
 # ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
 
 import json
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -23,16 +23,23 @@ from app.cli.common import (
     write,
 )
 
+if TYPE_CHECKING:
+    from app.settings import Settings
+
 _PATIENCE_SECONDS = 5.0  # a person waits at the other end
 
 Host = Annotated[str, typer.Option(help="Address to listen on.")]
 Port = Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")]
+Processes = Annotated[
+    int | None, typer.Option("--processes", min=1, help="Processes of the API; else GALLOPING_API_PROCESSES.")
+]
 
 
 def serve(
     host: Host = "127.0.0.1",
     port: Port = 8000,
     data_dir: DataDirectory = None,
+    processes: Processes = None,
 ) -> None:
     """Run the service with its embedded database, broker and worker; SIGTERM ends it cleanly."""
     from app.serve import Unguarded
@@ -40,19 +47,25 @@ def serve(
 
     try:
         with operator_told():
-            code = run(read_settings(data_dir), host, port)
+            code = run(_with_processes(read_settings(data_dir), processes), host, port)
     except Unguarded as error:
         end(str(error), BAD_INPUT)
     raise typer.Exit(code)
 
 
-def api(host: Host = "127.0.0.1", port: Port = 8000, data_dir: DataDirectory = None) -> None:
+def api(
+    host: Host = "127.0.0.1", port: Port = 8000, data_dir: DataDirectory = None, processes: Processes = None
+) -> None:
     """Run the API alone, on a database that is migrated; workers are processes of their own."""
     from app.serve import api as run
 
     with operator_told():
-        code = run(read_settings(data_dir), host, port)
+        code = run(_with_processes(read_settings(data_dir), processes), host, port)
     raise typer.Exit(code)
+
+
+def _with_processes(settings: "Settings", count: int | None) -> "Settings":
+    return settings if count is None else settings.model_copy(update={"api_processes": count})
 
 
 def worker(data_dir: DataDirectory = None) -> None:

@@ -1,0 +1,41 @@
+"""Processor time of the processes of a service, read from /proc: it hardly depends on what else the machine does."""
+
+import os
+from collections import Counter
+from pathlib import Path
+
+_TICKS = os.sysconf("SC_CLK_TCK")
+_ROLES = ("postgres", "redis", "worker", "app.serve")
+
+
+def seconds_by_role() -> Counter[str]:
+    """Return the processor time of this process' descendants [s] by role; what ended and was waited for counts too."""
+    parents: dict[int, int] = {}
+    spent: dict[int, float] = {}
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            fields = (place / "stat").read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        parents[int(place.name)] = int(fields[1])
+        spent[int(place.name)] = sum(map(int, fields[11:15])) / _TICKS  # its own, and that of children waited for
+    result: Counter[str] = Counter()
+    for process, seconds in spent.items():
+        role = _role(process) if _descends(process, parents) else None
+        if role is not None:
+            result[role] += seconds
+    return result
+
+
+def _role(process: int) -> str | None:
+    try:
+        command = Path(f"/proc/{process}/cmdline").read_text()
+    except OSError:
+        return None
+    return next((role for role in _ROLES if role in command), None)
+
+
+def _descends(process: int, parents: dict[int, int]) -> bool:
+    while process in parents and process != os.getpid():
+        process = parents[process]
+    return process == os.getpid()
