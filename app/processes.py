@@ -10,9 +10,10 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from queue import Empty, SimpleQueue
 from types import FrameType
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
-from app.settings import Settings
+if TYPE_CHECKING:  # it loads slowly, and `galloping analyse` has no settings
+    from app.settings import Settings
 
 _PARENT = "GALLOPING_PARENT_PROCESS"
 _LOOK_SECONDS = 0.3
@@ -20,13 +21,13 @@ _LOOK_SECONDS = 0.3
 ONE_BLAS_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
-def environment(settings: Settings) -> dict[str, str]:
+def environment(settings: "Settings") -> dict[str, str]:
     """Return this process's environment with the settings in it and one BLAS thread."""
     return {**os.environ, **ONE_BLAS_THREAD, **settings.environment()}
 
 
 def start(
-    settings: Settings,
+    settings: "Settings",
     module: str,
     *arguments: str,
     extra: Mapping[str, str] | None = None,

@@ -125,7 +125,7 @@ def _running() -> Iterator[Running]:
             api = processes.start(settings, "app.serve", "127.0.0.1", str(port), log=log)
             try:
                 running = Running(settings, port)
-                _wait(lambda: _is_up(running), 30.0)
+                _wait(lambda: _is_up(running), 120.0)
                 yield running
             finally:
                 processes.stop([api], signal.SIGTERM, 10.0)

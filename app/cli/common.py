@@ -158,11 +158,13 @@ def end(message: str, code: int) -> NoReturn:
 @contextmanager
 def progress_bar() -> Iterator[Any]:
     """Give a function of fraction and step that draws a bar on a terminal, and does nothing elsewhere."""
+    if not sys.stderr.isatty():  # rich loads slowly
+        yield lambda fraction, step: None
+        return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-    console = Console(stderr=True)
     columns = (BarColumn(), TaskProgressColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
-    with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as progress:
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("starting", total=1.0)
         yield lambda fraction, step: progress.update(task, completed=fraction, description=step)

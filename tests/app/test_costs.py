@@ -1,7 +1,11 @@
 """What a request and a line cost in statements and messages: counts, which no clock and no machine changes."""
 
 import contextlib
+import json
+import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 from uuid import UUID
 
@@ -102,3 +106,22 @@ def work_off(sessions: sessionmaker[Session], chunk_id: UUID) -> None:
     points: list[PointResult] = [point_result(line.number) for line in lines]
     with sessions.begin() as session:
         assert leases.finish(session, held, points)
+
+
+def test_analyse_loads_nothing_that_it_has_no_use_for(tmp_path: Path) -> None:
+    line = tmp_path / "line.json"
+    line.write_text(json.dumps(short_request()))
+    script = f"""
+import sys
+sys.argv = ["galloping", "analyse", {str(line)!r}, "--output", {str(tmp_path / "result.json")!r}]
+from app.cli import main
+try:
+    main()
+finally:
+    print(*sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert "engine.analysis" in loaded
+    servers = {"sqlalchemy", "celery", "fastapi", "uvicorn", "pydantic_settings", "psycopg", "httpx", "alembic"}
+    assert not loaded & {*servers, "matplotlib", "rich.progress", "scipy.integrate"}
