@@ -36,6 +36,7 @@ class ClearanceQuery(BaseModel):
     response_model=Clearance,
     responses={
         200: documentation.body("What is left", ("application/json", example_of(Clearance))),
+        **documentation.UNCHANGED,
         **documentation.problems(
             ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED
         ),
