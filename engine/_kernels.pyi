@@ -3,10 +3,10 @@ from engine.arrays import AnyArray, FloatArray
 Arrays = tuple[AnyArray, ...]
 Shape = tuple[int, int, int, int]
 
-def balance(
+def newton(
     model: Arrays,
     shape: Shape,
-    size: tuple[int, int],
+    size: tuple[int, int, bool],
     cycles: Arrays,
     options: tuple[float, float, int],
     results: Arrays,

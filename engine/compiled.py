@@ -10,7 +10,7 @@ from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution, solution
 
 try:
-    from engine._kernels import balance, even_parts, linearization, monodromies
+    from engine._kernels import even_parts, linearization, monodromies, newton
 
     AVAILABLE = True
 except ImportError:
@@ -22,7 +22,7 @@ def solved_balances(
     member: IntArray,
     wind_speed: FloatArray,
     phase: FloatArray,
-    newton: tuple[FloatArray, FloatArray, Options],
+    guess: tuple[FloatArray, FloatArray, Options],
 ) -> Solution:
     """Solve harmonic balances by Newton's method as `engine.newton.newton` would.
 
@@ -34,25 +34,61 @@ def solved_balances(
         The model of each cycle, and its wind speed [m/s].
     phase : (cycles, m (2 H + 1))
         The row of the phase condition.
-    newton : tuple
+    guess : tuple
         Starts and scales (cycles, m (2 H + 1) + 1), and options.
 
     Returns
     -------
     Solution
     """
-    start, scale, options = newton
+    start, scale, options = guess
+    none = np.empty(0)
+    return _newton(model, (member, wind_speed, phase, start, scale, none, none), (start, none), options)
+
+
+def followed_balances(
+    model: ReducedModel,
+    member: IntArray,
+    phase: tuple[FloatArray, FloatArray],
+    condition: tuple[FloatArray, FloatArray],
+    guess: tuple[FloatArray, FloatArray, Options],
+) -> tuple[Solution, FloatArray]:
+    """Solve harmonic balances with the wind speed as one more unknown and one more linear condition.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    member : (cycles,)
+    phase : pair of arrays
+        The row of the phase condition (cycles, m (2 H + 1)), and the points that it is relative to (cycles, unknowns).
+    condition : pair of arrays
+        A row (cycles, unknowns) and the value (cycles,) that its product with the unknowns must have.
+    guess : tuple
+        Starts and scales (cycles, unknowns), unknowns = m (2 H + 1) + 2, and options.
+
+    Returns
+    -------
+    Solution, (cycles, unknowns)
+        With the direction in which the row's product alone grows, at the point before the last step.
+    """
+    start, scale, options = guess
+    reference, anchor = phase
+    tangent = np.full(start.shape, np.nan)
+    cycles = (member, np.empty(0), reference, anchor, scale, *condition)
+    return _newton(model, cycles, (start, tangent), options), tangent
+
+
+def _newton(
+    model: ReducedModel, cycles: tuple[AnyArray, ...], guess: tuple[FloatArray, FloatArray], options: Options
+) -> Solution:
+    start, tangent = guess
     x = np.array(start, order="C")
     step, iterations = np.full(x.shape[0], np.inf), np.zeros(x.shape[0], dtype=np.intp)
-    harmonics = (phase.shape[-1] // model.mass.shape[-1]) // 2
-    balance(
-        _parts(model),
-        _shape(model),
-        (x.shape[0], harmonics),
-        _contiguous(member, wind_speed, phase, scale),
-        (options.tolerance, options.largest_step, options.iterations),
-        (x, step, iterations),
-    )
+    harmonics = cycles[2].shape[-1] // model.mass.shape[-1] // 2
+    limits = (options.tolerance, options.largest_step, options.iterations)
+    size = (x.shape[0], harmonics, tangent.size > 0)
+    newton(_parts(model), _shape(model), size, _contiguous(*cycles), limits, (x, step, iterations, tangent))
     return solution(x, step, iterations, options)
 
 

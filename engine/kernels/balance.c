@@ -11,7 +11,7 @@
 void release_system(System *w)
 {
     free(w->place), free(w->active), free(w->waves), free(w->spectra), free(w->matrix), free(w->rows), free(w->slope);
-    free(w->given), free(w->values), free(w->loads), free(w->state), free(w->scratch);
+    free(w->x), free(w->values), free(w->loads), free(w->state), free(w->scratch);
 }
 
 static void fill_waves(System *w)
@@ -31,14 +31,15 @@ static void fill_waves(System *w)
     }
 }
 
-int prepare_system(System *w, const Model *model, int harmonics)
+int prepare_system(System *w, const Model *model, int harmonics, int besides)
 {
     *w = (System){.m = model->m, .harmonics = harmonics, .size = 2 * harmonics + 1};
     w->samples = 4 * harmonics + 2;
     w->groups = (w->samples + LANES - 1) / LANES;
     w->orders = (3 * harmonics + LANES) / LANES * LANES;
-    w->unknowns = w->m * w->size + 1;
-    w->stride = w->unknowns + 1 + LANES;
+    w->balances = w->m * w->size;
+    w->unknowns = w->balances + besides;
+    w->stride = w->unknowns + 2 + LANES;
     const size_t m = (size_t)w->m, n = (size_t)w->unknowns, rows = (size_t)row_count(w), width = 2 * (size_t)w->orders;
     w->place = calloc(n, sizeof *w->place);
     w->active = calloc(2 * m, sizeof *w->active);
@@ -47,12 +48,12 @@ int prepare_system(System *w, const Model *model, int harmonics)
     w->matrix = calloc(n * (size_t)w->stride, sizeof *w->matrix);
     w->rows = calloc(n, sizeof *w->rows);
     w->slope = calloc(m * (size_t)w->size, sizeof *w->slope);
-    w->given = calloc(n, sizeof *w->given);
+    w->x = calloc(n, sizeof *w->x);
     w->values = calloc((size_t)(w->size * w->groups), sizeof *w->values);
     w->loads = calloc(rows * (size_t)w->groups, sizeof *w->loads);
     w->state = calloc(4 * m + 2 * m * m, sizeof *w->state);
     w->scratch = calloc(load_scratch(model), sizeof *w->scratch);
-    if (!(w->place && w->active && w->waves && w->spectra && w->matrix && w->rows && w->slope && w->given && w->values
+    if (!(w->place && w->active && w->waves && w->spectra && w->matrix && w->rows && w->slope && w->x && w->values
           && w->loads && w->state && w->scratch))
         return 0;
     fill_waves(w);
@@ -72,7 +73,8 @@ void arrange_system(System *w, const Model *model)
             if ((w->active[j] || w->active[m + j]) == active)
                 for (int c = 0; c < w->size; c++)
                     w->place[j * w->size + c] = next++;
-    w->place[next] = next;
+    for (; next < w->unknowns; next++)
+        w->place[next] = next;
     memset(w->spectra, 0, (size_t)row_count(w) * 2 * (size_t)w->orders * sizeof *w->spectra);
 }
 
@@ -195,43 +197,46 @@ static void add_linear_block(System *w, const Model *model, int i, int j, double
     }
 }
 
-/* Add the linear terms of co-ordinate j to the residual of equation i and to its derivative by w. */
+/* Add the linear terms of co-ordinate j to the residual of equation i and to its slope by w. */
 static void add_motion(System *w, const Model *model, int i, int j, const double *x)
 {
-    const int at = i * w->m + j, n = w->unknowns;
-    const double mass = model->mass[at], damping = model->damping[at], omega = x[n - 1];
-    double *by_omega = block_of(w, i, 0) - w->place[0] + n - 1;
-    for (int c = 0; c < w->size; c++) {
+    const int at = i * w->m + j;
+    const double mass = model->mass[at], damping = model->damping[at], omega = x[w->balances];
+    double *row = w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride;
+    for (int c = 0; c < w->size; c++, row += w->stride) {
         const double a = x[j * w->size + c], slope = w->slope[j * w->size + c];
         const double bend = -((c + 1) / 2) * ((c + 1) / 2) * a;
-        by_omega[c * w->stride] += 2.0 * omega * mass * bend + damping * slope;
-        by_omega[c * w->stride + 1] += omega * (omega * mass * bend + damping * slope) + model->stiffness[at] * a;
+        row[w->balances] += 2.0 * omega * mass * bend + damping * slope;
+        row[w->unknowns] += omega * (omega * mass * bend + damping * slope) + model->stiffness[at] * a;
     }
 }
 
-/* Subtract the load's harmonics from the residual of equation i and from its derivative by w. */
-static void subtract_load(System *w, int i, double speed)
+/* Subtract the load's harmonics from the residual of equation i and from its slopes by w and U: with f(q, w q'/U),
+ * d(U^2 P f)/dU = 2 U P f - w P df/d(w/U). */
+static void subtract_load(System *w, int i, double omega, double speed)
 {
-    const double *force = spectrum(w, force_row(i)), *by_rate = spectrum(w, rate_row(w, i));
-    double *by_omega = block_of(w, i, 0) - w->place[0] + w->unknowns - 1;
-    for (int c = 0; c < w->size; c++) {
+    const double *forces = spectrum(w, force_row(i)), *by_rate = spectrum(w, rate_row(w, i));
+    double *row = w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride;
+    for (int c = 0; c < w->size; c++, row += w->stride) {
         const int at = (c + 1) / 2 + (c % 2 == 0 && c ? w->orders : 0);
-        const double weight = (c ? 2.0 : 1.0) * speed;
-        by_omega[c * w->stride] -= weight * by_rate[at];
-        by_omega[c * w->stride + 1] -= weight * speed * force[at];
+        const double weight = c ? 2.0 : 1.0;
+        row[w->balances] -= weight * speed * by_rate[at];
+        if (w->unknowns > w->balances + 1)
+            row[w->balances + 1] -= weight * (2.0 * speed * forces[at] - omega * by_rate[at]);
+        row[w->unknowns] -= weight * speed * speed * forces[at];
     }
 }
 
 void assemble_system(System *w, const Model *model, const double *x, double speed)
 {
-    const int m = w->m, n = w->unknowns;
-    const double omega = x[n - 1];
-    memset(w->matrix, 0, (size_t)n * (size_t)w->stride * sizeof *w->matrix);
+    const int m = w->m;
+    const double omega = x[w->balances];
+    memset(w->matrix, 0, (size_t)w->unknowns * (size_t)w->stride * sizeof *w->matrix);
     differentiate(w, x);
     sample(w, model, x, omega / speed);
     transform_all(w);
     for (int i = 0; i < m; i++) {
-        subtract_load(w, i, speed);
+        subtract_load(w, i, omega, speed);
         for (int j = 0; j < m; j++) {
             add_motion(w, model, i, j, x);
             add_linear_block(w, model, i, j, omega);

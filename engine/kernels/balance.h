@@ -5,16 +5,16 @@
 #include "kernels.h"
 
 typedef struct {
-    int m, harmonics, size, unknowns, stride, samples, groups;
+    int m, harmonics, size, balances, unknowns, stride, samples, groups;  /* balances = m (2 H + 1) */
     int orders;          /* of one spectrum: cos k tau for k = -H ... 2 H, padded, then sin k tau likewise */
     int *place;          /* (unknowns), where each stands in the system: idle co-ordinates first */
     int *active;         /* (2 m), whether the load depends on this component of (q, q'/U) */
     double *waves;       /* (samples, 2 orders), cos and sin of k tau over the number of samples */
     double *spectra;     /* (rows, 2 orders): the same of every row of the load */
-    double *matrix;      /* (unknowns, stride), with the right side behind each row */
+    double *matrix;      /* (unknowns, stride), with the right sides behind each row */
     double **rows;       /* (unknowns), into the matrix */
     double *slope;       /* (m, 2 H + 1), coefficients of dq/dtau */
-    double *given;       /* (unknowns), the start */
+    double *x;           /* (unknowns), a copy of the point where only its parts are given */
     Lanes *values;       /* (2 H + 1, groups), the basis at groups of samples, 0 beyond the last */
     Lanes *loads;        /* (rows, groups): f, its gradient, and its derivative by w / U */
     Lanes *state, *scratch;
@@ -28,14 +28,16 @@ static inline int row_count(const System *w) { return 2 * w->m * (1 + w->m); }
 
 static inline const double *spectrum(const System *w, int row) { return w->spectra + row * 2 * w->orders + w->harmonics; }
 
-/* Make room for models of one shape; return 0 if memory is short. */
-int prepare_system(System *w, const Model *model, int harmonics);
+/* Make room for models of one shape with one or two unknowns, w and U, besides the coefficients; return 0 if memory is
+ * short. */
+int prepare_system(System *w, const Model *model, int harmonics, int besides);
 void release_system(System *w);
 
 /* Put those co-ordinates first on which the load does not depend: their columns are nearly empty. */
 void arrange_system(System *w, const Model *model);
 
-/* Fill all rows but the last with the balance at x, its residual as the right side. */
+/* Fill the rows of the balance at x with its slopes by the coefficients, by w and, if it is unknown, by U, and with the
+ * residual as the first right side. */
 void assemble_system(System *w, const Model *model, const double *x, double speed);
 
 #endif

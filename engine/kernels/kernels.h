@@ -33,10 +33,10 @@ size_t load_scratch(const Model *model);
 /* Evaluate f (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m). Theory section 5. */
 void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch);
 
-/* Solve a system by elimination with partial pivoting. Row i holds the coefficients, its right side as entry n, and then
- * at least LANES zeros; the solution takes the place of the right sides, and the rest is lost. Return 0 if a pivot
+/* Solve systems by elimination with partial pivoting. Row i holds the coefficients, its right sides from entry n on, and
+ * then at least LANES zeros; the solutions take the place of the right sides, and the rest is lost. Return 0 if a pivot
  * vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
-int eliminate(int n, double **rows);
+int eliminate(int n, double **rows, int sides);
 
 /* What Newton's method is told, engine.newton.Options. */
 typedef struct {
@@ -44,14 +44,17 @@ typedef struct {
     int iterations;
 } Options;
 
-/* Starts and results of the harmonic balance, as engine.harmonic.balance makes them; unknowns = m (2 H + 1) + 1:
- * x, scale (cycles, unknowns); reference (cycles, unknowns - 1); wind_speed, step (cycles); iterations (cycles). */
+/* Starts and results of the harmonic balance. With n = m (2 H + 1) the unknowns x (cycles, unknowns) are the coefficients
+ * and w, n + 1 in all, at wind_speed (cycles); or the wind speed is one more unknown, `follows` is set, and the condition
+ * row . x = target, (cycles, unknowns) and (cycles), is one more equation. The phase is fixed by
+ * reference . (x - anchor) = 0, (cycles, n) and (cycles, unknowns). scale is of x; step, iterations (cycles); tangent
+ * (cycles, unknowns) is the direction in which row . x alone grows. */
 typedef struct {
     ptrdiff_t cycles;
-    int harmonics;
+    int harmonics, follows;
     const ptrdiff_t *member;
-    const double *wind_speed, *reference, *scale;
-    double *x, *step;
+    const double *wind_speed, *reference, *anchor, *scale, *row, *target;
+    double *x, *step, *tangent;
     ptrdiff_t *iterations;
 } Balances;
 

@@ -17,7 +17,7 @@ static inline int largest(int n, int column, double *const *rows)
     return best;
 }
 
-WIDE int eliminate(int n, double **rows)
+WIDE int eliminate(int n, double **rows, int sides)
 {
     for (int k = 0; k < n; k++) {
         const int best = largest(n, k, rows);
@@ -32,14 +32,15 @@ WIDE int eliminate(int n, double **rows)
             const double factor = row[k] * inverse;
             if (factor == 0.0)
                 continue;
-            for (int j = k + 1; j <= n; j += LANES)
+            for (int j = k + 1; j < n + sides; j += LANES)
                 *(Lanes *)(row + j) -= factor * *(const Lanes *)(pivot + j);
         }
     }
-    for (int k = n - 1; k >= 0; k--) {
-        const double x = rows[k][n] /= rows[k][k];
-        for (int i = 0; i < k; i++)
-            rows[i][n] -= rows[i][k] * x;
-    }
+    for (int side = n; side < n + sides; side++)
+        for (int k = n - 1; k >= 0; k--) {
+            const double x = rows[k][side] /= rows[k][k];
+            for (int i = 0; i < k; i++)
+                rows[i][side] -= rows[i][k] * x;
+        }
     return 1;
 }

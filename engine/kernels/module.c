@@ -72,27 +72,29 @@ static PyObject *finished(Buffers *buffers, int enough_memory)
     Py_RETURN_NONE;
 }
 
-static PyObject *balance(PyObject *Py_UNUSED(self), PyObject *arguments)
+static PyObject *newton(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *parts, *member, *speed, *reference, *scale, *x, *step, *iterations;
-    int shape[3], harmonics;
+    PyObject *parts, *member, *speed, *reference, *anchor, *scale, *row, *target, *x, *step, *iterations, *tangent;
+    int shape[3], harmonics, follows, done = 1;
     Py_ssize_t members, cycles;
     Options options;
-    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOO)(ddi)(OOO)", &PyTuple_Type, &parts, &members, shape, shape + 1,
-                          shape + 2, &cycles, &harmonics, &member, &speed, &reference, &scale, &options.tolerance,
-                          &options.largest_step, &options.iterations, &x, &step, &iterations))
+    if (!PyArg_ParseTuple(arguments, "O!(niii)(nip)(OOOOOOO)(ddi)(OOOO)", &PyTuple_Type, &parts, &members, shape,
+                          shape + 1, shape + 2, &cycles, &harmonics, &follows, &member, &speed, &reference, &anchor,
+                          &scale, &row, &target, &options.tolerance, &options.largest_step, &options.iterations, &x,
+                          &step, &iterations, &tangent))
         return NULL;
-    const Py_ssize_t unknowns = shape[0] * (2 * (Py_ssize_t)harmonics + 1) + 1;
+    const Py_ssize_t balances = shape[0] * (2 * (Py_ssize_t)harmonics + 1), unknowns = balances + 1 + follows;
     Model model;
-    Balances wanted = {.cycles = cycles, .harmonics = harmonics};
-    int done = 1;
+    Balances wanted = {.cycles = cycles, .harmonics = harmonics, .follows = follows};
     if (read_model(&buffers, parts, shape, &model, members) && (wanted.member = INDICES(member, cycles))
-        && within(wanted.member, cycles, members)
-        && (wanted.wind_speed = REALS(speed, cycles)) && (wanted.reference = REALS(reference, cycles * (unknowns - 1)))
-        && (wanted.scale = REALS(scale, cycles * unknowns)) && (wanted.x = RESULT(x, cycles * unknowns))
+        && within(wanted.member, cycles, members) && (wanted.wind_speed = REALS(speed, follows ? 0 : cycles))
+        && (wanted.reference = REALS(reference, cycles * balances)) && (wanted.anchor = REALS(anchor, cycles * unknowns))
+        && (wanted.scale = REALS(scale, cycles * unknowns)) && (wanted.row = REALS(row, follows * cycles * unknowns))
+        && (wanted.target = REALS(target, follows * cycles)) && (wanted.x = RESULT(x, cycles * unknowns))
         && (wanted.step = RESULT(step, cycles))
-        && (wanted.iterations = items(&buffers, iterations, cycles, "lq", PyBUF_WRITABLE))) {
+        && (wanted.iterations = items(&buffers, iterations, cycles, "lq", PyBUF_WRITABLE))
+        && (wanted.tangent = RESULT(tangent, follows * cycles * unknowns))) {
         Py_BEGIN_ALLOW_THREADS
         done = solve_balances(&model, &wanted, &options);
         Py_END_ALLOW_THREADS
@@ -180,7 +182,7 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
 }
 
 static PyMethodDef methods[] = {
-    {"balance", balance, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
+    {"newton", newton, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
     {"linearization", linearization, METH_VARARGS, "Evaluate the harmonic balance of a stack of cycles with its slopes."},
     {"monodromies", monodromies, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
     {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},

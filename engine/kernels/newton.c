@@ -4,14 +4,25 @@
 #include <math.h>
 #include <string.h>
 
-/* Fill the last row with the phase condition. */
-static void add_phase(System *w, const double *x, const double *reference)
+/* Fill the row after the balance with the phase condition. */
+static void add_phase(System *w, const double *x, const double *reference, const double *anchor)
 {
-    const int n = w->unknowns;
-    double *phase = w->matrix + (ptrdiff_t)(n - 1) * w->stride;
-    for (int u = 0; u < n - 1; u++) {
+    double *phase = w->matrix + (ptrdiff_t)w->balances * w->stride;
+    for (int u = 0; u < w->balances; u++) {
         phase[w->place[u]] = reference[u];
-        phase[n] += reference[u] * (x[u] - w->given[u]);
+        phase[w->unknowns] += reference[u] * (x[u] - anchor[u]);
+    }
+}
+
+/* Fill the last row with the condition row . x = target, and give it the unit right side of the tangent. */
+static void add_condition(System *w, const double *x, const double *row, double target)
+{
+    double *last = w->matrix + (ptrdiff_t)(w->unknowns - 1) * w->stride;
+    last[w->unknowns] = -target;
+    last[w->unknowns + 1] = 1.0;
+    for (int u = 0; u < w->unknowns; u++) {
+        last[w->place[u]] = row[u];
+        last[w->unknowns] += row[u] * x[u];
     }
 }
 
@@ -34,75 +45,79 @@ static int all_finite(int count, const double *x)
     return 1;
 }
 
-static void iterate(System *w, const Model *model, const Balances *balances, ptrdiff_t cycle, const Options *options)
+/* Find the step of Newton's method; return 0 if there is none. */
+static int find_step(System *w, const Model *model, const Balances *wanted, ptrdiff_t cycle)
 {
     const int n = w->unknowns;
-    double *x = balances->x + cycle * n;
-    memcpy(w->given, x, (size_t)n * sizeof *x);
+    const double *x = wanted->x + cycle * n;
+    assemble_system(w, model, x, wanted->follows ? x[n - 1] : wanted->wind_speed[cycle]);
+    add_phase(w, x, wanted->reference + cycle * w->balances, wanted->anchor + cycle * n);
+    if (wanted->follows)
+        add_condition(w, x, wanted->row + cycle * n, wanted->target[cycle]);
+    for (int row = 0; row < n; row++)
+        w->rows[row] = w->matrix + (ptrdiff_t)row * w->stride;
+    return eliminate(n, w->rows, 1 + wanted->follows);
+}
+
+static void iterate(System *w, const Model *model, const Balances *wanted, ptrdiff_t cycle, const Options *options)
+{
+    const int n = w->unknowns;
+    double *x = wanted->x + cycle * n;
     for (int iteration = 0; iteration < options->iterations && all_finite(n, x); iteration++) {
-        assemble_system(w, model, x, balances->wind_speed[cycle]);
-        add_phase(w, x, balances->reference + cycle * (n - 1));
-        for (int row = 0; row < n; row++)
-            w->rows[row] = w->matrix + (ptrdiff_t)row * w->stride;
-        if (!eliminate(n, w->rows))
+        if (!find_step(w, model, wanted, cycle))
             return;
-        const double size = scaled_size(w, balances->scale + cycle * n);
+        const double size = scaled_size(w, wanted->scale + cycle * n);
         if (!isfinite(size))
             return;
         const double taken = size > options->largest_step ? options->largest_step / size : 1.0;
-        for (int u = 0; u < n; u++)
+        for (int u = 0; u < n; u++) {
             x[u] -= taken * w->rows[w->place[u]][n];
-        balances->step[cycle] = size;
-        balances->iterations[cycle] = iteration + 1;
+            if (wanted->follows)
+                wanted->tangent[cycle * n + u] = w->rows[w->place[u]][n + 1];
+        }
+        wanted->step[cycle] = size;
+        wanted->iterations[cycle] = iteration + 1;
         if (size <= options->tolerance)
             return;
     }
 }
 
-int solve_balances(const Model *stack, const Balances *balances, const Options *options)
+int solve_balances(const Model *stack, const Balances *wanted, const Options *options)
 {
     System system;
-    const int ready = prepare_system(&system, stack, balances->harmonics);
-    for (ptrdiff_t cycle = 0; ready && cycle < balances->cycles; cycle++) {
-        const Model model = model_of(stack, balances->member[cycle]);
+    const int ready = prepare_system(&system, stack, wanted->harmonics, 1 + wanted->follows);
+    for (ptrdiff_t cycle = 0; ready && cycle < wanted->cycles; cycle++) {
+        const Model model = model_of(stack, wanted->member[cycle]);
         arrange_system(&system, &model);
-        iterate(&system, &model, balances, cycle, options);
+        iterate(&system, &model, wanted, cycle, options);
     }
     release_system(&system);
     return ready;
 }
 
-/* Copy the balance out of the order of elimination, with its slopes by the wind speed U: from f(q, w q'/U) follows
- * dr/dU = -2 U P f + w P df/d(w/U). */
-static void write_out(const System *w, double omega, double speed, double *residual, double *slopes)
+/* Copy the balance out of the order of elimination. */
+static void write_out(const System *w, double *residual, double *slopes)
 {
-    const int n = w->unknowns - 1;
-    for (int u = 0; u < n; u++) {
+    for (int u = 0; u < w->balances; u++) {
         const double *row = w->matrix + (ptrdiff_t)w->place[u] * w->stride;
-        const int i = u / w->size, c = u % w->size, at = (c + 1) / 2 + (c % 2 == 0 && c ? w->orders : 0);
-        const double force = spectrum(w, force_row(i))[at], by_rate = spectrum(w, rate_row(w, i))[at];
-        for (int v = 0; v < n; v++)
-            slopes[v] = row[w->place[v]];
-        slopes[n] = row[n];
-        slopes[n + 1] = (c ? 2.0 : 1.0) * (omega * by_rate - 2.0 * speed * force);
-        slopes += n + 2;
-        residual[u] = row[n + 1];
+        for (int v = 0; v < w->unknowns; v++)
+            *slopes++ = row[w->place[v]];
+        residual[u] = row[w->unknowns];
     }
 }
 
 int linearize_balances(const Model *stack, const Linearizations *wanted)
 {
     System system, *w = &system;
-    const int ready = prepare_system(w, stack, wanted->harmonics);
-    const ptrdiff_t n = w->unknowns - 1;
+    const int ready = prepare_system(w, stack, wanted->harmonics, 2);
+    const ptrdiff_t n = w->balances;
     for (ptrdiff_t cycle = 0; ready && cycle < wanted->cycles; cycle++) {
         const Model model = model_of(stack, wanted->member[cycle]);
-        const double omega = wanted->angular_frequency[cycle], speed = wanted->wind_speed[cycle];
         arrange_system(w, &model);
-        memcpy(w->given, wanted->coefficients + cycle * n, (size_t)n * sizeof *w->given);
-        w->given[n] = omega;
-        assemble_system(w, &model, w->given, speed);
-        write_out(w, omega, speed, wanted->residuals + cycle * n, wanted->slopes + cycle * n * (n + 2));
+        memcpy(w->x, wanted->coefficients + cycle * n, (size_t)n * sizeof *w->x);
+        w->x[n] = wanted->angular_frequency[cycle];
+        assemble_system(w, &model, w->x, wanted->wind_speed[cycle]);
+        write_out(w, wanted->residuals + cycle * n, wanted->slopes + cycle * n * (n + 2));
     }
     release_system(w);
     return ready;

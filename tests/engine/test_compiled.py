@@ -82,6 +82,29 @@ def test_slopes_are_those_of_the_numpy_form(name: str, both: pytest.MonkeyPatch)
 
 
 @pytest.mark.parametrize("name", MODELS)
+def test_a_step_along_a_branch_solves_the_slopes_and_both_conditions(name: str) -> None:
+    model, rng = perturbed(MODELS[name]()), np.random.default_rng(3)
+    orbits, member = random_orbits(model, 3, COPIES), np.arange(COPIES) % 4
+    tail = [orbits.angular_frequency[:, None], orbits.wind_speed[:, None]]
+    start = np.concatenate([orbits.coefficients.reshape(COPIES, -1), *tail], axis=-1)
+    anchor, row, target = 1.1 * start, rng.normal(size=start.shape), rng.normal(size=COPIES)
+    phase = rng.normal(size=start[:, :-2].shape)
+    residual, slopes = linearized(model, member, orbits)
+    drift = [((start - anchor)[:, :-2] * phase).sum(axis=-1), (row * start).sum(axis=-1) - target]
+    right = np.concatenate([residual, np.stack(drift, axis=-1)], axis=-1)
+    padded = np.concatenate([phase, np.zeros((COPIES, 2))], axis=-1)
+    matrix = np.concatenate([slopes, padded[:, None], row[:, None]], axis=1)
+    last = np.broadcast_to(np.eye(start.shape[-1])[-1], start.shape)
+    change, direction = np.moveaxis(np.linalg.solve(matrix, np.stack([-right, last], axis=-1)), -1, 0)
+    options = Options(iterations=1, largest_step=np.inf)
+    guess = (start, np.ones_like(start), options)
+    how, tangent = compiled.followed_balances(model, member, (phase, anchor), (row, target), guess)
+    for mine, theirs in ((how.x - start, change), (tangent, direction)):
+        assert mine == pytest.approx(theirs, rel=1e-6, abs=1e-9 * np.abs(theirs).max())
+    assert how.step == pytest.approx(np.sqrt((change**2).mean(axis=-1)))
+
+
+@pytest.mark.parametrize("name", MODELS)
 def test_multipliers_are_those_of_the_numpy_form(name: str, both: pytest.MonkeyPatch) -> None:
     model = take(perturbed(MODELS[name]()), np.arange(COPIES) % 4)
     orbits = random_orbits(model, 5, COPIES)
