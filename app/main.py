@@ -86,6 +86,7 @@ def create_app(settings: Settings | None = None) -> Service:
         description=_DESCRIPTION,
         lifespan=lifespan,
         redoc_url=None,
+        telemetry={"tracing": settings.opentelemetry, "metrics": False, "logs": False, "operation_spans": False},
         redirect_slashes=False,
         responses={"default": documentation.ANY_PROBLEM},
     )

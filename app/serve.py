@@ -16,7 +16,7 @@ from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, text
 
-from app import keys, logs, processes
+from app import keys, logs, processes, telemetry
 from app.auth import is_loopback
 from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
@@ -135,6 +135,7 @@ def _application() -> "Service":
     from app.main import create_app  # noqa: PLC0415 - the client library of the metrics reads the variable as it loads
 
     settings = get_settings()
+    telemetry.configure(settings, "api")
     if settings.api_processes > 1:
         logs.configure(settings)
         processes.end_with_parent(os.getppid())

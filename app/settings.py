@@ -69,6 +69,8 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = Field(default="info", description="Least that is logged")
     log_format: Literal["json", "text"] = Field(default="json", description="Logs for machines, or for people")
 
+    opentelemetry: bool = Field(default=False, description="Whether requests and jobs are traced")
+
     api_processes: Count = Field(default=1, description="Processes that answer requests")
     worker_processes: Count = Field(default_factory=_usable_processors, description="Jobs run at once by one worker")
     max_jobs_per_process: Count = Field(default=200, description="After so many jobs a process is replaced")

@@ -49,6 +49,7 @@ def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) 
             show_presence()
         _drain(sessions, settings, owner, pool)
         _repair(sessions, settings, owner)
+        _repair(sessions, settings)  # sends what was given back, so that another worker need not find it first
 
 
 def _drain(sessions: sessionmaker[Session], settings: Settings, owner: str, pool: processes.Child) -> None:

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches, convert, correlation, leases
+from app import batches, convert, correlation, leases, telemetry
 from app.convert import Advance, PointResult
 from app.db import make_engine, session_factory
 from app.leases import Beat, Claim, Failure
@@ -48,7 +48,7 @@ def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, o
     if held is None or steps is None:
         _logger.info("job %s is not waiting for a worker", job_id)
         return
-    with correlation.bound(held.ids):
+    with correlation.bound(held.ids), telemetry.job_span(held.ids):
         _work(sessions, settings, held, steps)
 
 

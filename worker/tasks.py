@@ -8,7 +8,7 @@ from celery import Celery
 from celery.signals import setup_logging
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import logs
+from app import logs, telemetry
 from app.db import make_engine, session_factory
 from app.processes import end_with_parent
 from app.queue import CHUNK_QUEUE_NAME, QUEUE_NAME, TASK_NAME, celery_application
@@ -67,6 +67,7 @@ def _run_pool() -> None:
     end_with_parent()
     settings = get_settings()
     logs.configure(settings)
+    telemetry.configure(settings, "worker")
     setup_logging.connect(_leave_logs)
     application = worker_application(settings, os.environ[OWNER])
     quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat", "--hostname=galloping@%h"]

@@ -178,8 +178,12 @@ def test_stopped_worker_gives_its_job_back(deployment: Settings, deployed: sessi
         assert stop_in_time(worker, 20.0) == 0
         assert group(worker) == []
     job = look(deployed, job_id)
-    assert (job.status, job.dispatched_at) == (JobStatus.ACCEPTED, None)
+    assert job.status is JobStatus.ACCEPTED
     assert history(deployed, job_id)[-1] == ("released", 1)
+    # Its message waits for another worker already.
+    assert job.dispatched_at is not None
+    with open_queue(deployment) as queue:
+        assert not queue.is_empty()
 
 
 @pytest.mark.parametrize("deployment", ["embedded"], indirect=True)

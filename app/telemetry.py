@@ -1,0 +1,39 @@
+"""Traces by OpenTelemetry, for those who ask for them: a span for each request, and under it one for its job."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from opentelemetry import propagate, trace
+
+from app.correlation import Ids
+from app.settings import Settings
+
+
+def configure(settings: Settings, process: str) -> None:
+    """Send this process's spans to the collector of `OTEL_EXPORTER_OTLP_ENDPOINT`, if the settings ask for it.
+
+    Raises
+    ------
+    ImportError
+        If they do, and the extra `galloping[opentelemetry]` is not installed.
+    """
+    if not settings.opentelemetry:
+        return
+    # Optional, and slow to load.
+    from opentelemetry.exporter.otlp.proto.http.trace_exporter import OTLPSpanExporter  # noqa: PLC0415
+    from opentelemetry.sdk.resources import Resource  # noqa: PLC0415
+    from opentelemetry.sdk.trace import TracerProvider  # noqa: PLC0415
+    from opentelemetry.sdk.trace.export import BatchSpanProcessor  # noqa: PLC0415
+
+    provider = TracerProvider(resource=Resource.create({"service.name": f"galloping-{process}"}))
+    provider.add_span_processor(BatchSpanProcessor(OTLPSpanExporter(), schedule_delay_millis=1000))
+    trace.set_tracer_provider(provider)
+
+
+@contextmanager
+def job_span(ids: Ids) -> Iterator[None]:
+    """Work on a job within a span under that of the request that made it; without a provider this does nothing."""
+    parent = propagate.extract({"traceparent": ids.trace_parent} if ids.trace_parent else {})
+    known: dict[str, str | int] = {"job.id": ids.job_id or "", "job.attempt": ids.attempt or 0}
+    with trace.get_tracer("galloping").start_as_current_span("job", parent, attributes=known):
+        yield
