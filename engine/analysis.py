@@ -8,6 +8,7 @@ import numpy as np
 from engine.arrays import FloatArray, merged
 from engine.bifurcations import bifurcations
 from engine.competition import loop_competitions
+from engine.confidence import confidence
 from engine.cycles import Cycles, explicit_starts, find_cycles
 from engine.effects import device_effects
 from engine.family import Starts
@@ -139,6 +140,7 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
         loops=np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp),
         crossings=crossings,
         cycles=cycles,
+        confidence=confidence(model, cycles, analysis.check),
         bifurcations=bifurcations(cycles.traces, cycles.followed, model, crossings),
         winds=winds,
     )
@@ -162,6 +164,7 @@ def _finite_element(
         loops=np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
         crossings=crossings,
         cycles=cycles,
+        confidence=confidence(model, cycles, analysis.check),
         bifurcations=bifurcations(cycles.traces, cycles.followed, model, crossings),
         winds=winds,
     )

@@ -15,6 +15,7 @@ from engine.family import CycleFamily, Starts
 from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, balance, oscillation_size, pick, resized
 from engine.hybrid import ReducedModel, take
+from engine.result import FoundBy
 from engine.stability import Crossings
 
 TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which more effort is taken
@@ -30,7 +31,8 @@ class Cycles:
     member, wind: (cycles,), indices of model and wind speed; branch: (cycles,), number of the connected family within
     its member, by the lowest Hopf point that it comes from, families without one after those; dropped: (members,),
     solutions left out because more harmonics did not resolve them either; traces: the branches that were followed;
-    followed: (branches,) of all traces one after another, the family of each.
+    followed: (branches,) of all traces one after another, the family of each; found_by, harmonics: (cycles,), how each
+    was found and the number of harmonics that it took.
     """
 
     member: IntArray
@@ -41,6 +43,8 @@ class Cycles:
     dropped: IntArray
     traces: tuple[Traces, ...]
     followed: IntArray
+    found_by: tuple[FoundBy, ...]
+    harmonics: IntArray
 
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
@@ -85,13 +89,13 @@ def find_cycles(
         return _judged(model, family, ())
     traces = _from_hopf(model, crossings, wind_speeds, harmonics)
     for trace in traces:
-        _cover(family, trace, wind_speeds)
-    family.add(*_solved(model, family.unlike_known(starts)))
-    family.add(*_solved(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))))
+        _cover(family, trace, wind_speeds, "hopf_branch")
+    family.add(*_solved(model, family.unlike_known(starts)), "explicit")
+    family.add(*_solved(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))), "energy_balance")
     while (apart := family.apart()).size:
         member, _ = family.places(apart)
         trace = traced_from_cycles(model, member, family.orbits_of(apart), wind_speeds)
-        family.join(_cover(family, trace, wind_speeds), np.tile(apart, 2))
+        family.join(_cover(family, trace, wind_speeds, "branch"), np.tile(apart, 2))
         traces.append(trace)
     return _judged(model, family, tuple(traces))
 
@@ -106,12 +110,12 @@ def _from_hopf(model: ReducedModel, crossings: Crossings, winds: FloatArray, har
     return [first, traced_from_hopf(model, crossings, unreached, harmonics, winds)]
 
 
-def _cover(family: CycleFamily, trace: Traces, winds: FloatArray) -> IntArray:
+def _cover(family: CycleFamily, trace: Traces, winds: FloatArray, found_by: FoundBy) -> IntArray:
     """Solve for the cycles at the wind speeds that followed branches pass; return the numbers of these branches."""
     followed = family.follow(trace.problem.member, trace.born)
     branch, wind, orbits = at_winds(trace, winds)
     starts, good = _solved(trace.problem.model, Starts(trace.problem.member[branch], wind, orbits))
-    numbers = family.add(starts, good)
+    numbers = family.add(starts, good, found_by)
     family.join(followed[branch[good]], numbers[good])
     return followed
 
@@ -156,8 +160,10 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
     largest = np.abs(judged.multipliers).max(axis=-1, initial=1.0)
     coarse = np.flatnonzero((_tail(model, member, orbits) > TAIL) | (judged.trivial_error > TAIL * largest))
     kept = np.ones(member.size, dtype=np.bool_)
+    harmonics = np.full(member.size, orbits.coefficients.shape[-1] // 2)
     if coarse.size:
         orbits, judged, kept[coarse] = _refined(model, member, orbits, judged, coarse)
+        harmonics[coarse] = orbits.coefficients.shape[-1] // 2
     branch, followed = family.branches()
     order = np.flatnonzero(kept)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]
@@ -170,6 +176,8 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
         np.bincount(member[~kept], minlength=model.mass.shape[0]),
         traces,
         followed,
+        tuple(family.found_by[i] for i in order.tolist()),
+        harmonics[order],
     )
 
 
@@ -205,4 +213,4 @@ def _nothing(model: ReducedModel, traces: tuple[Traces, ...], followed: IntArray
     judged = Floquet(np.zeros((0, 2 * m), dtype=np.complex128), empty, np.zeros(0, dtype=np.object_))
     orbits = Orbits(np.zeros((0, m, 3)), empty, empty)
     dropped = np.zeros(model.mass.shape[0], dtype=np.intp)
-    return Cycles(none, none, none, orbits, judged, dropped, traces, followed)
+    return Cycles(none, none, none, orbits, judged, dropped, traces, followed, (), none)

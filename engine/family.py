@@ -9,6 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from engine.arrays import BoolArray, FloatArray, IntArray, merged
 from engine.harmonic import Orbits, pick
 from engine.hybrid import ReducedModel
+from engine.result import FoundBy
 
 SAME = 1e-3  # relative distance below which two solutions are one
 NEAR = 0.02  # relative difference of frequency up to which a guess may point to a known cycle
@@ -34,6 +35,7 @@ class CycleFamily:
         self._links: list[tuple[int, int]] = []
         self._followed: list[tuple[int, float]] = []
         self._sizes: list[float] = []
+        self._found_by: list[FoundBy] = []
         self._known: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
 
     def __len__(self) -> int:
@@ -52,6 +54,11 @@ class CycleFamily:
             return Orbits(np.zeros((0, size, 3)), np.zeros(0), np.zeros(0))
         coefficients, frequency, speed = zip(*(self._orbits[i] for i in ids), strict=True)
         return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
+
+    @property
+    def found_by(self) -> tuple[FoundBy, ...]:
+        """How each cycle was found first."""
+        return tuple(self._found_by)
 
     def unlike_known(self, starts: Starts) -> Starts:
         """Leave out the starts that point to a known cycle of their member and wind speed.
@@ -89,7 +96,7 @@ class CycleFamily:
         near = np.abs(frequency / starts.orbits.angular_frequency[:, None] - 1.0) <= NEAR
         return np.where(near & (column < count[:, None]), np.abs(np.log(sizes / size)), np.inf)
 
-    def add(self, starts: Starts, good: BoolArray) -> IntArray:
+    def add(self, starts: Starts, good: BoolArray, found_by: FoundBy) -> IntArray:
         """Record the good ones of these solutions and return the number of each, -1 for the others: (starts,)."""
         signatures = _signature(self._model, starts)
         sizes = np.linalg.norm(signatures, axis=-1).tolist()
@@ -101,6 +108,7 @@ class CycleFamily:
             if new:
                 self._place.append(key)
                 self._sizes.append(sizes[i])
+                self._found_by.append(found_by)
                 orbits = starts.orbits
                 self._orbits.append(
                     (orbits.coefficients[i], float(orbits.angular_frequency[i]), float(orbits.wind_speed[i]))

@@ -7,10 +7,12 @@ from scipy.integrate import solve_ivp
 
 from engine.aerodynamics import force
 from engine.arrays import FloatArray
+from engine.harmonic import Orbits, states
 from engine.hybrid import ReducedModel
 from engine.outcome import Outcome
 
 SAMPLES = 64  # a cycle
+PERIOD_SAMPLES = 192  # of the one period that is measured: they leave 1e-4 of the amplitude
 BLOCK = 50  # cycles between two looks at the amplitude
 
 
@@ -72,6 +74,30 @@ def integrate(
             return Settled(extremes, state, block * BLOCK, Outcome.CONVERGED, history[:, :m])
         before = amplitude
     return Settled(extremes, state, block * BLOCK, Outcome.LIMIT_REACHED, history[:, :m])
+
+
+def held_amplitude(model: ReducedModel, orbit: Orbits, periods: int) -> FloatArray:
+    """Integrate from a cycle for some of its periods and measure the last one.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        A single one, without leading axes.
+    orbit : Orbits
+        Of one cycle.
+    periods : int
+
+    Returns
+    -------
+    (m,)
+        Half of the peak-to-peak of each co-ordinate.
+    """
+    m = model.mass.shape[-1]
+    wind, period = float(orbit.wind_speed[0]), 2.0 * np.pi / float(orbit.angular_frequency[0])
+    start = states(orbit, np.zeros(1))[0, 0] * np.repeat([1.0, wind], m)
+    times = np.append(0.0, period * (periods - 1.0 + np.arange(PERIOD_SAMPLES + 1) / PERIOD_SAMPLES))
+    last = _advance(model, wind, start, times)[1:, :m]
+    return np.asarray(0.5 * np.ptp(last, axis=0))
 
 
 def _slowest(model: ReducedModel) -> float:

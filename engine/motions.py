@@ -12,8 +12,8 @@ from engine.hybrid import Discretization, observation, take
 from engine.outcome import Outcome, Stability
 from engine.profile import horizontal_position
 from engine.resonance import motion_shares
-from engine.result import LimitCycleRow
-from engine.rows import Found, by_line
+from engine.result import FoundBy, LimitCycleRow
+from engine.rows import Found, by_line, number
 from engine.spec import Model
 from engine.stability import at_wind, state_matrices, unstable_pairs
 
@@ -104,6 +104,7 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
     amplitude = half_peak_to_peak(series)
     mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[cycles.member]
     shares = motion_shares(mass, cycles.orbits.coefficients, found.model.direction)
+    trust = _trusted(found)
     outside = _outside_fit(found, made.sections.fitted_range[line])
     for i in range(cycles.member.size):
         place = _Place(found.name, int(loops[i]), float(cycles.orbits.wind_speed[i]), int(line[i]))
@@ -115,8 +116,31 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
             shares=tuple(shares[i].tolist()),
             frequency=float(cycles.orbits.angular_frequency[i] / (2.0 * np.pi)),
             branch=int(cycles.branch[i]),
+            trust=trust[i],
         )
         yield int(line[i]), Motion(_row(place, scales, state), series[i])
+
+
+@dataclass(frozen=True, slots=True)
+class _Trust:
+    """How a cycle was found and how far it may be trusted, None where there is nothing to say."""
+
+    found_by: FoundBy | None = None
+    harmonics: int | None = None
+    residual: float | None = None
+    truncation: float | None = None
+    detuning: float | None = None
+    direct: float | None = None
+
+
+def _trusted(found: Found) -> list[_Trust]:
+    """Say of each cycle how it was found and how far it may be trusted."""
+    cycles, measured = found.cycles, found.confidence
+    columns = zip(measured.residual, measured.truncation, measured.detuning, measured.direct, strict=True)
+    return [
+        _Trust(found_by, int(harmonics), *(number(float(value)) for value in values))
+        for found_by, harmonics, values in zip(cycles.found_by, cycles.harmonics, columns, strict=True)
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,11 +167,13 @@ class _State:
     shares: tuple[float | None, ...] = (None, None, None)
     frequency: float | None = None
     branch: int | None = None
+    trust: _Trust = _Trust()
 
 
 def _row(place: _Place, scales: _Scales, state: _State) -> LimitCycleRow:
     vertical, horizontal, torsional = state.amplitude
     vertical_share, horizontal_share, torsional_share = state.shares
+    trust = state.trust
     sag, speed = float(scales.sag[place.line]), float(scales.speed[place.line])
     return LimitCycleRow(
         model=place.model,
@@ -171,6 +197,12 @@ def _row(place: _Place, scales: _Scales, state: _State) -> LimitCycleRow:
         vertical_share=vertical_share,
         horizontal_share=horizontal_share,
         torsional_share=torsional_share,
+        found_by=trust.found_by,
+        harmonics=trust.harmonics,
+        residual=trust.residual,
+        truncation=trust.truncation,
+        detuning_sensitivity=trust.detuning,
+        direct_difference=trust.direct,
         outcome=state.outcome,
     )
 

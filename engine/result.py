@@ -6,6 +6,7 @@ from typing import Literal
 from engine.outcome import Outcome, Stability
 from engine.spec import Model, Objective
 
+FoundBy = Literal["hopf_branch", "explicit", "energy_balance", "branch"]
 Direction = Literal["vertical", "horizontal", "torsional"]
 
 
@@ -101,6 +102,12 @@ class LimitCycleRow:
     vertical_share: float | None
     horizontal_share: float | None
     torsional_share: float | None
+    found_by: FoundBy | None
+    harmonics: int | None
+    residual: float | None
+    truncation: float | None
+    detuning_sensitivity: float | None
+    direct_difference: float | None
     outcome: Outcome
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from engine.arrays import FloatArray, IntArray
 from engine.bifurcations import Bifurcations
+from engine.confidence import Confidence
 from engine.cycles import Cycles
 from engine.hybrid import ReducedModel
 from engine.modes import assign, solve_symmetric
@@ -33,6 +34,7 @@ class Found:
     loops: IntArray
     crossings: Crossings
     cycles: Cycles
+    confidence: Confidence
     bifurcations: Bifurcations
     winds: FloatArray
 
@@ -64,7 +66,7 @@ def frequency_rows(table: FrequencyTable, loops: tuple[int, ...]) -> list[list[F
     rows: list[list[FrequencyRow]] = by_line(table.line)
     for member, line in enumerate(table.line.tolist()):
         for k in loops:
-            picked = [_number(f) for f in frequency[member, table.loops[member] == k].tolist()]
+            picked = [number(f) for f in frequency[member, table.loops[member] == k].tolist()]
             if picked:
                 outcome = Outcome.STATICALLY_UNSTABLE if None in picked else Outcome.CONVERGED
                 rows[line].append(FrequencyRow(table.name, k, picked[0], picked[1], picked[2], outcome))
@@ -102,7 +104,7 @@ def bifurcation_rows(found: Found) -> list[list[BifurcationRow]]:
             type=b.kind[i].value,
             wind_speed_m_per_s=float(b.wind_speed[i]),
             frequency_hz=float(b.angular_frequency[i] / (2.0 * np.pi)),
-            second_frequency_hz=_number(float(b.second[i] / (2.0 * np.pi))),
+            second_frequency_hz=number(float(b.second[i] / (2.0 * np.pi))),
             uncertainty_m_per_s=float(b.uncertainty[i]),
         )
         table[found.line[member]].append(row)
@@ -121,5 +123,6 @@ def by_line(line: IntArray) -> list[list[Any]]:
     return [[] for _ in range(int(line.max(initial=-1)) + 1)]
 
 
-def _number(value: float) -> float | None:
+def number(value: float) -> float | None:
+    """Return a number, None where it is not finite."""
     return value if math.isfinite(value) else None

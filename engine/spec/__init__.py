@@ -7,6 +7,7 @@ the left support. Every property of a sub-conductor is that of one iced sub-cond
 from engine.spec.analysis import (
     AerodynamicModel,
     Analysis,
+    Check,
     Closure,
     DeviceEffect,
     LongitudinalInertia,
@@ -38,6 +39,7 @@ __all__ = [
     "Analysis",
     "BlowOut",
     "Bundle",
+    "Check",
     "Closure",
     "Coefficients",
     "Conductor",

@@ -61,6 +61,13 @@ class DeviceEffect(StrEnum):
     REPORTED = "reported"
 
 
+class Check(StrEnum):
+    """Whether stable cycles are held against direct integration of the same equations. Theory section 7.5."""
+
+    NONE = "none"
+    DIRECT = "direct"
+
+
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model.
@@ -80,6 +87,7 @@ class Analysis:
     static_twist: StaticTwist = StaticTwist.NEGLECTED
     loop_competition: LoopCompetition = LoopCompetition.NEGLECTED
     device_effect: DeviceEffect = DeviceEffect.NEGLECTED
+    check: Check = Check.NONE
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""

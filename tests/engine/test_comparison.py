@@ -32,6 +32,12 @@ HYBRID = LimitCycleRow(
     vertical_share=None,
     horizontal_share=None,
     torsional_share=None,
+    found_by="hopf_branch",
+    harmonics=5,
+    residual=None,
+    truncation=None,
+    detuning_sensitivity=None,
+    direct_difference=None,
     outcome=Outcome.CONVERGED,
 )
 OTHER = replace(HYBRID, model=Model.FINITE_ELEMENT, branch=3, vertical_m=0.6, horizontal_m=0.8)
