@@ -145,6 +145,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         static_twist=spec.StaticTwist(part.static_twist),
         loop_competition=spec.LoopCompetition(part.loop_competition),
         device_effect=spec.DeviceEffect(part.device_effect),
+        check=spec.Check(part.check),
     )
 
 

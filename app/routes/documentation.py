@@ -9,7 +9,9 @@ from app.export import PARQUET
 from app.faults import Fault
 from app.gate import is_open
 from app.schemas.answers import Problem
+from app.schemas.fields import example_of
 from app.schemas.placement import EXAMPLE as PLACEMENT
+from app.schemas.rows import LimitCycle
 
 _NULL = "\0null"
 _JOB = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e"
@@ -26,30 +28,8 @@ def _marked(value: Any) -> Any:
     return _NULL if value is None else value
 
 
-_RESULT_CYCLE: dict[str, Any] = {
-    "model": "hybrid",
-    "loops": 1,
-    "wind_speed_m_per_s": 4.0,
-    "branch": 0,
-    "kind": "periodic",
-    "stability": "stable",
-    "frequency_hz": 0.4816,
-    "second_frequency_hz": None,
-    "observed_at_m": 62.94,
-    "vertical_m": 0.1568,
-    "horizontal_m": 0.0099,
-    "torsional_rad": 0.0020,
-    "vertical_min_m": None,
-    "horizontal_min_m": None,
-    "torsional_min_rad": None,
-    "vertical_ratio": 0.1018,
-    "horizontal_ratio": 0.0064,
-    "reduced_wind_speed": 0.066,
-    "vertical_share": 0.9927,
-    "horizontal_share": 0.0034,
-    "torsional_share": 0.0039,
-    "outcome": "converged",
-}
+_QUASI_PERIODIC = ("second_frequency_hz", "vertical_min_m", "horizontal_min_m", "torsional_min_rad")
+_RESULT_CYCLE: dict[str, Any] = {**example_of(LimitCycle), **dict.fromkeys(_QUASI_PERIODIC), "direct_difference": None}
 _FREQUENCY: dict[str, Any] = {
     "model": "hybrid",
     "loops": 1,

@@ -1,8 +1,8 @@
 """Fits of measured coefficients: what goes out, ready for a line's ice."""
 
-from app.schemas.answers import DenHartog
 from app.schemas.environment import COEFFICIENTS, Aerodynamics, AerodynamicsAtRest
 from app.schemas.fields import Answer, example_of, told
+from app.schemas.rows import DenHartog
 
 
 class FitResidual(Answer):

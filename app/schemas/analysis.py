@@ -115,6 +115,12 @@ class Analysis(Document):
         examples=["reported"],
     )
 
+    check: Literal["none", "direct"] = Field(
+        default="none",
+        description="Whether every stable cycle is held against 50 periods of direct integration",
+        examples=["direct"],
+    )
+
     @model_validator(mode="after")
     def _distinct(self) -> Self:
         for name in ("loops", "models", "finite_element_loops"):

@@ -8,9 +8,10 @@ from pydantic import Field
 
 from app.examples import example
 from app.schemas.analysis import Analysis
-from app.schemas.answers import Link, Number, Status
+from app.schemas.answers import Link, Status
 from app.schemas.fields import Answer, Document, Label, example_of, told
 from app.schemas.line import Line
+from app.schemas.rows import Number
 
 Count = Annotated[int, Field(ge=0)]
 

@@ -8,7 +8,7 @@ from pydantic import BaseModel
 from app import convert, schemas
 from app.export import PARQUET
 from app.main import create_app
-from app.schemas import aerodynamics, answers, batch, clearance, reference
+from app.schemas import aerodynamics, answers, batch, clearance, reference, rows
 from tests.app import service
 
 
@@ -32,7 +32,11 @@ def bodies(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]
 def model_of(content: dict[str, Any]) -> type[BaseModel] | None:
     name = content.get("schema", {}).get("$ref", "").rpartition("/")[2]
     found = next(
-        (getattr(m, name) for m in (schemas, answers, batch, aerodynamics, clearance, reference) if hasattr(m, name)),
+        (
+            getattr(m, name)
+            for m in (schemas, answers, batch, aerodynamics, clearance, reference, rows)
+            if hasattr(m, name)
+        ),
         None,
     )
     return found if isinstance(found, type) and issubclass(found, BaseModel) else None

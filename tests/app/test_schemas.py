@@ -8,7 +8,7 @@ from pydantic.fields import FieldInfo
 
 from app import schemas
 from app.examples import EXAMPLE_NAMES, example
-from app.schemas import aerodynamics, answers, batch, clearance, reference
+from app.schemas import aerodynamics, answers, batch, clearance, reference, rows
 from app.schemas.fields import Answer
 
 MODELS = [
@@ -18,7 +18,7 @@ MODELS = [
 ]
 ANSWERS = [
     model
-    for module in (answers, batch, aerodynamics, clearance, reference)
+    for module in (answers, batch, aerodynamics, clearance, reference, rows)
     for model in vars(module).values()
     if isinstance(model, type) and issubclass(model, Answer)
 ]

@@ -7,8 +7,9 @@ import pytest
 
 from app import convert
 from app.examples import example
-from app.schemas.answers import PlacedDevice, ResultDocument
+from app.schemas.answers import ResultDocument
 from app.schemas.placement import EXAMPLE
+from app.schemas.rows import PlacedDevice
 
 ANALYSIS = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0]}
 SEARCH: dict[str, Any] = EXAMPLE | {"generations": 1, "population": 5}
