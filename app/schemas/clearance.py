@@ -4,8 +4,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.schemas.answers import Model
 from app.schemas.fields import Answer, example_of, told
+from app.schemas.rows import Model
 
 
 class MotionClearance(Answer):
