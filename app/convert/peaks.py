@@ -21,9 +21,8 @@ def peaks(line: spec.Line, result: Result) -> dict[str, float | None]:
     winds += [0.0 for row in result.frequencies if row.outcome is Outcome.STATICALLY_UNSTABLE]
     amplitudes = [row.vertical_m for _, row in lasting if row.vertical_m is not None]
     orbits = {orbit.cycle: orbit for orbit in result.orbits}
-    known = [orbits[i] for i, row in lasting if row.kind == "periodic" and i in orbits]
-    others = [row for i, row in lasting if row.kind != "periodic" or i not in orbits]
-    height, width = _extents(line, known, others) if lasting else (None, None)
+    known = [(row, orbits[i] if row.kind == "periodic" and i in orbits else None) for i, row in lasting]
+    height, width = _extents(line, known) if lasting else (None, None)
     return {
         "lowest_critical_wind_speed_m_per_s": min(winds, default=None),
         "largest_vertical_m": max(amplitudes, default=None),
@@ -32,7 +31,7 @@ def peaks(line: spec.Line, result: Result) -> dict[str, float | None]:
     }
 
 
-def _extents(line: spec.Line, orbits: Sequence[Orbit], others: Sequence[LimitCycleRow]) -> tuple[float, float]:
+def _extents(line: spec.Line, motions: Sequence[tuple[LimitCycleRow, Orbit | None]]) -> tuple[float, float]:
     """Return height and width of the largest motions: exact from orbits, from above where there are amplitudes only."""
     import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
 
@@ -40,9 +39,15 @@ def _extents(line: spec.Line, orbits: Sequence[Orbit], others: Sequence[LimitCyc
 
     positions = np.array(line.bundle.positions)
     rest, arms = np.ptp(positions, axis=0), np.abs(positions).max(axis=0)[::-1]
-    moved = np.array([(row.vertical_m or 0.0, row.horizontal_m or 0.0) for row in others]).reshape(-1, 2)
-    turned = np.array([row.torsional_rad or 0.0 for row in others])[:, None] * arms
-    found = [rest, *(rest + 2.0 * (moved + turned))]
+    moved = np.array([(row.vertical_m or 0.0, row.horizontal_m or 0.0) for row, _ in motions])
+    mean = [0.0 if orbit is None else abs(orbit.torsional[0]) for _, orbit in motions]
+    turned = np.array([(row.torsional_rad or 0.0) for row, _ in motions]) + mean
+    most, least = (2.0 * (moved + sign * turned[:, None] * arms) for sign in (1.0, -1.0))
+    most += rest
+    # Orbits that cannot reach as far as another one does anyway need not be followed.
+    far = (most >= least.max(axis=0)).any(axis=-1)
+    orbits = [orbit for (_, orbit), reaching in zip(motions, far, strict=True) if orbit is not None and reaching]
+    found = [rest, *(bound for bound, (_, orbit) in zip(most, motions, strict=True) if orbit is None)]
     if orbits:
         series = np.zeros((len(orbits), 3, max(len(orbit.vertical) for orbit in orbits)))
         for place, orbit in zip(series, orbits, strict=True):
