@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 BAD_INPUT = 2
 FAILED = 1
+_FILE_WIDTH = 250
 
 LineFile = Annotated[
     Path,
@@ -123,7 +124,8 @@ def print_table(columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> No
     table = Table(*(name.removesuffix("_at").replace("_", " ") for name in columns), box=SIMPLE_HEAD)
     for row in rows:
         table.add_row(*(_shown(row[name]) for name in columns))
-    Console().print(table)
+    # What goes into a file or to another program is not folded to a terminal's width.
+    Console(width=None if sys.stdout.isatty() else _FILE_WIDTH).print(table)
 
 
 def _shown(value: Any) -> str:
