@@ -27,6 +27,7 @@ from app.routes import (
     batch_results,
     batches,
     clearance,
+    deliveries,
     documentation,
     events,
     health,
@@ -105,8 +106,8 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.batch_watch = Watch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)
     errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance, events):
+    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)
-    for module in (aerodynamics, reference, health):
+    for module in (events, deliveries, aerodynamics, reference, health):
         app.include_router(module.router)
     return app

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, SecretStr, field_validator, model_validator
+from pydantic import Field, FilePath, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from app.weak_secrets import weak_secrets
@@ -65,6 +65,12 @@ class Settings(BaseSettings):
     max_attempts: Count = Field(default=3, description="Attempts before a job counts as lost with its workers")
     soft_time_limit_seconds: Seconds = Field(default=3600.0, description="A job that runs longer fails")
     hard_time_limit_seconds: Seconds = Field(default=3660.0, description="A process that still runs then is killed")
+
+    webhook_private_networks: bool = Field(default=False, description="Webhooks may go to private networks, too")
+    webhook_ca_file: FilePath | None = Field(default=None, description="Authorities that prove webhook receivers")
+    webhook_timeout_seconds: Seconds = Field(default=10.0, description="Longest that sending one webhook takes")
+    webhook_retry_seconds: Seconds = Field(default=5.0, description="First pause between attempts; the next ones grow")
+    webhook_attempts: Count = Field(default=8, description="Attempts before a webhook is given up, after some 27 hours")
 
     log_level: Literal["debug", "info", "warning", "error"] = Field(default="info", description="Least that is logged")
     log_format: Literal["json", "text"] = Field(default="json", description="Logs for machines, or for people")

@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import leases, logs, processes
 from app.db import make_engine, session_factory
 from app.settings import Settings, get_settings
+from worker.courier import courier
 from worker.health import show_life
 from worker.presence import presence
 from worker.sweep import release, sweep
@@ -38,7 +39,11 @@ def main() -> int:
 
 
 def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) -> None:
-    with processes.until_stopped() as wait, presence(sessions, settings, owner) as show_presence:
+    with (
+        processes.until_stopped() as wait,
+        presence(sessions, settings, owner) as show_presence,
+        courier(sessions, settings),
+    ):
         pool = _start_pool(settings, owner)
         while not wait(settings.sweep_seconds):
             if pool.poll() is not None:

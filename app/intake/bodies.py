@@ -12,7 +12,7 @@ from app.intake.columns import Columns
 
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _INFLATED_A_STEP = 1 << 18
-_KNOWN = frozenset({"lines", "analysis"})
+_KNOWN = frozenset({"lines", "analysis", "webhook_url"})
 
 
 class BodyTooLarge(Exception):
@@ -25,6 +25,7 @@ class Incoming:
 
     analysis: object
     lines: Iterator[object]
+    webhook_url: object = None
 
 
 def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
@@ -79,7 +80,7 @@ def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
         faults.append(Fault("/lines", "list_type", "must be a list of lines"))
     if faults:
         raise BadInput(faults)
-    return Incoming(document.get("analysis", {}), iter(document["lines"]))
+    return Incoming(document.get("analysis", {}), iter(document["lines"]), document.get("webhook_url"))
 
 
 def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
@@ -94,9 +95,17 @@ def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
     """
     texts = (text for text in _text_lines(pieces, most_line_bytes) if not text.isspace())
     first = parse_json(next(texts, b"{}"))
-    if not isinstance(first, dict) or first.keys() != {"analysis"}:
-        raise BadInput([Fault("", "missing", 'the first object must be {"analysis": {...}} and nothing else')])
-    return Incoming(first["analysis"], map(_parsed, texts))
+    if not isinstance(first, dict) or first.keys() - {"webhook_url"} != {"analysis"}:
+        raise BadInput(
+            [
+                Fault(
+                    "",
+                    "missing",
+                    'the first object must be {"analysis": {...}}, perhaps with a webhook_url',
+                )
+            ]
+        )
+    return Incoming(first["analysis"], map(_parsed, texts), first.get("webhook_url"))
 
 
 def read_csv(pieces: Iterable[bytes], analysis: object, most_line_bytes: int) -> Incoming:

@@ -13,15 +13,15 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import idempotency, intake
+from app import idempotency, intake, webhooks
 from app.auth import Caller
 from app.errors import ProblemError, ProblemKind, invalid_document, query_fault
-from app.faults import BadInput, parse_json
+from app.faults import BadInput, Fault, parse_json
 from app.idempotency import Key
 from app.intake import BodyTooLarge, Incoming, Participant
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import BATCHES, accepted_batch
-from app.routes.common import CallerOf, SenderOf, Writers
+from app.routes.common import CallerOf, SenderOf, Writers, vet_webhook
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, as_kept, held
 from app.schemas.batch import BatchDocument
 from app.settings import Settings
@@ -49,6 +49,9 @@ class IntakeQuery(BaseModel):
 
     atomic: bool = Field(default=False, description="Take all lines or, if any is at fault, none")
     analysis: str | None = Field(default=None, max_length=20_000, description="Analysis of a CSV batch, as JSON")
+    webhook_url: str | None = Field(
+        default=None, max_length=2000, description="https address that is told of the end, if the body names none"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,14 +111,27 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
             idempotency.renew(session, key)
 
     def on_accept(session: Session, batch_id: UUID) -> None:
+        if webhook_url is not None:
+            webhooks.register(session, caller.owner, webhook_url, batch_id=batch_id)
         answers.append(accepted_batch(session, caller, batch_id))
         if key is not None:
             idempotency.finish(session, key, _sum(posted), as_kept(answers[0]))
 
     takes_part = Participant(on_block, on_accept)
     incoming = _incoming(posted)
+    webhook_url = _webhook_url(posted, incoming)
     receipt = intake.receive(writers, posted.settings, caller, incoming, takes_part, atomic=posted.how.atomic)
     return Made(answers[0], receipt.chunk_ids)
+
+
+def _webhook_url(posted: _Posted, incoming: Incoming) -> str | None:
+    url = posted.how.webhook_url if incoming.webhook_url is None else incoming.webhook_url
+    if url is None:
+        return None
+    if not isinstance(url, str):
+        raise BadInput([Fault("/webhook_url", "string_type", "must be an address")])
+    from_thread.run(vet_webhook, posted.settings, url)
+    return url
 
 
 def _fingerprint(posted: _Posted) -> str:

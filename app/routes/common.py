@@ -8,9 +8,11 @@ from fastapi import Depends, Request
 from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import jobs
+from app import addresses, jobs
+from app.addresses import RefusedAddress
 from app.auth import Caller
-from app.errors import ProblemError, ProblemKind
+from app.errors import ProblemError, ProblemKind, invalid_document
+from app.faults import Fault
 from app.groups import Groups
 from app.queue import Sender
 from app.settings import Settings
@@ -121,6 +123,20 @@ def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
 
 def _no_job(job_id: UUID) -> ProblemError:
     return ProblemError(ProblemKind.NOT_FOUND, f"There is no job {job_id}.")
+
+
+async def vet_webhook(settings: Settings, url: str) -> None:
+    """See to it that a webhook may be sent to an address.
+
+    Raises
+    ------
+    ProblemError
+        422 if nothing is sent there.
+    """
+    try:
+        await addresses.vet(url, private=settings.webhook_private_networks)
+    except RefusedAddress as error:
+        raise invalid_document([Fault("/webhook_url", "refused_address", str(error))]) from error
 
 
 def job_address(job_id: UUID) -> str:

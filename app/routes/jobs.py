@@ -14,7 +14,7 @@ from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 from sqlalchemy.orm import Session
 
-from app import convert, idempotency, jobs, paging, reuse, schemas
+from app import convert, idempotency, jobs, paging, reuse, schemas, webhooks
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
 from app.jobs import CancelOutcome, JobFilters
 from app.routes import documentation
@@ -32,6 +32,7 @@ from app.routes.common import (
     find_status,
     job_address,
     job_document,
+    vet_webhook,
 )
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once_together
 from app.routes.waiting import APPLIED_HEADER, JobWatch, Wait, applied, wait_for_end
@@ -99,6 +100,19 @@ async def _may_reuse(
     return "no-cache" not in cache_control.lower()
 
 
+async def _checked(
+    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)], settings: SettingsOf
+) -> schemas.JobRequest:
+    # Every point of a study is looked at, which may take a while; a line alone takes less than the way to a thread.
+    check = partial(convert.request_faults, document)
+    faults = check() if document.study is None else await to_thread.run_sync(check)
+    if faults:
+        raise invalid_document(faults)
+    if document.webhook_url is not None:
+        await vet_webhook(settings, document.webhook_url)
+    return document
+
+
 @router.post(
     "",
     status_code=202,
@@ -116,7 +130,7 @@ async def _may_reuse(
     },
 )
 async def submit(
-    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
+    document: Annotated[schemas.JobRequest, Depends(_checked)],
     caller: CallerOf,
     key: KeyOf,
     inbox: Inbox,
@@ -128,11 +142,6 @@ async def submit(
     If the owner has results of the same input by this version of the engine, the job has ended with them already, and
     `reused_from` names theirs. `Cache-Control: no-cache` computes anew.
     """
-    # Every point of a study is looked at, which may take a while; a line alone takes less than the way to a thread.
-    check = partial(convert.request_faults, document)
-    faults = check() if document.study is None else await to_thread.run_sync(check)
-    if faults:
-        raise invalid_document(faults)
     line = document.line
     kept = document.kept()
 
@@ -140,12 +149,15 @@ async def submit(
         source = reuse.find(session, caller.owner, kept, convert.ENGINE_VERSION) if may_reuse else None
         job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
         headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
+        if document.webhook_url is not None:
+            session.flush()
+            webhooks.register(session, caller.owner, document.webhook_url, job_id=job.id)
         if source is not None:
             reuse.answer(session, job, source, convert.ENGINE_VERSION)
         return Made(JSONResponse(job_document(job), 202, headers), [job.id] if source is None else [])
 
     def fingerprint() -> str:
-        return idempotency.fingerprint(router.prefix, jobs.canonical(kept))
+        return idempotency.fingerprint(router.prefix, jobs.canonical(kept), document.webhook_url or "")
 
     context = copy_context()  # with the ids of this request
     made = await once_together(inbox, key, fingerprint, lambda session: context.run(make, session))

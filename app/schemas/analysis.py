@@ -221,6 +221,13 @@ class JobRequest(Document):
         default=None, description="Devices to be placed; none if absent, and not beside a study", examples=[PLACEMENT]
     )
 
+    webhook_url: str | None = Field(
+        default=None,
+        max_length=2000,
+        description="https address that is told when the job has ended; none if absent",
+        examples=["https://assets.example.com/galloping"],
+    )
+
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
         if self.study is not None and self.placement is not None:
@@ -230,4 +237,4 @@ class JobRequest(Document):
     def kept(self) -> dict[str, Any]:
         """Return the request with all defaults as it is kept and given back; what was not asked for is left out."""
         absent = {name for name in ("study", "placement") if getattr(self, name) is None}
-        return self.model_dump(mode="json", by_alias=True, exclude=absent)
+        return self.model_dump(mode="json", by_alias=True, exclude={*absent, "webhook_url"})

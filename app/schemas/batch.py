@@ -33,6 +33,12 @@ class BatchRequest(Document):
     analysis: Analysis = Field(
         default=Analysis(), description="What is asked of every line", examples=[{"loops": [1, 2]}]
     )
+    webhook_url: str | None = Field(
+        default=None,
+        max_length=2000,
+        description="https address that is told when the batch has ended; none if absent",
+        examples=["https://assets.example.com/galloping"],
+    )
 
 
 class LineCounts(Answer):

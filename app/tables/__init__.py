@@ -7,6 +7,7 @@ from app.tables.idempotency import IdempotencyKey
 from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.results import PointRow
 from app.tables.tallies import Tally
+from app.tables.webhooks import DeliveryState, WebhookDelivery
 from app.tables.workers import Worker
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "Base",
     "Batch",
     "BatchItem",
+    "DeliveryState",
     "FailureKind",
     "IdempotencyKey",
     "Job",
@@ -27,5 +29,6 @@ __all__ = [
     "PointRow",
     "Tally",
     "UtcDateTime",
+    "WebhookDelivery",
     "Worker",
 ]

@@ -98,9 +98,9 @@ def test_bad_input_is_422_with_the_field(shared_client: httpx.Client, path: str,
 
 def test_all_faults_come_at_once(shared_client: httpx.Client) -> None:
     line = changed("span.length_m", -1.0, changed("devices.2.to_m", 20.0, changed("tags", {"a": 1})))
-    document = problem(shared_client.post("/v1/jobs", json={"line": line, "webhook_url": "https://x.org"}), 422)
+    document = problem(shared_client.post("/v1/jobs", json={"line": line, "webhook": "https://x.org"}), 422)
     found = {fault["pointer"] for fault in document["errors"]}
-    assert found == {"/line/span/length_m", "/line/devices/2/to_m", "/line/tags/a", "/webhook_url"}
+    assert found == {"/line/span/length_m", "/line/devices/2/to_m", "/line/tags/a", "/webhook"}
 
 
 @pytest.mark.parametrize(

@@ -100,7 +100,7 @@ def test_faults_of_schema_parts_and_combination_come_together() -> None:
     line = changed("ice.segments", [{"from_m": 0, "to_m": 20}, {"from_m": 19, "to_m": 40}], line)
     line = changed("devices.1", {"type": "anchor"}, line)
     line = changed("span.elements", 5, line)
-    document = {"line": line, "analysis": {"loops": [9], "aerodynamic_model": "relative_wind"}, "webhook_url": "x"}
+    document = {"line": line, "analysis": {"loops": [9], "aerodynamic_model": "relative_wind"}, "webhook": "x"}
     assert sorted(pointers(document)) == [
         "/analysis/loops",
         "/line/conductor/diameter_m",
@@ -108,7 +108,7 @@ def test_faults_of_schema_parts_and_combination_come_together() -> None:
         "/line/devices/1",
         "/line/devices/2/aerodynamics_at_rest",
         "/line/ice/segments/1",
-        "/webhook_url",
+        "/webhook",
     ]
 
 

@@ -26,7 +26,7 @@ def test_ndjson_is_the_same_however_it_is_cut(size: int) -> None:
 
 
 def test_ndjson_needs_its_analysis_first() -> None:
-    for body in (b"", b'{"n": 1}\n', b"[1]\n", b'{"analysis": {}, "webhook_url": "http://x"}\n'):
+    for body in (b"", b'{"n": 1}\n', b"[1]\n", b'{"analysis": {}, "webhook": "http://x"}\n'):
         with pytest.raises(BadInput) as caught:
             read_ndjson([body], 100)
         assert codes(caught) == [("", "missing")]
@@ -81,8 +81,8 @@ def test_json_is_read_whole_and_names_every_fault() -> None:
     incoming = read_json([b'{"lines": [1, {"a"', b": 2}]}"], 100)
     assert (incoming.analysis, list(incoming.lines)) == ({}, [1, {"a": 2}])
     with pytest.raises(BadInput) as caught:
-        read_json([b'{"webhook_url": "http://x", "lines": {}}'], 100)
-    assert codes(caught) == [("/webhook_url", "unknown_field"), ("/lines", "list_type")]
+        read_json([b'{"webhook": "http://x", "lines": {}}'], 100)
+    assert codes(caught) == [("/webhook", "unknown_field"), ("/lines", "list_type")]
     with pytest.raises(BodyTooLarge, match="NDJSON"):
         read_json([b"x" * 101], 100)
 

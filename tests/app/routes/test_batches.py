@@ -198,7 +198,7 @@ def test_an_atomic_batch_with_a_fault_is_refused_with_all_faults(client: httpx.C
 
 @pytest.mark.parametrize(
     "body",
-    [{"lines": []}, {}, [], {"lines": [TWIN], "webhook_url": "https://x"}, {"lines": [TWIN], "analysis": {"x": 1}}],
+    [{"lines": []}, {}, [], {"lines": [TWIN], "webhook": "https://x"}, {"lines": [TWIN], "analysis": {"x": 1}}],
 )
 def test_bodies_at_fault_are_refused(client: httpx.Client, body: object) -> None:
     answer = client.post("/v1/batches", json=body)

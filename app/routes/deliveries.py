@@ -1,0 +1,95 @@
+"""Deliveries of webhooks: their log, sending them again, and the secret that signs them."""
+
+from typing import Any
+from uuid import UUID
+
+from fastapi import APIRouter
+from fastapi.responses import JSONResponse, Response
+from sqlalchemy.orm import Session
+
+from app import idempotency, webhooks
+from app.errors import ProblemKind
+from app.routes import documentation
+from app.routes.batch_common import batch_address, find_batch
+from app.routes.common import PREFIX, CallerOf, Readers, SettingsOf, Writers, find_job, job_address
+from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
+from app.schemas.deliveries import DeliveryLog, WebhookSecret
+from app.schemas.fields import example_of
+from app.tables import WebhookDelivery
+
+router = APIRouter(prefix=PREFIX, tags=["webhooks"])
+
+_LOG = documentation.body("The deliveries", ("application/json", example_of(DeliveryLog)))
+_READ: dict[int | str, dict[str, Any]] = {200: _LOG, **documentation.problems(ProblemKind.NOT_FOUND)}
+_SEND: dict[int | str, dict[str, Any]] = {
+    202: {**_LOG, "headers": documentation.REPLAYED_HEADER},
+    **documentation.problems(ProblemKind.NOT_FOUND, *KEY_PROBLEMS),
+}
+
+
+def _made(deliveries: list[WebhookDelivery], status: int) -> JSONResponse:
+    return JSONResponse({"deliveries": [_document(delivery) for delivery in deliveries]}, status)
+
+
+def _document(delivery: WebhookDelivery) -> dict[str, Any]:
+    pending = delivery.next_attempt_at if delivery.state == "pending" else None
+    return {
+        "id": f"msg_{delivery.id.hex}",
+        "url": delivery.url,
+        "state": delivery.state,
+        "created_at": delivery.created_at.isoformat(),
+        "next_attempt_at": pending.isoformat() if pending else None,
+        "attempts": delivery.log,
+    }
+
+
+@router.get("/jobs/{job_id}/deliveries", response_model=DeliveryLog, responses=_READ)
+def of_job(job_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
+    """Tell what came of the webhooks of a job, attempt by attempt."""
+    with readers() as session:
+        find_job(session, caller, job_id)
+        return _made(webhooks.of(session, job_id=job_id), 200)
+
+
+@router.get("/batches/{batch_id}/deliveries", response_model=DeliveryLog, responses=_READ)
+def of_batch(batch_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
+    """Tell what came of the webhooks of a batch, attempt by attempt."""
+    with readers() as session:
+        find_batch(session, caller, batch_id)
+        return _made(webhooks.of(session, batch_id=batch_id), 200)
+
+
+@router.post("/jobs/{job_id}/deliveries", status_code=202, response_model=DeliveryLog, responses=_SEND)
+def send_of_job_again(job_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
+    """Send the webhooks of a job that has ended once more, under the ids that they had."""
+
+    def make(session: Session) -> Made:
+        find_job(session, caller, job_id)
+        deliveries = webhooks.of(session, job_id=job_id)
+        webhooks.send_again(session, deliveries)
+        return Made(_made(deliveries, 202))
+
+    return once(writers, key, lambda: idempotency.fingerprint(job_address(job_id), "deliveries"), make).answer
+
+
+@router.post("/batches/{batch_id}/deliveries", status_code=202, response_model=DeliveryLog, responses=_SEND)
+def send_of_batch_again(batch_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
+    """Send the webhooks of a batch that has ended once more, under the ids that they had."""
+
+    def make(session: Session) -> Made:
+        find_batch(session, caller, batch_id)
+        deliveries = webhooks.of(session, batch_id=batch_id)
+        webhooks.send_again(session, deliveries)
+        return Made(_made(deliveries, 202))
+
+    return once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "deliveries"), make).answer
+
+
+@router.get(
+    "/webhooks/secret",
+    response_model=WebhookSecret,
+    responses={200: documentation.body("The secret", ("application/json", example_of(WebhookSecret)))},
+)
+def secret(caller: CallerOf, settings: SettingsOf) -> JSONResponse:
+    """Return the secret with which a receiver of the caller's owner verifies signatures (Standard Webhooks)."""
+    return JSONResponse({"secret": webhooks.secret(settings, caller.owner)})

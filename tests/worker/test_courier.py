@@ -1,0 +1,167 @@
+"""Webhooks from the end of a job to a real receiver with TLS on loopback, on either database."""
+
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import httpx
+import pytest
+from sqlalchemy.orm import Session, sessionmaker
+from standardwebhooks import Webhook
+
+from app.settings import Settings
+from tests.app import service
+from tests.app.lines import SHORT
+from tests.documents import short_request
+from tests.receivers import Receiver, receiver
+from tests.servers import wait_until
+from worker.courier import courier
+from worker.execute import run_job
+
+
+@pytest.fixture
+def received(tmp_path: Path) -> Iterator[tuple[Receiver, Path]]:
+    """Give a receiver and the file of its authority."""
+    with receiver(tmp_path) as made:
+        yield made
+
+
+@pytest.fixture
+def open_settings(settings: Settings, received: tuple[Receiver, Path]) -> Settings:
+    """Give settings that let webhooks go to loopback, with short times."""
+    times = {"webhook_retry_seconds": 0.05, "webhook_timeout_seconds": 2.0, "webhook_attempts": 3}
+    return settings.model_copy(update={**times, "webhook_private_networks": True, "webhook_ca_file": received[1]})
+
+
+@pytest.fixture
+def client(open_settings: Settings) -> Iterator[httpx.Client]:
+    """Give a client of a service whose webhooks may go to loopback."""
+    with service.running(open_settings) as running:
+        yield running
+
+
+def ended(client: httpx.Client, settings: Settings, url: str) -> str:
+    return service.finished(client, settings, {**short_request(), "webhook_url": url})
+
+
+def delivery(client: httpx.Client, address: str) -> dict[str, Any]:
+    (found,) = client.get(f"{address}/deliveries").json()["deliveries"]
+    assert isinstance(found, dict)
+    return found
+
+
+def wait_for(client: httpx.Client, address: str, state: str) -> dict[str, Any]:
+    wait_until(lambda: delivery(client, address)["state"] == state, what=f"a delivery that is {state}")
+    return delivery(client, address)
+
+
+def test_the_end_of_a_job_is_told_signed_and_logged(
+    client: httpx.Client,
+    open_settings: Settings,
+    sessions: sessionmaker[Session],
+    received: tuple[Receiver, Path],
+) -> None:
+    got = received[0].got
+    address = ended(client, open_settings, received[0].url)
+    assert delivery(client, address)["state"] == "waiting"
+    with courier(sessions, open_settings):
+        told = wait_for(client, address, "delivered")
+        assert [entry["status_code"] for entry in told["attempts"]] == [200]
+        headers, body = got[0]
+        secret = client.get("/v1/webhooks/secret").json()["secret"]
+        message = Webhook(secret).verify(body, headers)
+        assert message["type"] == "job.successful"
+        assert message["data"]["href"] == address
+        assert headers["webhook-id"] == told["id"]
+        assert headers["host"] == received[0].url.split("/")[2]
+        assert client.post(f"{address}/deliveries").status_code == 202
+        wait_until(lambda: len(got) == 2, what="the second delivery")
+        assert (got[1][0]["webhook-id"], got[1][1]) == (told["id"], body)
+
+
+def test_a_receiver_at_fault_is_tried_again_until_it_is_given_up(
+    client: httpx.Client,
+    open_settings: Settings,
+    sessions: sessionmaker[Session],
+    received: tuple[Receiver, Path],
+) -> None:
+    received[0].status = 500
+    address = ended(client, open_settings, received[0].url)
+    with courier(sessions, open_settings):
+        told = wait_for(client, address, "failed")
+    assert [entry["status_code"] for entry in told["attempts"]] == [500, 500, 500]
+
+
+def test_a_redirect_is_not_followed(
+    client: httpx.Client,
+    open_settings: Settings,
+    sessions: sessionmaker[Session],
+    received: tuple[Receiver, Path],
+) -> None:
+    received[0].status, received[0].location = 307, "https://127.0.0.1:1/"
+    address = ended(client, open_settings, received[0].url)
+    with courier(sessions, open_settings):
+        told = wait_for(client, address, "failed")
+    assert {entry["status_code"] for entry in told["attempts"]} == {307}
+
+
+def test_a_receiver_that_hangs_holds_up_no_other(
+    client: httpx.Client,
+    open_settings: Settings,
+    sessions: sessionmaker[Session],
+    received: tuple[Receiver, Path],
+    tmp_path: Path,
+) -> None:
+    received[0].hang_seconds = 3.0
+    slow = [ended(client, open_settings, received[0].url) for _ in range(8)]
+    port = int(received[0].url.split(":")[2].split("/")[0])
+    quick = ended(client, open_settings, f"https://localhost:{port + 1 if port < 65535 else port - 1}/refuses")
+    with courier(sessions, open_settings):
+        start = time.monotonic()
+        wait_until(lambda: delivery(client, quick)["attempts"] != [], what="the other's attempt")
+        assert all(delivery(client, address)["attempts"] == [] for address in slow) or time.monotonic() - start > 2.0
+        told = wait_for(client, slow[0], "failed")
+    assert {entry["error"] for entry in told["attempts"]} == {"no answer within 2 s"}
+
+
+def test_the_address_is_vetted_again_at_each_delivery(
+    client: httpx.Client,
+    open_settings: Settings,
+    sessions: sessionmaker[Session],
+    received: tuple[Receiver, Path],
+) -> None:
+    address = ended(client, open_settings, received[0].url)
+    closed = open_settings.model_copy(update={"webhook_private_networks": False})
+    with courier(sessions, closed):
+        told = wait_for(client, address, "failed")
+    assert all("nothing is sent" in entry["error"] for entry in told["attempts"])
+    assert received[0].got == []
+
+
+def test_the_end_of_a_batch_is_told(
+    client: httpx.Client,
+    open_settings: Settings,
+    sessions: sessionmaker[Session],
+    received: tuple[Receiver, Path],
+) -> None:
+    body = {"lines": [short_request()["line"]] * 2, "analysis": SHORT, "webhook_url": received[0].url}
+    address = client.post("/v1/batches", json=body).headers["location"]
+    with courier(sessions, open_settings):
+        for job in client.get("/v1/jobs", params={"batch_id": address[-36:]}).json()["jobs"]:
+            run_job(open_settings, UUID(job["id"]), "test")
+        wait_for(client, address, "delivered")
+    message = json.loads(received[0].got[0][1])
+    assert (message["type"], message["data"]["lines"]["successful"]) == ("batch.successful", 2)
+
+
+def test_private_addresses_are_refused_at_the_post(tmp_path: Path) -> None:
+    body = {"lines": [short_request()["line"]], "analysis": SHORT}
+    with service.running(service.sqlite_settings(tmp_path)) as closed:
+        answer = closed.post("/v1/jobs", json={**short_request(), "webhook_url": "https://127.0.0.1/hook"})
+        assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, "/webhook_url")
+        for url in ("http://example.com/", "https://169.254.169.254/latest", 5):
+            refused = closed.post("/v1/batches", json={**body, "webhook_url": url})
+            assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/webhook_url")

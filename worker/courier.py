@@ -1,0 +1,108 @@
+"""The courier sends webhooks in a thread of its own, many at once, so that a receiver that hangs holds up nobody."""
+
+import asyncio
+import logging
+import ssl
+import threading
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+
+import anyio
+import httpx
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session, sessionmaker
+
+from app import addresses, webhooks
+from app.addresses import RefusedAddress
+from app.settings import Settings
+from app.webhooks import Attempt, Message
+
+_AT_ONCE = 64
+_A_RECEIVER = 4
+_LOOK_SECONDS = 0.5
+
+_logger = logging.getLogger(__name__)
+
+
+@contextmanager
+def courier(sessions: sessionmaker[Session], settings: Settings) -> Iterator[None]:
+    """Send what is due for as long as the context lasts; what is under way then is sent again by another courier."""
+    stopped = threading.Event()
+    rounds = _Rounds(sessions, settings)
+    thread = threading.Thread(target=asyncio.run, args=(rounds.run(stopped),), name="courier", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        stopped.set()
+        thread.join(2.0 * _LOOK_SECONDS)
+
+
+async def send(settings: Settings, message: Message, context: ssl.SSLContext) -> Attempt:
+    """Send a message once to the address that its host has now; nothing of the answer but the status is read."""
+    try:
+        with anyio.fail_after(settings.webhook_timeout_seconds):
+            target = await addresses.vet(message.url, private=settings.webhook_private_networks)
+            async with httpx.AsyncClient(verify=context, trust_env=False, follow_redirects=False) as client:
+                headers = {
+                    **webhooks.signed_headers(settings, message, datetime.now(UTC)),
+                    "Host": target.url.netloc.decode(),
+                }
+                name = {"sni_hostname": target.url.raw_host.decode()}
+                async with client.stream(
+                    "POST", target.pinned, content=message.payload, headers=headers, extensions=name
+                ) as answer:
+                    return Attempt(answer.status_code)
+    except RefusedAddress as error:
+        return Attempt(None, str(error))
+    except TimeoutError:
+        return Attempt(None, f"no answer within {settings.webhook_timeout_seconds:g} s")
+    except (httpx.HTTPError, OSError) as error:
+        return Attempt(None, f"{type(error).__name__}: {error}"[:300])
+
+
+class _Rounds:
+    """What is being sent, counted by receiver."""
+
+    def __init__(self, sessions: sessionmaker[Session], settings: Settings) -> None:
+        self._sessions, self._settings = sessions, settings
+        self._under_way: Counter[str] = Counter()
+
+    async def run(self, stopped: threading.Event) -> None:
+        """Look for what is due until it is stopped."""
+        context = ssl.create_default_context(cafile=self._settings.webhook_ca_file)
+        tasks: set[asyncio.Task[None]] = set()
+        while not stopped.is_set():
+            try:
+                for message in await asyncio.to_thread(self._take):
+                    self._under_way[message.receiver] += 1
+                    task = asyncio.create_task(self._deliver(message, context))
+                    tasks.add(task)
+                    task.add_done_callback(tasks.discard)
+            except SQLAlchemyError as error:
+                _logger.warning("the database failed, webhooks wait: %s", error)
+            await asyncio.sleep(_LOOK_SECONDS)
+        for task in tasks:
+            task.cancel()
+
+    def _take(self) -> list[Message]:
+        room = _AT_ONCE - self._under_way.total()
+        with self._sessions.begin() as session:
+            webhooks.enlist(session)
+            lease = 2.0 * self._settings.webhook_timeout_seconds
+            return webhooks.take_due(session, self._under_way, room, _A_RECEIVER, lease) if room > 0 else []
+
+    async def _deliver(self, message: Message, context: ssl.SSLContext) -> None:
+        try:
+            attempt = await send(self._settings, message, context)
+            await asyncio.to_thread(self._note, message, attempt)
+        except SQLAlchemyError as error:
+            _logger.warning("what came of a webhook is not noted, it is sent again: %s", error)
+        finally:
+            self._under_way[message.receiver] -= 1
+
+    def _note(self, message: Message, attempt: Attempt) -> None:
+        with self._sessions.begin() as session:
+            webhooks.note(session, self._settings, message, attempt)
