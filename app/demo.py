@@ -30,6 +30,8 @@ Jobs = dict[str, dict[str, JobDocument]]
 
 _CYCLES: Json = {"loops": [1, 2], "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 5}}
 _FREQUENCIES: Json = {"loops": [1, 2, 3], "wind_speeds_m_per_s": [], "finite_element_loops": []}
+_COEXISTING: Json = {"loops": [2], "models": ["hybrid"], "wind_speeds_m_per_s": [12.0]}
+_LIGHT_DAMPING = 0.0308  # of torsion, a tenth of the source's
 _TABLES = ("frequencies", "critical-wind-speeds", "limit-cycles")
 _PICTURES = ("amplitude", "orbit")
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
@@ -56,6 +58,7 @@ def main(
             finished = {name: service.results(job["cycles"]).model_dump() for name, job in jobs.items()}
             console.print(_critical_table(finished))
             console.print(_cycle_table(finished))
+            console.print(_coexisting_table(service))
             _save(service, jobs, output)
     except client.ServiceError as error:
         console.print(f"[red]{error}")
@@ -176,6 +179,20 @@ def _cycle_table(results: Mapping[str, Json]) -> Table:
             sizes = [f"{row[key]:.4f}" for key in ("vertical_m", "horizontal_m", "torsional_rad", "frequency_hz")]
             table.add_row(*_whose(name, row), f"{row['wind_speed_m_per_s']:g}", *sizes)
         table.add_section()
+    return table
+
+
+def _coexisting_table(service: Client) -> Table:
+    """Show a line with two stable cycles at one wind speed: which one it takes depends on how it started."""
+    line = example("c11-triple")
+    light = {**line, "damping": {**line["damping"], "torsional_ratio": _LIGHT_DAMPING}}
+    job = _successful(service.wait(service.submit(light, _COEXISTING)))
+    title = f"Cycles of the triple bundle at 12 m/s with a torsional damping ratio of {_LIGHT_DAMPING}"
+    table = _table(title, "stability", "branch", "vertical\n[m]", "horizontal\n[m]", "torsional\n[rad]")
+    for row in service.results(job).model_dump()["limit_cycles"]:
+        if row["kind"] == "periodic":
+            sizes = [f"{row[key]:.4f}" for key in ("vertical_m", "horizontal_m", "torsional_rad")]
+            table.add_row(*_whose("c11-triple", row), row["stability"], str(row["branch"]), *sizes)
     return table
 
 
