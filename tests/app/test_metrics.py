@@ -112,18 +112,18 @@ def test_all_processes_of_an_api_are_counted_even_killed_ones(tmp_path: Path, nu
     port = free_port()
     with running(settings, "-m", "app.serve", "127.0.0.1", str(port)) as api:
         address = f"http://127.0.0.1:{port}"
-        wait_until(lambda: answers(address), 60.0, "the API")
+        wait_until(lambda: answers(address), 120.0, "the API")
         served = {pid for pid in children(api.pid) if "spawn_main" in Path(f"/proc/{pid}/cmdline").read_text()}
         assert len(served) == 2
         for _ in range(number):
             assert httpx.get(f"{address}/v1/jobs/{UUID(int=7)}").status_code == 404
         with httpx.Client(base_url=address) as client:
-            wait_until(lambda: sum(requests(scrape(client), "/v1/jobs/{job_id}").values()) == number, what="all")
+            wait_until(lambda: sum(requests(scrape(client), "/v1/jobs/{job_id}").values()) == number, 60.0, "all")
         assert len(list((tmp_path / f"metrics-{port}").glob("histogram_*.db"))) == 2  # both have served
         for pid in served:
             os.kill(pid, signal.SIGKILL)
-        wait_until(lambda: len(children(api.pid)) >= 2 and not served & set(children(api.pid)), 30.0, "new processes")
-        wait_until(lambda: answers(address), 60.0, "the API again")
+        wait_until(lambda: len(children(api.pid)) >= 2 and not served & set(children(api.pid)), 60.0, "new processes")
+        wait_until(lambda: answers(address), 120.0, "the API again")
         with httpx.Client(base_url=address) as client:
             assert sum(requests(scrape(client), "/v1/jobs/{job_id}").values()) == number
 
