@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: setup demo test check bench validation
+.PHONY: setup demo test check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -31,6 +31,9 @@ check: setup
 bench: setup
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m benchmarks
+
+capacity: setup
+	$(BIN)/python -m benchmarks.capacity
 
 validation: setup
 	$(BIN)/python -m benchmarks.validation

@@ -28,6 +28,7 @@ _MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every proc
 _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded
 _STOP_SECONDS = 10.0
 _LOOK_SECONDS = 0.5
+_START_SECONDS = 60  # a process that says nothing for so long is replaced; loading takes seconds on a busy machine
 
 _logger = logging.getLogger(__name__)
 
@@ -79,6 +80,7 @@ def api(settings: Settings, host: str, port: int) -> int:
     Requests that are being served then are finished, as long as that takes no longer than the time for a stop.
     """
     logs.configure(settings)
+    os.environ.update(settings.environment())  # where the application reads them, here or in children of uvicorn's
     os.environ[_SHARED_METRICS] = str(_empty_folder(settings.data_dir / f"metrics-{port}"))
     uvicorn.run(
         "app.serve:_application",
@@ -89,6 +91,7 @@ def api(settings: Settings, host: str, port: int) -> int:
         log_config=None,
         access_log=False,  # ours is in the place of uvicorn's
         server_header=False,
+        timeout_worker_healthcheck=_START_SECONDS,
         timeout_graceful_shutdown=math.ceil(settings.shutdown_seconds),
     )
     return 0

@@ -1,0 +1,134 @@
+"""What many workers ask of PostgreSQL and Redis: a simulation with measured costs, written into docs/capacity.md.
+
+A closed queueing network, event by event: each worker takes a message from the broker (one thread), claims its chunk,
+computes it, and writes its results; statements run on the processors of the database, bytes go through its one log.
+Between them every worker renews leases and sweeps. The batch never runs dry, so that the rates are those of full load.
+"""
+
+import heapq
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from app.settings import Settings
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "capacity.md"
+FIGURES = ROOT / "benchmarks" / "latest.json"
+WANTED = ("line_", "post_", "read_")
+WORKERS = (1, 10, 100, 1000)
+SEED = 20260101
+CHUNKS_A_WORKER = 12
+SPREAD = 0.15  # of a chunk's computing time about its mean
+CLAIM_MS = 1.0  # of the database for claim, lines and end of a chunk, beside its rows
+HEARTBEAT_MS = 0.3
+SWEEP_MS = 0.6
+LOG_BYTES_PER_S = 200e6  # a fast disk's, with group commit
+
+
+@dataclass(slots=True)
+class Station:
+    """Servers that take what comes in the order in which it comes; `busy` is the time that they worked [s]."""
+
+    servers: int
+    busy: float = 0.0
+    free: list[float] = field(default_factory=list)
+
+    def serve(self, at: float, seconds: float) -> float:
+        """Return when a piece of work that comes at a moment is done."""
+        if not self.free:
+            self.free = [0.0] * self.servers
+        begin = max(at, heapq.heappop(self.free))
+        heapq.heappush(self.free, begin + seconds)
+        self.busy += seconds
+        return begin + seconds
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Lines a second, and the share of the time that each station was busy."""
+
+    lines_per_s: float
+    efficiency: float
+    database: float
+    log: float
+    broker: float
+
+
+def simulate(figures: dict[str, float], workers: int, processors: int, seed: int = SEED) -> Outcome:
+    """Run so many workers against a database with so many processors; costs are per line [ms] and [bytes]."""
+    generator = np.random.default_rng(seed)
+    lines = 1.0 / figures["line_messages"]
+    database, log, broker = Station(processors), Station(1), Station(1)
+    computing = 1e-3 * figures["line_worker_ms"] * lines
+    writing = 1e-3 * (figures["line_database_ms"] * lines + _upkeep_ms(computing))
+    events = [(float(moment), "fetch") for moment in generator.uniform(0.0, computing, workers)]
+    heapq.heapify(events)
+    done, last, wanted = 0, 0.0, CHUNKS_A_WORKER * workers
+    while done < wanted:
+        at, step = heapq.heappop(events)
+        if step == "fetch":
+            arrived = broker.serve(at, 1e-3 * figures["line_broker_ms"] * lines)
+            claimed = database.serve(arrived, 1e-3 * CLAIM_MS)
+            end = claimed + computing * float(generator.lognormal(-0.5 * SPREAD**2, SPREAD))
+            heapq.heappush(events, (end, "store"))
+        else:
+            written = database.serve(at, writing)
+            last = log.serve(written, figures["line_log_bytes"] * lines / LOG_BYTES_PER_S)
+            done += 1
+            heapq.heappush(events, (last, "fetch"))
+    rate = done * lines / last
+    return Outcome(
+        lines_per_s=rate,
+        efficiency=rate * figures["line_worker_ms"] * 1e-3 / workers,
+        database=database.busy / (last * processors),
+        log=log.busy / last,
+        broker=broker.busy / last,
+    )
+
+
+def _upkeep_ms(computing: float) -> float:
+    """Return what leases and sweeps cost the database while a worker computes a chunk [ms]."""
+    settings = Settings()
+    return computing * (HEARTBEAT_MS / settings.heartbeat_seconds + SWEEP_MS / settings.sweep_seconds)
+
+
+def tables(figures: dict[str, float]) -> Iterator[tuple[str, list[str]]]:
+    """Yield the tables of the page by their marks."""
+    rows = [f"| `{name}` | {value:.4g} |" for name, value in sorted(figures.items())]
+    yield "figures", ["| figure | value |", "|---|---|", *rows]
+    names = "workers", "database processors", "lines a second", "of the workers' rate", "database", "log", "broker"
+    rows = []
+    for workers in WORKERS:
+        for processors in (4, 16, 64):
+            found = simulate(figures, workers, processors)
+            shares = (f"{share:.0%}" for share in (found.efficiency, found.database, found.log, found.broker))
+            rows.append(f"| {workers} | {processors} | {found.lines_per_s:,.0f} | {' | '.join(shares)} |")
+    yield "simulation", [f"| {' | '.join(names)} |", "|---" * len(names) + "|", *rows]
+    yield "bytes", list(_bytes(figures))
+
+
+def _bytes(figures: dict[str, float]) -> Iterator[str]:
+    yield "| lines | rows | in the database | in its log | messages |"
+    yield "|---|---|---|---|---|"
+    for lines in (10_000, 100_000, 1_000_000, 10_000_000):
+        sizes = (figures["line_bytes"] * lines / 1e9, figures["line_log_bytes"] * lines / 1e9)
+        rows, messages = figures["line_rows"] * lines, figures["line_messages"] * lines
+        yield f"| {lines:,} | {rows:,.0f} | {sizes[0]:.2f} GB | {sizes[1]:.2f} GB | {messages:,.0f} |"
+
+
+def main() -> None:
+    """Write the tables of docs/capacity.md anew from what `make bench` measured last."""
+    text, found = PAGE.read_text(), json.loads(FIGURES.read_text())
+    for mark, lines in tables({name: value for name, value in found.items() if name.startswith(WANTED)}):
+        before, rest = text.split(f"<!-- {mark} -->", 1)
+        _, after = rest.split("<!-- end -->", 1)
+        text = before + "\n".join([f"<!-- {mark} -->", *lines, "<!-- end -->"]) + after
+    PAGE.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
