@@ -5,7 +5,13 @@ from collections import Counter
 from pathlib import Path
 
 _TICKS = os.sysconf("SC_CLK_TCK")
-_ROLES = ("postgres", "redis", "worker", "app.serve")
+_ROLES = {
+    "postgres": "postgres",
+    "redis": "redis",
+    "worker": "worker",
+    "app.serve": "app.serve",
+    "multiprocessing": "app.serve",  # the API processes, which uvicorn starts
+}
 
 
 def seconds_by_role() -> Counter[str]:
@@ -32,7 +38,7 @@ def _role(process: int) -> str | None:
         command = Path(f"/proc/{process}/cmdline").read_text()
     except OSError:
         return None
-    return next((role for role in _ROLES if role in command), None)
+    return next((role for word, role in _ROLES.items() if word in command), None)
 
 
 def _descends(process: int, parents: dict[int, int]) -> bool:

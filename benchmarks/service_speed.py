@@ -219,7 +219,7 @@ def _wait(condition: Callable[[], bool], seconds: float) -> None:
 
 def _posts(running: Running) -> Iterator[tuple[str, float]]:
     body = json.dumps({"line": example("c11-twin")}).encode()
-    head = f"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    head = f"POST /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
     request: Request = lambda _: head.encode() + body  # noqa: E731 - as short as what it stands for
     closed_loop(running.port, request, 2, b"202")
     spent, latencies, rates = seconds_by_role(), [], []
@@ -243,7 +243,7 @@ def _p99_ms(times: list[float]) -> float:
 
 def _reads(running: Running) -> Iterator[tuple[str, float]]:
     jobs = httpx.get(f"{running.address}/v1/jobs?limit=500").json()["jobs"]
-    requests = [f"GET /v1/jobs/{job['id']} HTTP/1.1\r\nHost: x\r\n\r\n".encode() for job in jobs]
+    requests = [f"GET /v1/jobs/{job['id']} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode() for job in jobs]
     request: Request = lambda number: requests[number % len(requests)]  # noqa: E731 - as above
     closed_loop(running.port, request, 2, b"200")
     spent, rates = seconds_by_role(), []
