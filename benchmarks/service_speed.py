@@ -219,7 +219,8 @@ def _wait(condition: Callable[[], bool], seconds: float) -> None:
 
 def _posts(running: Running) -> Iterator[tuple[str, float]]:
     body = json.dumps({"line": example("c11-twin")}).encode()
-    head = f"POST /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    fields = f"Host: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    head = f"POST /v1/jobs HTTP/1.1\r\n{fields}"
     request: Request = lambda _: head.encode() + body  # noqa: E731 - as short as what it stands for
     closed_loop(running.port, request, 2, b"202")
     spent, latencies, rates = seconds_by_role(), [], []
