@@ -28,6 +28,8 @@ MEANING = {
     "branch_difference": "largest relative difference of the dominant amplitude at AUTO's wind speeds",
     "fleet_lines_per_s_core": "standard line jobs a second and core",
     "fleet_floor_ratio": "their time over that of the LAPACK calls that their numpy form makes, replayed",
+    "fleet_compiled_gain": "the fleet's job with the numpy forms alone over the same with the compiled kernels",
+    "branch_compiled_gain": "the same for a branch in a call of its own",
     "fleet_exponent": "exponent of the time over the number of lines",
     "finite_element_over_hybrid": "cost of the finite element model over the hybrid one",
     "service_overhead_ratio": "a batch through HTTP, queue, worker and database over the engine alone",

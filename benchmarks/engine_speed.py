@@ -125,6 +125,9 @@ def branch() -> Iterator[tuple[str, float]]:
     yield "branch_auto_points", float(np.median([repeated[0].wind_speed.size for repeated in runs]))
     yield "branch_ratio", auto / together
     yield "branch_ratio_alone", auto / alone
+    with numpy_forms():
+        plain = [median_seconds(lambda a=a, b=b: found_cycles(a, b, winds), 3) for a, b in single]  # type: ignore[misc]
+    yield "branch_compiled_gain", float(np.median(plain)) / alone
     yield "branch_difference", max(_difference(a, b, runs[i][0]) for i, (a, b) in enumerate(single))
 
 
@@ -161,20 +164,24 @@ def fleet(largest: int) -> Iterator[tuple[str, float]]:
     generator = np.random.default_rng(20260101)
     lines = [random_line(generator) for _ in range(min(largest, 2000))]
     analysed(lines[:STACK], STANDARD_JOB)
-    rates, floors = [], []
+    rates, floors, gains = [], [], []
     for first in range(0, 320, 64):
         part = lines[first : first + 64]
         with numpy_forms(), recorded_lapack() as calls:
             analysed(part, STANDARD_JOB)
+        with numpy_forms():
+            plain = median_seconds(lambda part=part: analysed(part, STANDARD_JOB), 1)  # type: ignore[misc]
         begin = time.perf_counter()
         analysed(part, STANDARD_JOB)
         whole = time.perf_counter() - begin
+        gains.append(plain / whole)
         begin = time.perf_counter()
         calls.replay()
         floors.append(whole / (time.perf_counter() - begin))
         rates.append(64 / whole)
     yield "fleet_lines_per_s_core", float(np.median(rates))
     yield "fleet_floor_ratio", float(np.median(floors))
+    yield "fleet_compiled_gain", float(np.median(gains))
     yield "fleet_exponent", _exponent(lines, largest)
 
 
