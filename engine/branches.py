@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine import compiled
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, merged
-from engine.continuation import Points, Steps, branches, interpolated, tangents
+from engine.continuation import Points, Problem, Start, Steps, branches, corrected_by_newton, interpolated, tangents
 from engine.harmonic import Orbits, basis, linearized, pick
 from engine.hybrid import ReducedModel
+from engine.newton import Options, Solution
 from engine.stability import Crossings, critical_modes
 
 STEPS = Steps(first=0.2)
@@ -24,7 +26,7 @@ LOWEST_WIND = 0.25  # of the lowest wind speed asked for: branches are not follo
 
 
 @dataclass(frozen=True, slots=True)
-class CycleProblem:
+class CycleProblem(Problem):
     """Harmonic balance of models with the wind speed as parameter, for `engine.continuation`.
 
     model: leading axis (members,); member: (branches,); reference: (branches,), smallest size by which the amplitudes
@@ -37,15 +39,29 @@ class CycleProblem:
 
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the balance and the phase condition <q - q_anchor, dq_anchor/dtau> = 0 with their slopes."""
-        member = self.member[branch]
-        m = self.model.mass.shape[-1]
-        near = orbits_of(anchor, m).coefficients
-        weight = np.diagonal(self.model.mass, axis1=-2, axis2=-1)[member][..., None]
-        phase = merged(weight * (near @ basis(near.shape[-1] // 2).derivative.T), -2)
+        member, m = self.member[branch], self.model.mass.shape[-1]
+        phase = self._phase(anchor, branch)
         drift = np.einsum("kx,kx->k", phase, z[:, :-2] - anchor[:, :-2])
         rows, slopes = linearized(self.model, member, orbits_of(z, m))
         last = np.concatenate([phase, np.zeros((phase.shape[0], 2))], axis=-1)
         return np.concatenate([rows, drift[:, None]], axis=-1), np.concatenate([slopes, last[:, None]], axis=1)
+
+    def _phase(self, anchor: FloatArray, branch: IntArray) -> FloatArray:
+        """Return the row of the phase condition by the coefficients."""
+        near = orbits_of(anchor, self.model.mass.shape[-1]).coefficients
+        weight = np.diagonal(self.model.mass, axis1=-2, axis2=-1)[self.member[branch]][..., None]
+        return merged(weight * (near @ basis(near.shape[-1] // 2).derivative.T), -2)
+
+    def corrected(
+        self, start: Start, branch: IntArray, condition: tuple[FloatArray, FloatArray], options: Options
+    ) -> tuple[Solution, FloatArray]:
+        """Solve together with one linear condition more, in compiled code where there is any."""
+        if not compiled.AVAILABLE:
+            return corrected_by_newton(self, start, branch, condition, options)
+        phase = (self._phase(start.anchor, branch), start.anchor)
+        return compiled.followed_balances(
+            self.model, self.member[branch], phase, condition, (start.guess, start.scale, options)
+        )
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
         """Measure each co-ordinate by its own size, or by a share of the whole, frequency and wind by themselves."""

@@ -33,6 +33,42 @@ class Problem(Protocol):
         """Return the size by which each entry of the points is measured: (k, n + 1)."""
         ...
 
+    def corrected(
+        self, start: "Start", branch: IntArray, condition: tuple[FloatArray, FloatArray], options: Options
+    ) -> tuple[Solution, FloatArray]:
+        """Solve together with the condition row . z = value, of shapes (k, n + 1) and (k,), by Newton's method.
+
+        Return the solution, and the direction (k, n + 1) in which row . z alone grows before the last step.
+        A problem that has no faster way keeps this one.
+        """
+        return corrected_by_newton(self, start, branch, condition, options)
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where Newton's method begins: guess, anchor of the phase, and scale of the step, all (k, n + 1)."""
+
+    guess: FloatArray
+    anchor: FloatArray
+    scale: FloatArray
+
+
+def corrected_by_newton(
+    problem: Problem, start: Start, branch: IntArray, condition: tuple[FloatArray, FloatArray], options: Options
+) -> tuple[Solution, FloatArray]:
+    """Solve a problem and one linear condition more by Newton's method on its slopes; see `Problem.corrected`."""
+    row, value = condition
+    matrices = np.full((*row.shape, row.shape[-1]), np.nan)
+
+    def system(z: FloatArray, index: IntArray) -> tuple[FloatArray, FloatArray]:
+        residual, slopes = problem.system(z, start.anchor[index], branch[index])
+        off = np.einsum("ki,ki->k", row[index], z) - value[index]
+        matrices[index] = np.concatenate([slopes, row[index][:, None]], axis=1)
+        return np.concatenate([residual, off[:, None]], axis=-1), matrices[index]
+
+    solution = newton(system, start.guess, start.scale, options)
+    return solution, _direction(matrices)
+
 
 @dataclass(frozen=True, slots=True)
 class Points:
@@ -76,7 +112,7 @@ def tangents(problem: Problem, z: FloatArray, branch: IntArray, along: FloatArra
     scale = problem.scale(z, branch)
     _, slopes = problem.system(z, z, branch)
     matrix = np.concatenate([slopes, (along / scale**2)[:, None]], axis=1)
-    return _unit(problem, z, branch, matrix)
+    return _unit(problem, z, branch, _direction(matrix))
 
 
 def branches(
@@ -169,29 +205,27 @@ def _at_length(
     """Solve for the points at a given length along the tangents of the base points; NaN where that failed."""
     scale = problem.scale(base.z, base.branch)
     row = base.tangent / scale**2
-    matrices = np.full((*row.shape, row.shape[-1]), np.nan)
-
-    def system(z: FloatArray, index: IntArray) -> tuple[FloatArray, FloatArray]:
-        residual, slopes = problem.system(z, anchor[index], base.branch[index])
-        off = np.einsum("ki,ki->k", row[index], z - base.z[index]) - length[index]
-        matrices[index] = np.concatenate([slopes, row[index][:, None]], axis=1)
-        return np.concatenate([residual, off[:, None]], axis=-1), matrices[index]
-
-    solution = newton(system, guess, scale / np.sqrt(scale.shape[-1]), options)
+    value = np.einsum("ki,ki->k", row, base.z) + length
+    start = Start(guess, anchor, scale / np.sqrt(scale.shape[-1]))
+    solution, direction = problem.corrected(start, base.branch, (row, value), options)
     good = np.flatnonzero(solution.converged)
     z, tangent = np.full_like(guess, np.nan), np.full_like(guess, np.nan)
     z[good] = solution.x[good]
-    # The matrix of the last iteration is that of the point to within the last step: its tangent serves as well.
-    tangent[good] = _unit(problem, z[good], base.branch[good], matrices[good])
+    # The direction is that of the point to within the last step.
+    tangent[good] = _unit(problem, z[good], base.branch[good], direction[good])
     return Points(base.branch, z, tangent), solution
 
 
-def _unit(problem: Problem, z: FloatArray, branch: IntArray, matrix: FloatArray) -> FloatArray:
-    """Solve for the direction in which the last row of the matrix alone grows, of unit length in the scale at z."""
-    right = np.zeros(z.shape)
+def _direction(matrix: FloatArray) -> FloatArray:
+    """Solve for the direction in which the last row of a matrix alone grows."""
+    right = np.zeros(matrix.shape[:-1])
     right[:, -1] = 1.0
-    tangent = solved(matrix, right)
-    return np.asarray(tangent / np.linalg.norm(tangent / problem.scale(z, branch), axis=-1, keepdims=True))
+    return solved(matrix, right)
+
+
+def _unit(problem: Problem, z: FloatArray, branch: IntArray, direction: FloatArray) -> FloatArray:
+    """Scale directions to unit length in the scale at z."""
+    return np.asarray(direction / np.linalg.norm(direction / problem.scale(z, branch), axis=-1, keepdims=True))
 
 
 def onto(problem: Problem, points: Points) -> Points:

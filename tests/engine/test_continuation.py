@@ -11,7 +11,7 @@ from engine.outcome import Outcome
 
 
 @dataclass(frozen=True, slots=True)
-class Circles:
+class Circles(Problem):
     """Circles x^2 + p^2 = r^2, one a branch; folds at p = +-r."""
 
     radius: FloatArray
@@ -26,7 +26,7 @@ class Circles:
 
 
 @dataclass(frozen=True, slots=True)
-class Kink:
+class Kink(Problem):
     """x = |p| near p = 0 has no solution at all beyond: (x - 1)^2 + max(p, 0) = 0 ends at p = 0."""
 
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
