@@ -13,7 +13,7 @@ import numpy as np
 
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, ObjectArray
 from engine.branches import CycleProblem, Traces, orbits_of, points_of, reaches
-from engine.continuation import Points, located, onto
+from engine.continuation import Points, located, onto, points_at
 from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, pick, resized
 from engine.hybrid import ReducedModel, take
@@ -167,7 +167,7 @@ def _finer(problem: CycleProblem, points: Points) -> Points:
     z, tangent = (orbits_of(part, m) for part in (points.z, points.tangent))
     harmonics = z.coefficients.shape[-1] // 2 + MORE_HARMONICS
     more = [points_of(resized(part, harmonics)) for part in (z, tangent)]
-    return onto(problem, Points(points.branch, more[0], more[1]))
+    return onto(problem, points_at(problem, points.branch, more[0], more[1]))
 
 
 def _multipliers(problem: CycleProblem, points: Points) -> tuple[ComplexArray, FloatArray]:

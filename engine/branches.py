@@ -9,7 +9,17 @@ import numpy as np
 
 from engine import compiled
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, merged
-from engine.continuation import Points, Problem, Start, Steps, branches, corrected_by_newton, interpolated, tangents
+from engine.continuation import (
+    Points,
+    Problem,
+    Start,
+    Steps,
+    branches,
+    corrected_by_newton,
+    interpolated,
+    points_at,
+    tangents,
+)
 from engine.harmonic import Orbits, basis, linearized, pick
 from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution
@@ -185,11 +195,11 @@ def at_winds(traces: Traces, winds: FloatArray) -> tuple[IntArray, IntArray, Orb
     segment = np.flatnonzero(points.branch[1:] == points.branch[:-1])
     left, right = points.pick(segment), points.pick(segment + 1)
     part = np.linspace(0.0, 1.0, PARTS + 1)
-    speed = interpolated(problem, left, right, np.broadcast_to(part, (segment.size, part.size)))[..., -1]
+    speed = interpolated(left, right, np.broadcast_to(part, (segment.size, part.size)))[..., -1]
     above = speed[:, :, None] >= winds
     row, cell, wind = np.nonzero(above[:, 1:] != above[:, :-1])
     share = (cell + (winds[wind] - speed[row, cell]) / (speed[row, cell + 1] - speed[row, cell])) / PARTS
-    guess = interpolated(problem, left.pick(row), right.pick(row), share)
+    guess = interpolated(left.pick(row), right.pick(row), share)
     guess[:, -1] = winds[wind]
     return left.branch[row], wind, orbits_of(guess, problem.model.mass.shape[-1])
 
@@ -215,11 +225,8 @@ def _traced(
     problem: CycleProblem, start: FloatArray, direction: FloatArray, winds: FloatArray, born: FloatArray
 ) -> Traces:
     """Run the continuation and tell it where branches end."""
-    scale = problem.scale(start, np.arange(start.shape[0]))
-    unit = direction / np.linalg.norm(direction / scale, axis=-1, keepdims=True)
-    found = [Points(np.arange(start.shape[0]), start, unit)]
-    before = found[0]
-    last = Points(before.branch, start.copy(), unit.copy())
+    before = points_at(problem, np.arange(start.shape[0]), start, direction)
+    found, last = [before], before.pick(before.branch)
     steps = branches(problem, start, direction, STEPS)
     ended = np.zeros(start.shape[0], dtype=np.bool_)
     alive: BoolArray | None = None
@@ -233,8 +240,8 @@ def _traced(
         ended[new.branch] = returned
         found.append(new.pick(~returned))
         alive = ~returned & _goes_on(problem, new, winds) & ~_closed(problem, before.pick(new.branch), new, len(found))
-        last.z[new.branch], last.tangent[new.branch] = new.z, new.tangent
-    every = Points(*(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "tangent")))
+        last.put(new)
+    every = Points(*(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent")))
     return Traces(problem, every.pick(np.argsort(every.branch, kind="stable")), outcome, ended, born)
 
 
@@ -263,7 +270,7 @@ def _closed(problem: CycleProblem, start: Points, new: Points, count: int) -> Bo
     """Tell which branches came back to where they started, so that they are closed."""
     if count < 5:
         return np.zeros(new.branch.size, dtype=np.bool_)
-    scale = problem.scale(start.z, start.branch)
+    scale = start.scale
     first, second = (_invariant(p.z / scale, problem.model.mass.shape[-1]) for p in (start, new))
     near = np.linalg.norm(first - second, axis=-1) < STEPS.largest
     along = np.einsum("ki,ki->k", (start.tangent / scale)[:, -2:], (new.tangent / scale)[:, -2:]) > 0.0

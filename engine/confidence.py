@@ -56,19 +56,30 @@ def confidence(model: ReducedModel, cycles: Cycles, check: Check) -> Confidence:
     direct = np.full(member.size, np.nan)
     if member.size == 0:
         return Confidence(direct, direct, direct, direct)
+    parts = np.empty((3, member.size))
+    for harmonics in np.unique(cycles.harmonics):
+        here = np.flatnonzero(cycles.harmonics == harmonics)
+        parts[:, here] = _measured(model, member[here], resized(pick(orbits, here), int(harmonics)))
     if check is Check.DIRECT:
         stable = np.flatnonzero(cycles.floquet.stability == Stability.STABLE)
         direct[stable] = direct_difference(model, member[stable], pick(orbits, stable))
+    return Confidence(parts[0], parts[1], parts[2], direct)
+
+
+def _measured(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return residual, truncation and detuning of cycles with equally many harmonics: (3, cycles)."""
     rest, _ = linearized(model, member, orbits)
     elastic = np.abs(model.stiffness[member] @ orbits.coefficients).max(axis=(1, 2))
     longer, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
     # Within 0.1 % a close resonance bends: a linear step would not do.
     detuned, solution = balance(_detuned(model), member, orbits)
-    return Confidence(
-        np.abs(rest).max(axis=-1) / elastic,
-        np.abs(_change(model, member, orbits, longer)),
-        np.where(solution.converged, _change(model, member, orbits, detuned), np.nan),
-        direct,
+    change = _change(model, member, orbits, detuned)
+    return np.stack(
+        [
+            np.abs(rest).max(axis=-1) / elastic,
+            np.abs(_change(model, member, orbits, longer)),
+            np.where(solution.converged, change, np.nan),
+        ]
     )
 
 

@@ -72,15 +72,27 @@ def corrected_by_newton(
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Points on branches: branch (k,), z (k, n + 1), tangent (k, n + 1) of unit length in the problem's scale there."""
+    """Points on branches: branch (k,); z, the problem's scale there, and the unit tangent in it, (k, n + 1) each."""
 
     branch: IntArray
     z: FloatArray
+    scale: FloatArray
     tangent: FloatArray
 
     def pick(self, index: IntArray | BoolArray) -> "Points":
         """Pick points of the stack."""
-        return Points(self.branch[index], self.z[index], self.tangent[index])
+        return Points(self.branch[index], self.z[index], self.scale[index], self.tangent[index])
+
+    def put(self, other: "Points") -> None:
+        """Overwrite the points of the branches that the others lie on; here branch i has row i."""
+        self.z[other.branch], self.scale[other.branch] = other.z, other.scale
+        self.tangent[other.branch] = other.tangent
+
+
+def points_at(problem: Problem, branch: IntArray, z: FloatArray, direction: FloatArray) -> Points:
+    """Make points (k, n + 1) of branches (k,) with tangents along given directions."""
+    scale = problem.scale(z, branch)
+    return Points(branch, z, scale, direction / np.linalg.norm(direction / scale, axis=-1, keepdims=True))
 
 
 Test = Callable[[Points], FloatArray]
@@ -112,7 +124,7 @@ def tangents(problem: Problem, z: FloatArray, branch: IntArray, along: FloatArra
     scale = problem.scale(z, branch)
     _, slopes = problem.system(z, z, branch)
     matrix = np.concatenate([slopes, (along / scale**2)[:, None]], axis=1)
-    return _unit(problem, z, branch, _direction(matrix))
+    return points_at(problem, branch, z, _direction(matrix)).tangent
 
 
 def branches(
@@ -143,21 +155,21 @@ def branches(
     """
     steps = steps or Steps()
     active = np.arange(start.shape[0])
-    unit = direction / np.linalg.norm(direction / problem.scale(start, active), axis=-1, keepdims=True)
-    last, before = Points(active, start.copy(), unit), Points(active, np.full_like(start, np.nan), unit.copy())
+    last = points_at(problem, active, start.copy(), direction)
+    before = Points(active, np.full_like(start, np.nan), last.scale.copy(), last.tangent.copy())
     length, count = np.full(active.size, steps.first), np.zeros(active.size, dtype=np.intp)
     outcome = np.full(active.size, Outcome.CONVERGED, dtype=np.object_)
     while active.size:
         here = last.pick(active)
-        guess = _predicted(problem, before.pick(active), here, length[active])
+        guess = _predicted(before.pick(active), here, length[active])
         anchor = np.where(np.isnan(before.z[active]), guess, here.z)  # a start may have no phase of its own
         new, solution = _at_length(problem, here, length[active], guess, anchor, FOLLOWING)
-        good = solution.converged & _faithful(problem, here, new, guess, steps)
+        good = solution.converged & _faithful(here, new, guess, steps)
         growth = 2.0 ** ((steps.iterations - solution.iterations) / steps.iterations)
         length[active] = np.minimum(length[active] * np.where(good, growth, 0.5), steps.largest)
         accepted = new.pick(good)
-        for old, then in ((before, here.pick(good)), (last, accepted)):
-            old.z[accepted.branch], old.tangent[accepted.branch] = then.z, then.tangent
+        before.put(here.pick(good))
+        last.put(accepted)
         count[accepted.branch] += 1
         outcome[active[length[active] < steps.smallest]] = Outcome.NO_CONVERGENCE
         outcome[active[count[active] >= steps.points]] = Outcome.LIMIT_REACHED
@@ -170,32 +182,29 @@ def branches(
     return outcome
 
 
-def interpolated(problem: Problem, left: Points, right: Points, share: FloatArray) -> FloatArray:
+def interpolated(left: Points, right: Points, share: FloatArray) -> FloatArray:
     """Return Hermite's cubic through successive points of branches at shares (k, ...) of the way: (k, ..., n + 1)."""
-    scale = problem.scale(left.z, left.branch)
-    length = np.linalg.norm((right.z - left.z) / scale, axis=-1, keepdims=True)
-    after = length * right.tangent / np.linalg.norm(right.tangent / scale, axis=-1, keepdims=True)
+    length = np.linalg.norm((right.z - left.z) / left.scale, axis=-1, keepdims=True)
+    after = length * right.tangent / np.linalg.norm(right.tangent / left.scale, axis=-1, keepdims=True)
     ends = np.stack([left.z, right.z, length * left.tangent, after], axis=1)
     cube, square = share**3, share**2
     weights = [2.0 * cube - 3.0 * square + 1.0, 3.0 * square - 2.0 * cube, cube - 2.0 * square + share, cube - square]
     return np.asarray(np.einsum("k...e,kez->k...z", np.stack(weights, axis=-1), ends))
 
 
-def _predicted(problem: Problem, before: Points, here: Points, length: FloatArray) -> FloatArray:
+def _predicted(before: Points, here: Points, length: FloatArray) -> FloatArray:
     """Extrapolate Hermite's cubic through the last two points, or the tangent where there is only one."""
-    scale = problem.scale(before.z, before.branch)
-    step = np.linalg.norm((here.z - before.z) / scale, axis=-1)
-    along = np.linalg.norm(here.tangent / scale, axis=-1)
-    cubic = interpolated(problem, before, here, 1.0 + length * along / step)
+    step = np.linalg.norm((here.z - before.z) / before.scale, axis=-1)
+    along = np.linalg.norm(here.tangent / before.scale, axis=-1)
+    cubic = interpolated(before, here, 1.0 + length * along / step)
     return np.where(np.isnan(cubic), here.z + length[:, None] * here.tangent, cubic)
 
 
-def _faithful(problem: Problem, here: Points, new: Points, guess: FloatArray, steps: Steps) -> BoolArray:
+def _faithful(here: Points, new: Points, guess: FloatArray, steps: Steps) -> BoolArray:
     """Tell where a point found lies near its guess and in the direction of the branch: else it may be on another."""
-    scale = problem.scale(here.z, here.branch)
-    turned = new.tangent / scale
-    cosine = np.einsum("ki,ki->k", turned, here.tangent / scale) / np.linalg.norm(turned, axis=-1)
-    far, missed = (np.linalg.norm((new.z - z) / scale, axis=-1) for z in (here.z, guess))
+    turned = new.tangent / here.scale
+    cosine = np.einsum("ki,ki->k", turned, here.tangent / here.scale) / np.linalg.norm(turned, axis=-1)
+    far, missed = (np.linalg.norm((new.z - z) / here.scale, axis=-1) for z in (here.z, guess))
     return np.asarray((cosine > steps.straightness) & (missed < steps.miss * far))
 
 
@@ -203,17 +212,16 @@ def _at_length(
     problem: Problem, base: Points, length: FloatArray, guess: FloatArray, anchor: FloatArray, options: Options
 ) -> tuple[Points, Solution]:
     """Solve for the points at a given length along the tangents of the base points; NaN where that failed."""
-    scale = problem.scale(base.z, base.branch)
-    row = base.tangent / scale**2
+    row = base.tangent / base.scale**2
     value = np.einsum("ki,ki->k", row, base.z) + length
-    start = Start(guess, anchor, scale / np.sqrt(scale.shape[-1]))
+    start = Start(guess, anchor, base.scale / np.sqrt(row.shape[-1]))
     solution, direction = problem.corrected(start, base.branch, (row, value), options)
     good = np.flatnonzero(solution.converged)
-    z, tangent = np.full_like(guess, np.nan), np.full_like(guess, np.nan)
-    z[good] = solution.x[good]
     # The direction is that of the point to within the last step.
-    tangent[good] = _unit(problem, z[good], base.branch[good], direction[good])
-    return Points(base.branch, z, tangent), solution
+    found = points_at(problem, base.branch[good], solution.x[good], direction[good])
+    whole = Points(base.branch, *(np.full_like(guess, np.nan) for _ in range(3)))
+    whole.z[good], whole.scale[good], whole.tangent[good] = found.z, found.scale, found.tangent
+    return whole, solution
 
 
 def _direction(matrix: FloatArray) -> FloatArray:
@@ -221,11 +229,6 @@ def _direction(matrix: FloatArray) -> FloatArray:
     right = np.zeros(matrix.shape[:-1])
     right[:, -1] = 1.0
     return solved(matrix, right)
-
-
-def _unit(problem: Problem, z: FloatArray, branch: IntArray, direction: FloatArray) -> FloatArray:
-    """Scale directions to unit length in the scale at z."""
-    return np.asarray(direction / np.linalg.norm(direction / problem.scale(z, branch), axis=-1, keepdims=True))
 
 
 def onto(problem: Problem, points: Points) -> Points:
@@ -259,21 +262,20 @@ def located(problem: Problem, left: Points, right: Points, test: Test, accuracy:
     Located
         The uncertainty is infinite where the search left the branch.
     """
-    scale = problem.scale(left.z, left.branch)
-    whole = np.einsum("ki,ki->k", left.tangent / scale, (right.z - left.z) / scale)
+    whole = np.einsum("ki,ki->k", left.tangent / left.scale, (right.z - left.z) / left.scale)
     end, other = whole.copy(), np.zeros_like(whole)
     value, other_value = test(right), test(left)
-    found = Points(right.branch, right.z.copy(), right.tangent.copy())
+    found = right.pick(np.arange(whole.size))
     moved = np.full(whole.size, np.inf)
     active = np.arange(whole.size)
     for _ in range(MOST_SECANTS):
         a, b, f_a, f_b = other[active], end[active], other_value[active], value[active]
         middle = (a * f_b - b * f_a) / np.where(f_b == f_a, np.nan, f_b - f_a)
-        guess = interpolated(problem, left.pick(active), right.pick(active), middle / whole[active])
+        guess = interpolated(left.pick(active), right.pick(active), middle / whole[active])
         point, _ = _at_length(problem, left.pick(active), middle, guess, left.z[active], LOCATING)
         f = test(point)
         moved[active] = np.abs(point.z[:, -1] - found.z[active, -1])
-        found.z[active], found.tangent[active] = point.z, point.tangent
+        found.z[active], found.scale[active], found.tangent[active] = point.z, point.scale, point.tangent
         flips = f * f_b < 0.0
         # The end that stays has its value halved, so that it moves in the next step.
         other[active], other_value[active] = np.where(flips, b, a), np.where(flips, f_b, 0.5 * f_a)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.continuation import Points, Problem, Steps, branches, interpolated, located, onto, tangents
+from engine.continuation import Points, Problem, Steps, branches, interpolated, located, onto, points_at, tangents
 from engine.outcome import Outcome
 
 
@@ -102,8 +102,8 @@ def test_folds_are_located() -> None:
 
 
 def test_a_test_function_is_met_inside_a_segment() -> None:
-    left = Points(np.array([0]), np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]))
-    right = Points(np.array([0]), np.array([[0.0, 1.0]]), np.array([[-1.0, 0.0]]))
+    left = points_at(CIRCLES, np.array([0]), np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]))
+    right = points_at(CIRCLES, np.array([0]), np.array([[0.0, 1.0]]), np.array([[-1.0, 0.0]]))
     found = located(CIRCLES, left, right, lambda p: p.z[:, 1] - 0.6, 1e-12)
     assert found.points.z[0] == pytest.approx([0.8, 0.6], abs=1e-10)
 
@@ -114,11 +114,11 @@ def test_tangents_and_hermite_interpolation() -> None:
     branch = np.array([0, 0])
     tangent = tangents(CIRCLES, z, branch, np.array([[-1.0, 0.0], [-1.0, 0.0]]))
     assert tangent == pytest.approx(np.stack([-np.sin(angle), np.cos(angle)], axis=-1))
-    ends = [Points(branch[i : i + 1], z[i : i + 1], tangent[i : i + 1]) for i in (0, 1)]
-    middle = interpolated(CIRCLES, ends[0], ends[1], np.array([0.5]))
+    ends = [points_at(CIRCLES, branch[i : i + 1], z[i : i + 1], tangent[i : i + 1]) for i in (0, 1)]
+    middle = interpolated(ends[0], ends[1], np.array([0.5]))
     assert middle[0] == pytest.approx([np.cos(0.4), np.sin(0.4)], abs=2e-5)
 
 
 def test_points_are_put_onto_the_branch() -> None:
-    near = Points(np.array([1]), np.array([[3.1, 0.0]]), np.array([[0.0, 3.0]]))
+    near = points_at(CIRCLES, np.array([1]), np.array([[3.1, 0.0]]), np.array([[0.0, 3.0]]))
     assert onto(CIRCLES, near).z[0] == pytest.approx([3.0, 0.0], abs=1e-9)
