@@ -19,6 +19,7 @@ from engine.spec import Check
 DETUNING = 1e-3  # share by which the horizontal frequencies are raised
 ONE_STEP = Options(iterations=1)  # the change with one harmonic more is small: a step of Newton's method tells it
 HORIZONTAL = 1
+COARSE = Options(tolerance=1e-3)  # convergence is quadratic: the change is exact to 1e-6 of the amplitude
 PERIODS = 50  # of direct integration from a cycle
 
 
@@ -72,7 +73,7 @@ def _measured(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArr
     elastic = np.abs(model.stiffness[member] @ orbits.coefficients).max(axis=(1, 2))
     longer, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
     # Within 0.1 % a close resonance bends: a linear step would not do.
-    detuned, solution = balance(_detuned(model), member, orbits)
+    detuned, solution = balance(_detuned(model), member, orbits, COARSE)
     change = _change(model, member, orbits, detuned)
     return np.stack(
         [

@@ -6,7 +6,7 @@ from benchmarks.engine_speed import STANDARD_JOB, analysed
 from benchmarks.lines import random_line
 from benchmarks.measure import numpy_forms, recorded_lapack
 
-STEPS_A_CYCLE = 9.0  # of Newton's method for each cycle found, those along the followed branches included
+STEPS_A_CYCLE = 12.5  # of Newton's method for each cycle found: branches and confidence included
 CALLS_A_STACK = 700
 
 
