@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: setup demo test check bench capacity validation
+.PHONY: setup demo test test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -21,6 +21,14 @@ demo: setup
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal tests
+
+# Kills and restarts for some ten minutes, prints what it measured; `make reliability` puts it on docs/reliability.md.
+test-faults: setup
+	$(BIN)/python -m pytest --timeout 840 tests/faults
+	$(BIN)/python -m tests.faults.report
+
+reliability: test-faults
+	$(BIN)/python -m tests.faults.report --write
 
 check: setup
 	$(BIN)/ruff check .

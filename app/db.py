@@ -11,7 +11,7 @@ import orjson
 import psycopg
 from psycopg.sql import SQL, Identifier
 from sqlalchemy import JSON, Connection, Engine, NullPool, Table, create_engine, event, insert, make_url, select
-from sqlalchemy.exc import DBAPIError, IntegrityError
+from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.functions import func
 
@@ -109,6 +109,8 @@ def _as_sqlalchemy_errors() -> Iterator[None]:
         yield
     except psycopg.IntegrityError as error:
         raise IntegrityError(None, None, error) from error
+    except psycopg.OperationalError as error:
+        raise OperationalError(None, None, error) from error
     except psycopg.Error as error:
         raise DBAPIError(None, None, error) from error
 

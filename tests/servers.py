@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from signal import Signals
 from uuid import uuid4
 
 import psycopg
@@ -48,11 +49,11 @@ def wait_until(condition: Callable[[], object], seconds: float = 30.0, what: str
 
 
 @contextlib.contextmanager
-def redis_server(port: int | None = None) -> Iterator[str]:
-    """Run a Redis without persistence and give its address."""
+def redis_server(port: int | None = None, ending: Signals = Signals.SIGINT) -> Iterator[str]:
+    """Run a Redis without persistence and give its address; it is ended by a signal."""
     at = port or free_port()
     arguments = ["--port", str(at), "--bind", "127.0.0.1", "--save", "", "--appendonly", "no", "--daemonize", "no"]
-    with _directory() as directory, _process([binary("redis-server"), *arguments], directory) as alive:
+    with _directory() as directory, _process([binary("redis-server"), *arguments], directory, ending) as alive:
         client = redis.Redis(port=at)
         with contextlib.closing(client):
             wait_until(lambda: alive() and _answers(client.ping, redis.ConnectionError), what="Redis")
@@ -62,17 +63,29 @@ def redis_server(port: int | None = None) -> Iterator[str]:
 @contextlib.contextmanager
 def postgres_server() -> Iterator[str]:
     """Run a PostgreSQL with a superuser `galloping` that needs no password, and give the address of its database."""
-    at = free_port()
+    with postgres_directory() as directory, postgres_running(directory, free_port()) as address:
+        yield address
+
+
+@contextlib.contextmanager
+def postgres_directory() -> Iterator[Path]:
+    """Make the files of a PostgreSQL, which can be started on them again and again."""
     with _directory() as directory:
-        data = directory / "data"
-        initialize = [binary("initdb"), "-D", str(data), "-U", "galloping", "-A", "trust", "-E", "UTF8", "--no-sync"]
+        data = str(directory / "data")
+        initialize = [binary("initdb"), "-D", data, "-U", "galloping", "-A", "trust", "-E", "UTF8", "--no-sync"]
         subprocess.run(initialize, check=True, capture_output=True, cwd=directory, **_account())  # type: ignore[call-overload]
-        quick = ["-c", "fsync=off", "-c", "full_page_writes=off", "-c", "unix_socket_directories="]
-        run = [binary("postgres"), "-D", str(data), "-p", str(at), "-c", "listen_addresses=127.0.0.1", *quick]
-        address = f"postgresql://galloping@127.0.0.1:{at}/postgres"
-        with _process(run, directory) as alive:
-            wait_until(lambda: alive() and _answers(lambda: _connect(address), psycopg.Error), what="PostgreSQL")
-            yield address
+        yield directory
+
+
+@contextlib.contextmanager
+def postgres_running(directory: Path, port: int, ending: Signals = Signals.SIGINT) -> Iterator[str]:
+    """Run a PostgreSQL on its files, and end it by a signal: SIGINT closes its connections, SIGQUIT is a crash."""
+    quick = ["-c", "fsync=off", "-c", "full_page_writes=off", "-c", "unix_socket_directories="]
+    where = ["-D", str(directory / "data"), "-p", str(port), "-c", "listen_addresses=127.0.0.1"]
+    address = f"postgresql://galloping@127.0.0.1:{port}/postgres"
+    with _process([binary("postgres"), *where, *quick], directory, ending) as alive:
+        wait_until(lambda: alive() and _answers(lambda: _connect(address), psycopg.Error), what="PostgreSQL")
+        yield address
 
 
 @contextlib.contextmanager
@@ -121,10 +134,10 @@ def _directory() -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def _process(command: Sequence[str], directory: Path) -> Iterator[Callable[[], bool]]:
+def _process(command: Sequence[str], directory: Path, ending: Signals = Signals.SIGINT) -> Iterator[Callable[[], bool]]:
     """Run a server with its output in a file, give a check that it still runs, and end it by its own id."""
     log = directory / "log"
-    with log.open("wb") as output:
+    with log.open("ab") as output:
         process = subprocess.Popen(command, stdout=output, stderr=output, cwd=directory, **_account())  # type: ignore[call-overload]
 
     def alive() -> bool:
@@ -135,7 +148,7 @@ def _process(command: Sequence[str], directory: Path) -> Iterator[Callable[[], b
     try:
         yield alive
     finally:
-        process.send_signal(subprocess.signal.SIGINT)  # type: ignore[attr-defined]
+        process.send_signal(ending)
         try:
             process.wait(10.0)
         except subprocess.TimeoutExpired:

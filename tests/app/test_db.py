@@ -1,16 +1,17 @@
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from uuid import uuid4
 
 import pytest
 from sqlalchemy import select, text, update
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import DBAPIError, OperationalError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.db import database_time, make_engine, session_factory
+from app.db import database_time, insert_rows, make_engine, session_factory
 from app.serve import migrate
 from app.settings import Settings
-from app.tables import Job
+from app.tables import BatchItem, Job
 from tests.documents import add_job, look
 
 
@@ -66,3 +67,15 @@ def test_sqlite_keeps_a_log_and_enforces_foreign_keys(tmp_path: Path) -> None:
         assert connection.scalar(text("PRAGMA journal_mode")) == "wal"
         assert connection.scalar(text("PRAGMA foreign_keys")) == 1
     engine.dispose()
+
+
+@pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
+def test_copy_on_a_lost_connection_is_an_operational_error(sessions: sessionmaker[Session]) -> None:
+    row = {"batch_id": uuid4(), "number": 1, "document": {}, "chunk_id": uuid4()}
+    with pytest.raises(OperationalError), sessions.begin() as session:
+        own = session.scalar(text("SELECT pg_backend_pid()"))
+        with sessions.begin() as other:
+            other.execute(text("SELECT pg_terminate_backend(:own, 5000)"), {"own": own})
+        insert_rows(session, BatchItem, [row])
+    with sessions() as session:
+        assert session.scalars(select(BatchItem)).all() == []
