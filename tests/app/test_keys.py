@@ -1,5 +1,4 @@
 from datetime import UTC, datetime, timedelta
-from uuid import uuid4
 
 import pytest
 from sqlalchemy import select, text
@@ -82,7 +81,9 @@ def test_a_key_is_revoked_by_id_by_what_is_shown_or_by_itself(sessions: sessionm
     assert not any(key in (event.detail or "") for event in events for key in made)
 
 
-@pytest.mark.parametrize("said", ["galloping_", "", "g", "galloping_zzzz", str(uuid4()), "%", "galloping_%"])
+@pytest.mark.parametrize(
+    "said", ["galloping_", "", "g", "galloping_zzzz", "148ea9e0-ed07-416f-8e9b-b39aa87cd110", "%", "galloping_%"]
+)
 def test_what_fits_none_or_several_revokes_none(sessions: sessionmaker[Session], said: str) -> None:
     make(sessions)
     make(sessions)
