@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
 _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded
+_METRICS_BYTES = 1 << 20  # far more than all routes and answers need
 _STOP_SECONDS = 10.0
 _LOOK_SECONDS = 0.5
 _START_SECONDS = 60  # a process that says nothing for so long is replaced; loading takes seconds on a busy machine
@@ -138,6 +139,7 @@ def _application() -> "Service":
     from app.main import create_app  # noqa: PLC0415 - the client library of the metrics reads the variable as it loads
 
     settings = get_settings()
+    _reserve_metrics(Path(os.environ[_SHARED_METRICS]))
     telemetry.configure(settings, "api")
     if settings.api_processes > 1:
         logs.configure(settings)
@@ -150,6 +152,14 @@ def _empty_folder(path: Path) -> Path:
     shutil.rmtree(path, ignore_errors=True)
     path.mkdir(parents=True)
     return path
+
+
+def _reserve_metrics(folder: Path) -> None:
+    """Write the file of this process's metrics in full: the library maps it, and a disk without room kills who counts.
+
+    It would make a sparse file, whose pages are only sought when they are written, by a signal instead of an error.
+    """
+    (folder / f"histogram_{os.getpid()}.db").write_bytes(bytes(_METRICS_BYTES))
 
 
 def _take_turns(connection: Connection) -> None:
