@@ -50,7 +50,9 @@ class Service(FastAPI):
     def openapi(self) -> dict[str, Any]:
         """Return the OpenAPI document."""
         if not self.openapi_schema:
-            self.openapi_schema = documentation.guarded(documentation.with_nulls(super().openapi()))
+            self.openapi_schema = documentation.guarded(
+                documentation.as_sent(documentation.with_nulls(super().openapi()))
+            )
         return self.openapi_schema
 
     def build_middleware_stack(self) -> ASGIApp:

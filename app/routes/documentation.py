@@ -206,27 +206,21 @@ _FAULTS = {
     ProblemKind.INVALID_PARAMETER: [Fault("/query/cursor", "invalid", "the cursor is not one of ours")],
 }
 
-# The model brings its schema into the document; the example says under which media type it is sent.
 UNCHANGED: dict[int | str, dict[str, Any]] = {
     304: {
         "description": "The client has it: the `ETag` is among those of `If-None-Match`",
         "headers": {"ETag": {"description": "Strong tag of the answer", "schema": {"type": "string"}}},
     }
 }
-ANY_PROBLEM: dict[str, Any] = {
-    "model": Problem,
+# The model brings its schema into the document, under a media type of FastAPI's choice, which `as_sent` corrects.
+ANY_PROBLEM: dict[str, Any] = {"model": Problem}
+_ANY_PROBLEM_AS_SENT: dict[str, Any] = {
     "description": "Problem details (RFC 9457), as application/problem+json",
     "content": {
-        "application/json": {
-            "example": problem_document(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description, _ADDRESS)
+        MEDIA_TYPE: {
+            "schema": _PROBLEM_SCHEMA,
+            "example": problem_document(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description, _ADDRESS),
         }
-    },
-}
-# Where the good answer is no JSON, FastAPI would give the problem its media type.
-PROBLEM_OF_A_STREAM: dict[str, Any] = {
-    "description": ANY_PROBLEM["description"],
-    "content": {
-        MEDIA_TYPE: {"schema": _PROBLEM_SCHEMA, "example": ANY_PROBLEM["content"]["application/json"]["example"]}
     },
 }
 
@@ -249,6 +243,14 @@ def with_nulls(document: Any) -> Any:
     if isinstance(document, list):
         return [with_nulls(value) for value in document]
     return None if document == _NULL else document
+
+
+def as_sent(document: dict[str, Any]) -> dict[str, Any]:
+    """Return an OpenAPI document in which every problem that is not named has the media type that it is sent with."""
+    for operations in document["paths"].values():
+        for operation in operations.values():
+            operation["responses"]["default"] = _ANY_PROBLEM_AS_SENT
+    return document
 
 
 def guarded(document: dict[str, Any]) -> dict[str, Any]:

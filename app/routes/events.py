@@ -41,7 +41,6 @@ _STREAM: dict[int | str, dict[str, Any]] = {
     },
     204: {"description": "Everything was sent before; a browser then asks no more"},
     **documentation.problems(ProblemKind.NOT_FOUND),
-    "default": documentation.PROBLEM_OF_A_STREAM,
 }
 
 

@@ -49,6 +49,7 @@ _PROBLEMS = {
     **documentation.UNCHANGED,
     **documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED),
 }
+_PICTURE_PROBLEMS = {**_PROBLEMS, **documentation.problems(ProblemKind.INVALID_PARAMETER)}
 _TABLE_PROBLEMS = {
     **_PROBLEMS,
     **documentation.problems(ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_ACCEPTABLE),
@@ -111,7 +112,7 @@ def table(
 @router.get(
     "/plots/study.{extension}",
     response_class=Response,
-    responses={200: documentation.PICTURE_ANSWER, **_PROBLEMS},
+    responses={200: documentation.PICTURE_ANSWER, **_PICTURE_PROBLEMS},
 )
 def study_plot(
     extension: PictureFormat,
@@ -135,7 +136,7 @@ def study_plot(
 @router.get(
     "/plots/{picture}.{extension}",
     response_class=Response,
-    responses={200: documentation.PICTURE_ANSWER, **_PROBLEMS},
+    responses={200: documentation.PICTURE_ANSWER, **_PICTURE_PROBLEMS},
 )
 def plot(
     picture: Picture,
