@@ -130,7 +130,8 @@ def _crosses(judged: Floquet, segment: IntArray, kind: Kind) -> BoolArray:
 
 def _product(factors: ComplexArray) -> FloatArray:
     """Multiply the factors (..., n), large ones cut to size 1, so that the product does not overflow: (...)."""
-    return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
+    with np.errstate(invalid="ignore"):  # multipliers that overflowed leave a product that is not a number
+        return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
 
 
 def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) -> Bifurcations:

@@ -11,7 +11,6 @@ from engine.arrays import FloatArray, IntArray
 from engine.cycles import Cycles
 from engine.harmonic import Orbits, balance, half_peak_to_peak, linearized, pick, resized
 from engine.hybrid import ReducedModel, take
-from engine.integrate import held_amplitude
 from engine.newton import Options
 from engine.outcome import Stability
 from engine.spec import Check
@@ -90,6 +89,8 @@ def direct_difference(model: ReducedModel, member: IntArray, orbits: Orbits) -> 
 
 
 def _held(model: ReducedModel, orbit: Orbits) -> float:
+    from engine.integrate import held_amplitude  # noqa: PLC0415 - only who asks for it waits for scipy's integrators
+
     own = half_peak_to_peak(orbit.coefficients)[0]
     main = int((own * np.sqrt(np.diagonal(model.mass))).argmax())
     return float(held_amplitude(model, orbit, PERIODS)[main] / own[main] - 1.0)
