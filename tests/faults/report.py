@@ -8,7 +8,7 @@ from typing import Any
 from tests.faults import figures
 
 PAGE = Path(__file__).parents[2] / "docs" / "reliability.md"
-_SECTION = "<!-- figures: {} -->\n{}\n<!-- end of figures -->"
+_SECTION = "<!-- figures: {} -->\n{}<!-- end of figures -->"
 
 
 def main() -> None:
@@ -46,7 +46,7 @@ def _with_section(page: str, name: str, text: str) -> str:
         If the page has no such markers.
     """
     pattern = re.escape(_SECTION.format(name, "@")).replace("@", ".*?")
-    changed, count = re.subn(pattern, lambda _: _SECTION.format(name, text), page, flags=re.DOTALL)
+    changed, count = re.subn(pattern, lambda _: _SECTION.format(name, f"{text}\n"), page, flags=re.DOTALL)
     if count != 1:
         raise ValueError(f"{PAGE.name} has {count} places for the figures of {name}, not one")
     return changed
