@@ -1,12 +1,13 @@
 """What several routes share: the state of the application, finding a job, and its status document."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import Annotated, Any
 from uuid import UUID
 
 from fastapi import Depends, Request
 from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session, sessionmaker
+from starlette.types import Receive, Scope, Send
 
 from app import addresses, jobs
 from app.addresses import RefusedAddress
@@ -92,6 +93,22 @@ async def find_status(statuses: Groups[UUID, Job | None], caller: Caller, job_id
     return job
 
 
+class _ClosedStream(StreamingResponse):
+    """A stream whose generator is closed when the answer ends, also where the client leaves before its end."""
+
+    def __init__(self, pieces: Generator[str | bytes, None, None], media_type: str, headers: Mapping[str, str]) -> None:
+        """Take the generator of the pieces."""
+        super().__init__(pieces, media_type=media_type, headers=headers)
+        self._pieces = pieces
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the pieces, and let go of what they hold."""
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._pieces.close()
+
+
 def streamed(
     readers: sessionmaker[Session],
     pieces: Callable[[Session], Iterator[str] | Iterator[bytes]],
@@ -100,11 +117,11 @@ def streamed(
 ) -> StreamingResponse:
     """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
 
-    def stream() -> Iterator[str | bytes]:
+    def stream() -> Generator[str | bytes, None, None]:
         with readers() as session:
             yield from pieces(session)
 
-    return StreamingResponse(stream(), media_type=media_type, headers=headers)
+    return _ClosedStream(stream(), media_type, headers)
 
 
 def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
