@@ -8,15 +8,21 @@ import gzip
 import io
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 from uuid import UUID
 
 import httpx
 import pytest
-from sqlalchemy import inspect, select
+from sqlalchemy import event, inspect, select
+from sqlalchemy.orm import Session
 
+from app import keys
+from app.auth import Scope
 from app.db import make_engine, session_factory
 from app.errors import MEDIA_TYPE
+from app.serve import migrate
 from app.settings import Settings
 from app.tables import Base, Job
 from tests.app import service
@@ -36,6 +42,14 @@ SQL = [
     "$1 ? :name %s",
 ]
 FORMULAS = ["=cmd|' /C calc'!A0", "+1+1", "-2+3", "@SUM(A1)", "\uff1d1+1"]
+TRAVERSALS = [
+    "../../etc/passwd",
+    "..%2f..%2fetc%2fpasswd",
+    "..\\..\\windows",
+    "/etc/passwd",
+    "file:///etc/passwd",
+    "%00",
+]
 
 
 @pytest.fixture(scope="module")
@@ -136,6 +150,21 @@ def test_exports_of_a_batch_hold_no_formula(client: httpx.Client, own: Settings)
         assert not [cell for cell in words if cell.startswith(tuple("=+-@\t\r\n\uff1d\uff0b\uff0d\uff20"))]
 
 
+@contextmanager
+def asked_database(own: Settings, statements: list[tuple[str, Any]]) -> Iterator[Session]:
+    """Give a session on a migrated database that is undone, and note what it asks."""
+    migrate(own)
+    engine = make_engine(own)
+
+    def note(_: Any, __: Any, statement: str, parameters: Any, *___: Any) -> None:
+        statements.append((statement, parameters))
+
+    event.listen(engine, "before_cursor_execute", note)
+    with session_factory(engine)() as session:
+        yield session
+    engine.dispose()
+
+
 def is_number(cell: str) -> bool:
     try:
         float(cell)
@@ -154,6 +183,19 @@ def test_a_name_is_only_text_in_a_picture(client: httpx.Client, own: Settings, n
         assert drawn.status_code == 200, picture
         assert "<script" not in drawn.text
         assert "script-src" not in drawn.headers["content-security-policy"]
+
+
+@pytest.mark.parametrize("text", TRAVERSALS)
+def test_no_address_leads_to_a_file(client: httpx.Client, own: Settings, text: str) -> None:
+    secret = own.data_dir / "cursor-secret"
+    client.get("/v1/jobs?limit=1")  # makes the secret
+    job = service.finished(client, own)
+    for place in ("/", "/docs/", "/problems/", f"{job}/plots/", f"{job}/results/", "/v1/conductors/", "/v1/batches/"):
+        for suffix in ("", ".svg"):
+            answer = client.get(f"{place}{text}{suffix}")
+            assert answer.status_code in {400, 404, 405}, answer.url
+            assert "root:" not in answer.text
+            assert secret.read_text() not in answer.text
 
 
 def test_a_gzip_bomb_is_413(client: httpx.Client) -> None:
@@ -185,6 +227,12 @@ BAD_TEXTS = {
     "huge number": '{"span": ' + "9" * 90_000 + "}",
     "huge exponent": '{"span": {"length_m": 1e999999}}',
     "NaN": '{"span": {"length_m": NaN}}',
+    "infinity": '{"span": {"length_m": -Infinity}}',
+    "a name twice": '{"span": 1, "span": 2}',
+    "a hidden name twice": '{"span": 1, "sp\\u0061n": 2}',
+    "half a surrogate": '{"name": "\\ud800"}',
+    "prototype": '{"__proto__": {"x": 1}, "constructor": 1}',
+    "many names": json.dumps({str(number): 0 for number in range(7000)}),
 }
 
 
@@ -197,3 +245,36 @@ def test_a_line_made_to_hurt_is_rejected_and_the_others_run(client: httpx.Client
     refused(client.post("/v1/jobs", content=text, headers={"Content-Type": "application/json"}), 422)
     refused(client.post("/v1/batches", content=text, headers={"Content-Type": "application/json"}), 422)
     refused(client.post("/v1/aerodynamics/fit", content=text, headers={"Content-Type": "application/json"}), 422)
+
+
+def test_a_csv_made_to_hurt_is_refused(client: httpx.Client) -> None:
+    headers = {"Content-Type": "text/csv"}
+    for body in (b"," * 90_000, b'"' + b"x" * 90_000, b"a" * 200_000, b"span.length_m\n" + b'"' * 99_999, b"\x00,\x00"):
+        assert client.post("/v1/batches", content=body, headers=headers).status_code in {413, 422}, body[:20]
+
+
+def test_a_cursor_of_one_list_that_was_changed_opens_no_other(client: httpx.Client) -> None:
+    for _ in range(2):
+        service.submit(client)
+    cursor = httpx.URL(client.get("/v1/jobs?limit=1").json()["next"]).params["cursor"]
+    for place in range(0, len(cursor), 3):
+        other = "A" if cursor[place] != "A" else "B"
+        refused(client.get("/v1/jobs", params={"cursor": cursor[:place] + other + cursor[place + 1 :]}), 400)
+    for changed in (cursor[:-4], cursor + cursor, cursor.swapcase(), cursor[::-1]):
+        refused(client.get("/v1/jobs", params={"cursor": changed}), 400)
+    identity = batch(client, LINE).raise_for_status().json()["id"]
+    ranking = client.get(f"/v1/batches/{identity}/ranking", params={"partial": True, "cursor": cursor})
+    refused(ranking, 400)
+
+
+def test_a_key_is_looked_up_in_the_same_way_however_near_it_is(tmp_path: Path) -> None:
+    statements: list[tuple[str, Any]] = []
+    with asked_database(service.sqlite_settings(tmp_path), statements) as session:
+        _, good = keys.create(session, "acme", tuple(Scope), None, None)
+        session.flush()
+        for text in (good[:-1] + "x", "galloping_" + "0" * 48, "", "é" * 5000):
+            statements.clear()
+            assert keys.present(session, keys.digest_of(text)) == (None, False)
+            ((statement, parameters),) = statements
+            assert "WHERE api_keys.digest = ?" in statement
+            assert parameters == (keys.digest_of(text),)  # nothing of the text itself is ever compared

@@ -6,7 +6,7 @@ a batch that there are, so that they reach what lies behind the 404.
 
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
@@ -16,6 +16,7 @@ import pytest
 import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from hypothesis.errors import Unsatisfiable
 from schemathesis import Case, GenerationMode
 from schemathesis.checks import CheckFunction, not_a_server_error
 from schemathesis.core.result import Ok
@@ -91,7 +92,7 @@ def finished_ids(client: httpx.Client, own: Settings) -> dict[str, str]:
 
 
 @pytest.mark.timeout(600)
-@pytest.mark.parametrize("mode", [GenerationMode.POSITIVE], ids=lambda mode: mode.value)
+@pytest.mark.parametrize("mode", list(GenerationMode), ids=lambda mode: mode.value)
 def test_every_answer_is_one_that_the_document_tells_of(served: Served, mode: GenerationMode) -> None:
     schema = schemathesis.openapi.from_dict(served.document)
     answers: Counter[str] = Counter()
@@ -115,10 +116,12 @@ def test_every_answer_is_one_that_the_document_tells_of(served: Served, mode: Ge
                 case.path_parameters = {**(case.path_parameters or {}), **here(served, case)}
             answers[validated(served, case)] += 1
 
-        ask()
+        with suppress(Unsatisfiable):  # nothing can be wrong with a request that has neither parameters nor body
+            ask()
     told = {f"answers with {status}": number for status, number in sorted(answers.items())}
     figures.note(f"schemathesis, {mode.value}", {"operations": operations, "cases": answers.total(), **told})
-    assert not {"401", "403", "429"} & answers.keys()
+    if mode is GenerationMode.POSITIVE:  # what does not fit may lack the key
+        assert not {"401", "403", "429"} & answers.keys()
     assert operations >= 30
 
 
@@ -128,8 +131,8 @@ def here(served: Served, case: Case[Any]) -> dict[str, str]:
 
 def validated(served: Served, case: Case[Any]) -> str:
     """Send a case, hold the answer against the document, and return its status."""
-    case.headers["Authorization"] = served.client.headers["Authorization"]
-    answer = case.call(base_url=str(served.client.base_url), timeout=30)
+    shown = {"Authorization": served.client.headers["Authorization"]}
+    answer = case.call(base_url=str(served.client.base_url), headers=shown, timeout=30)
     if answer.content == b"Invalid HTTP request received.":
         return "400 of the server, to what is no HTTP"
     # Schemathesis takes a stream of events apart as OpenAPI 3.2 has it; the document is 3.1, where it is a text.
