@@ -25,13 +25,19 @@ def client(settings: Settings) -> Iterator[httpx.Client]:
         yield running
 
 
+def submitted(client: httpx.Client, document: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Post a request that may be answered from what is stored, and return the status document."""
+    status: dict[str, Any] = client.post("/v1/jobs", json=document or short_request()).raise_for_status().json()
+    return status
+
+
 def labelled(**labels: Any) -> dict[str, Any]:
     return {**short_request(), "line": {**short_request()["line"], **labels}}
 
 
 def test_the_same_line_is_answered_from_what_is_stored(client: httpx.Client, settings: Settings) -> None:
     first = service.finished(client, settings)
-    again = service.submit(client, labelled(name="another name", asset_id="L9", tags={"a": "b"}))
+    again = submitted(client, labelled(name="another name", asset_id="L9", tags={"a": "b"}))
     assert (again["status"], again["progress"], again["attempt"]) == ("successful", 1.0, 0)
     assert again["reused_from"] == first[-36:]
     assert (again["name"], again["engine_version"]) == ("another name", ENGINE_VERSION)
@@ -43,31 +49,31 @@ def test_the_same_line_is_answered_from_what_is_stored(client: httpx.Client, set
     assert client.get(f"{address}/plots/orbit.svg").status_code == 200
     assert client.delete(first).status_code == 204
     assert client.get(f"{address}/results/limit-cycles").json()["limit_cycles"]
-    third = service.submit(client)
+    third = submitted(client)
     assert third["reused_from"] == again["id"]
 
 
 def test_another_question_is_computed(client: httpx.Client, settings: Settings) -> None:
     service.finished(client, settings)
     other = {**short_request(), "analysis": {**short_request()["analysis"], "harmonics": 6}}
-    assert service.submit(client, other)["status"] == "accepted"
+    assert submitted(client, other)["status"] == "accepted"
     anew = client.post("/v1/jobs", json=short_request(), headers={"Cache-Control": "no-cache"}).json()
     assert (anew["status"], anew["reused_from"]) == ("accepted", None)
 
 
 def test_nothing_is_reused_that_failed_or_was_dismissed(client: httpx.Client, sessions: sessionmaker[Session]) -> None:
-    failed = service.submit(client)
+    failed = submitted(client)
     with sessions.begin() as session:
         held = leases.claim(session, UUID(failed["id"]), "test", 30.0)
         assert held is not None
         leases.fail(session, held, Failure(FailureKind.TIME_LIMIT, "too long"), [point_result()])
-    dismissed = service.submit(client)
+    dismissed = submitted(client)
     client.delete(f"/v1/jobs/{dismissed['id']}")
-    assert (dismissed["status"], service.submit(client)["status"]) == ("accepted", "accepted")
+    assert (dismissed["status"], submitted(client)["status"]) == ("accepted", "accepted")
 
 
 def test_nothing_of_another_owner_or_engine_is_reused(client: httpx.Client, sessions: sessionmaker[Session]) -> None:
-    job = service.submit(client)
+    job = submitted(client)
     with sessions.begin() as session:
         held = leases.claim(session, UUID(job["id"]), "test", 30.0)
         assert held is not None
@@ -75,7 +81,7 @@ def test_nothing_of_another_owner_or_engine_is_reused(client: httpx.Client, sess
         assert reuse.find(session, LOCAL.owner, held.document, ENGINE_VERSION) is None
         assert reuse.find(session, "another", held.document, "9.9.9") is None
         assert reuse.find(session, LOCAL.owner, held.document, "9.9.9") == held.job_id
-    assert service.submit(client)["status"] == "accepted"
+    assert submitted(client)["status"] == "accepted"
 
 
 def test_labels_are_no_part_of_the_input() -> None:
