@@ -134,7 +134,7 @@ def products_over_period(
     basis : pair of arrays (rows, 2 H + 1)
         The Fourier basis and its derivative at Gauss points.
     steps : pair of arrays (cycles,)
-        Number of steps, a multiple of eight, and the row where the cycle's Gauss points begin: first those of all steps
+        Number of steps, a multiple of four, and the row where the cycle's Gauss points begin: first those of all steps
         that come first, then the others.
 
     Returns

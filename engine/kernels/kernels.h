@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
-/* Eight states, samples or steps side by side: arithmetic on one of these is arithmetic on all. */
-#define LANES 8
+/* Four states, samples or steps side by side: arithmetic on one of these is arithmetic on all. */
+#define LANES 4
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
 
 /* Versions of a function, of which the loader takes the one that the processor has the instructions for. */
