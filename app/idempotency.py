@@ -1,8 +1,8 @@
 """Keys under which a POST is done once: the first answer is kept beside what it made, and given to who asks again.
 
 The row of a key is written in the transaction that makes the rest, so that there is both or neither. A body that comes
-in over several transactions holds its key meanwhile, as a lease: a process that dies holds up nobody for long, and one
-that comes back late finds its key with another. The caller commits the transaction.
+in over several transactions holds its key meanwhile, as a lease that its process renews: one that dies holds up nobody
+for long, and one that comes back late finds its key with another. The caller commits the transaction.
 """
 
 import hashlib
@@ -20,8 +20,6 @@ from app.db import database_time
 from app.tables import IdempotencyKey
 
 KEPT = timedelta(hours=24)
-HELD = timedelta(minutes=2)
-"""How long a key is held without a sign of life; a body may be silent for half of it."""
 
 
 class KeyTaken(Exception):
@@ -67,26 +65,26 @@ def keep(session: Session, key: Key, request: str, answer: Answer) -> None:
     _take(session, key, KEPT, {"fingerprint": request, **_columns(answer)})
 
 
-def hold(session: Session, key: Key) -> None:
-    """Reserve a key whose answer comes in a later transaction.
+def hold(session: Session, key: Key, lease: timedelta) -> None:
+    """Reserve a key whose answer comes in a later transaction; it is free again after the lease unless that is renewed.
 
     Raises
     ------
     KeyTaken
         If the key is in use.
     """
-    _take(session, key, HELD, {"fingerprint": None, "status": None, "headers": None, "body": None})
+    _take(session, key, lease, {"fingerprint": None, "status": None, "headers": None, "body": None})
 
 
-def renew(session: Session, key: Key) -> None:
-    """Go on holding a key.
+def renew(session: Session, key: Key, lease: timedelta) -> None:
+    """Go on holding a key for another lease.
 
     Raises
     ------
     KeyTaken
         If another has taken it meanwhile.
     """
-    _change(session, key, {"expires_at": database_time(session) + HELD})
+    _change(session, key, {"expires_at": database_time(session) + lease})
 
 
 def finish(session: Session, key: Key, request: str, answer: Answer) -> None:

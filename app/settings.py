@@ -54,6 +54,7 @@ class Settings(BaseSettings):
     max_batch_line_bytes: Count = Field(default=1_000_000, description="Longest text line of an NDJSON or CSV batch")
     max_batch_lines: Count = Field(default=100_000, description="Most lines of a batch")
     batches_at_once: Count = Field(default=4, description="Batches that one process takes in at once; others wait")
+    key_lease_seconds: Seconds = Field(default=15.0, description="A key whose batch's receiver died is free after that")
     chunk_seconds: Seconds = Field(default=1.0, description="Estimated work that one message of a batch carries")
     most_chunk_lines: Count = Field(default=256, description="Most lines that one message of a batch carries")
 

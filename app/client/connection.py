@@ -20,6 +20,7 @@ Model = TypeVar("Model", bound=BaseModel)
 _STRAINED = frozenset({429, 502, 503, 504})
 _IN_FLIGHT = 409  # of a POST: another with its key is being answered
 _FIRST_PAUSE_SECONDS = 0.1
+_LONGEST_PAUSE_SECONDS = 5.0
 
 
 class ServiceError(Exception):
@@ -144,7 +145,8 @@ class Connection:
                     return _checked(answer)
                 pause = max(pause, _seconds_asked_for(answer))
             time.sleep(min(pause, max(0.0, deadline - time.monotonic())))
-            pause = 2.0 * pause * random.uniform(0.8, 1.0)  # so that many who wait do not come back together
+            # At random, so that many who wait do not come back together.
+            pause = min(2.0 * pause, _LONGEST_PAUSE_SECONDS) * random.uniform(0.8, 1.0)
 
     @contextmanager
     def _speaking(self) -> Iterator[None]:

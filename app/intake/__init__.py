@@ -1,12 +1,11 @@
 """Batches as they come in: bodies taken apart as a stream, lines checked one by one and stored block by block."""
 
 from app.intake.bodies import BodyTooLarge, Incoming, gunzipped, read_csv, read_json, read_ndjson
-from app.intake.receive import Participant, Receipt, lines_a_chunk, receive
+from app.intake.receive import Receipt, lines_a_chunk, receive
 
 __all__ = [
     "BodyTooLarge",
     "Incoming",
-    "Participant",
     "Receipt",
     "gunzipped",
     "lines_a_chunk",

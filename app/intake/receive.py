@@ -54,27 +54,18 @@ def _nothing(*_: object) -> None:
     """Take no part."""
 
 
-@dataclass(frozen=True, slots=True)
-class Participant:
-    """Who takes part in the transactions of a batch: in that of each block of lines, and in that which accepts it.
-
-    Whatever they raise undoes the transaction, and the batch is removed.
-    """
-
-    on_block: Callable[[Session], object] = _nothing
-    on_accept: Callable[[Session, UUID], object] = _nothing
-
-
 def receive(
     sessions: sessionmaker[Session],
     settings: Settings,
     caller: Caller,
     incoming: Incoming,
-    participant: Participant = Participant(),
+    on_accept: Callable[[Session, UUID], object] = _nothing,
     *,
     atomic: bool,
 ) -> Receipt:
     """Check and store the lines of a batch, and accept it if any of them can be run; an atomic one only if all can.
+
+    `on_accept` takes part in the transaction that accepts the batch; if it raises, the batch is removed.
 
     Raises
     ------
@@ -92,12 +83,11 @@ def receive(
     try:
         for block in _blocks(settings, draft, incoming.lines):
             with sessions.begin() as session:
-                participant.on_block(session)
                 batches.add_items(session, block)
         _refuse_hopeless(draft)
         with sessions.begin() as session:
             batches.accept(session, caller, batch_id, draft.chunks, draft.rejected)
-            participant.on_accept(session, batch_id)
+            on_accept(session, batch_id)
     except BaseException:
         with suppress(SQLAlchemyError), sessions.begin() as session:
             batches.discard(session, batch_id)

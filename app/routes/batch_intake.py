@@ -18,7 +18,7 @@ from app.auth import Caller
 from app.errors import ProblemError, ProblemKind, invalid_document, query_fault
 from app.faults import BadInput, Fault, parse_json
 from app.idempotency import Key
-from app.intake import BodyTooLarge, Incoming, Participant
+from app.intake import BodyTooLarge, Incoming
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import BATCHES, accepted_batch
 from app.routes.common import CallerOf, SenderOf, Writers, vet_webhook
@@ -95,8 +95,9 @@ async def submit(
 
 
 def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> Made:
+    take_in, lease_seconds = partial(_take_in, writers, caller, key, posted), posted.settings.key_lease_seconds
     try:
-        return held(writers, key, partial(_fingerprint, posted), partial(_take_in, writers, caller, key, posted))
+        return held(writers, key, partial(_fingerprint, posted), take_in, lease_seconds)
     except BodyTooLarge as error:
         raise ProblemError(ProblemKind.TOO_LARGE, str(error), headers={"Connection": "close"}) from error
     except BadInput as error:
@@ -106,10 +107,6 @@ def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
 def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> Made:
     answers: list[Response] = []
 
-    def on_block(session: Session) -> None:
-        if key is not None:
-            idempotency.renew(session, key)
-
     def on_accept(session: Session, batch_id: UUID) -> None:
         if webhook_url is not None:
             webhooks.register(session, caller.owner, webhook_url, batch_id=batch_id)
@@ -117,10 +114,9 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
         if key is not None:
             idempotency.finish(session, key, _sum(posted), as_kept(answers[0]))
 
-    takes_part = Participant(on_block, on_accept)
     incoming = _incoming(posted)
     webhook_url = _webhook_url(posted, incoming)
-    receipt = intake.receive(writers, posted.settings, caller, incoming, takes_part, atomic=posted.how.atomic)
+    receipt = intake.receive(writers, posted.settings, caller, incoming, on_accept, atomic=posted.how.atomic)
     return Made(answers[0], receipt.chunk_ids)
 
 

@@ -1,8 +1,12 @@
 """A POST under an `Idempotency-Key` is done once; the same request under it gets the first answer again."""
 
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+import logging
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import copy_context
 from dataclasses import dataclass
+from datetime import timedelta
 from typing import Annotated, Any
 from uuid import UUID
 
@@ -17,9 +21,12 @@ from app.groups import Groups
 from app.idempotency import Answer, Key, KeyTaken
 from app.routes.common import RETRY_SECONDS, CallerOf, Change
 
+_RENEWALS_A_LEASE = 5
 _REPLAYED = "Idempotency-Replayed"
 _OF_THE_BODY = frozenset({"content-length", "content-type"})
 KEY_PROBLEMS = (ProblemKind.INVALID_PARAMETER, ProblemKind.REQUEST_IN_FLIGHT, ProblemKind.KEY_REUSED)
+
+_logger = logging.getLogger(__name__)
 
 
 async def _key(
@@ -91,9 +98,13 @@ async def once_together(
 
 
 def held(
-    writers: sessionmaker[Session], key: Key | None, fingerprint: Callable[[], str], work: Callable[[], Made]
+    writers: sessionmaker[Session],
+    key: Key | None,
+    fingerprint: Callable[[], str],
+    work: Callable[[], Made],
+    lease_seconds: float,
 ) -> Made:
-    """Do what takes several transactions while the key is held; the last of them finishes it.
+    """Do what takes several transactions while the key is held under a lease; the last of them finishes it.
 
     Raises
     ------
@@ -104,17 +115,45 @@ def held(
         return work()
     try:
         with writers.begin() as session:
-            idempotency.hold(session, key)
+            idempotency.hold(session, key, timedelta(seconds=lease_seconds))
     except KeyTaken:
         return Made(first_answer(writers, key, fingerprint))
     try:
-        return work()
+        with _renewed(writers, key, lease_seconds):
+            return work()
     except BaseException as error:
         with suppress(SQLAlchemyError), writers.begin() as session:
             idempotency.release(session, key)
         if isinstance(error, KeyTaken):
             raise _in_flight() from error
         raise
+
+
+@contextmanager
+def _renewed(writers: sessionmaker[Session], key: Key, lease_seconds: float) -> Iterator[None]:
+    """Renew the lease of a key in a thread, so that it lasts however slow the work is, and ends with the process.
+
+    Who has lost it to another learns so when the work finishes the key.
+    """
+    ended = threading.Event()
+
+    def run() -> None:
+        while not ended.wait(lease_seconds / _RENEWALS_A_LEASE):
+            try:
+                with writers.begin() as session:
+                    idempotency.renew(session, key, timedelta(seconds=lease_seconds))
+            except KeyTaken:
+                return
+            except SQLAlchemyError as error:
+                _logger.warning("the lease of a key is not renewed: %s", error)
+
+    thread = threading.Thread(target=copy_context().run, args=(run,), name="key-lease", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
 
 
 def first_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callable[[], str]) -> Response:

@@ -10,6 +10,7 @@ from app.settings import Settings
 from app.tables import IdempotencyKey
 from worker.sweep import sweep
 
+HELD = timedelta(seconds=15)
 ANSWER = Answer(202, {"location": "/v1/jobs/1"}, '{"id":"1"}')
 OTHER = Answer(202, {}, '{"id":"2"}')
 
@@ -58,10 +59,10 @@ def test_a_key_is_free_again_after_a_day(sessions: sessionmaker[Session]) -> Non
 def test_a_held_key_has_no_answer_until_it_is_finished(sessions: sessionmaker[Session]) -> None:
     key = new_key("a", "k")
     with sessions.begin() as session:
-        idempotency.hold(session, key)
+        idempotency.hold(session, key, HELD)
     assert found(sessions, key) is None
     with pytest.raises(KeyTaken), sessions.begin() as session:
-        idempotency.hold(session, new_key("a", "k"))
+        idempotency.hold(session, new_key("a", "k"), HELD)
     with sessions.begin() as session:
         idempotency.finish(session, key, "f", ANSWER)
     assert found(sessions, key) == ("f", ANSWER)
@@ -70,12 +71,12 @@ def test_a_held_key_has_no_answer_until_it_is_finished(sessions: sessionmaker[Se
 def test_who_comes_back_late_finds_the_key_taken(sessions: sessionmaker[Session]) -> None:
     late, next_one = new_key("a", "k"), new_key("a", "k")
     with sessions.begin() as session:
-        idempotency.hold(session, late)
-    age(sessions, idempotency.HELD + timedelta(seconds=1))
+        idempotency.hold(session, late, HELD)
+    age(sessions, HELD + timedelta(seconds=1))
     with sessions.begin() as session:
-        idempotency.hold(session, next_one)
+        idempotency.hold(session, next_one, HELD)
     with pytest.raises(KeyTaken), sessions.begin() as session:
-        idempotency.renew(session, late)
+        idempotency.renew(session, late, HELD)
     with pytest.raises(KeyTaken), sessions.begin() as session:
         idempotency.finish(session, late, "f", ANSWER)
     with sessions.begin() as session:
@@ -87,12 +88,12 @@ def test_who_comes_back_late_finds_the_key_taken(sessions: sessionmaker[Session]
 def test_who_shows_life_keeps_the_key(sessions: sessionmaker[Session]) -> None:
     slow = new_key("a", "k")
     with sessions.begin() as session:
-        idempotency.hold(session, slow)
-    age(sessions, idempotency.HELD + timedelta(seconds=1))
+        idempotency.hold(session, slow, HELD)
+    age(sessions, HELD + timedelta(seconds=1))
     with sessions.begin() as session:
-        idempotency.renew(session, slow)
+        idempotency.renew(session, slow, HELD)
     with pytest.raises(KeyTaken), sessions.begin() as session:
-        idempotency.hold(session, new_key("a", "k"))
+        idempotency.hold(session, new_key("a", "k"), HELD)
 
 
 def test_the_sweeper_forgets_what_is_over(sessions: sessionmaker[Session], settings: Settings) -> None:
@@ -102,8 +103,8 @@ def test_the_sweeper_forgets_what_is_over(sessions: sessionmaker[Session], setti
 
     slow = new_key("a", "k")
     with sessions.begin() as session:
-        idempotency.hold(session, slow)
-    age(sessions, idempotency.HELD + timedelta(seconds=1))
+        idempotency.hold(session, slow, HELD)
+    age(sessions, HELD + timedelta(seconds=1))
     sweep(sessions, settings)
     assert kept() == 1  # nobody else has wanted it, so the slow sender may go on
     with sessions.begin() as session:

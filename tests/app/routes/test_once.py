@@ -1,10 +1,9 @@
 """POSTs under an Idempotency-Key, over HTTP."""
 
-import contextlib
 import gzip
 import json
-import socket
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -20,13 +19,11 @@ from app.examples import example
 from app.leases import Failure
 from app.routes.reference_documentation import FIT_REQUESTS
 from app.settings import Settings
-from app.tables import FailureKind, IdempotencyKey, Job
+from app.tables import FailureKind, IdempotencyKey
 from tests.app import service
 from tests.app.lines import SHORT
 from tests.documents import short_request
-from tests.processes import running
-from tests.servers import free_port, wait_until
-from worker.sweep import sweep
+from tests.servers import wait_until
 
 TWIN = example("c11-twin")
 KEY = {"Idempotency-Key": "order-17"}
@@ -141,6 +138,27 @@ def test_a_batch_that_still_comes_in_holds_its_key(client: httpx.Client, session
     assert_same(client.post("/v1/batches", content=NDJSON, headers=headers), first.result())
 
 
+def test_a_slow_sender_keeps_the_key_for_many_leases(settings: Settings) -> None:
+    headers, go_on = {**KEY, **NDJSON_TYPE}, threading.Event()
+
+    def slowly() -> Iterator[bytes]:
+        yield NDJSON[:100]
+        go_on.wait(30.0)
+        yield NDJSON[100:]
+
+    with (
+        service.running(settings.model_copy(update={"key_lease_seconds": 0.5})) as client,
+        ThreadPoolExecutor(1) as pool,
+    ):
+        first = pool.submit(client.post, "/v1/batches", content=slowly(), headers=headers)
+        for _ in range(4):
+            time.sleep(0.5)
+            assert client.post("/v1/batches", content=NDJSON, headers=headers).status_code == 409
+        go_on.set()
+        assert first.result().status_code == 202
+        assert batches_made(client) == 1
+
+
 def test_failed_lines_are_resubmitted_once(client: httpx.Client, sessions: sessionmaker[Session]) -> None:
     address = client.post("/v1/batches", content=NDJSON, headers=NDJSON_TYPE).headers["location"]
 
@@ -166,38 +184,3 @@ def test_a_fit_is_answered_again(client: httpx.Client) -> None:
     assert_same(client.post("/v1/aerodynamics/fit", json=body, headers=KEY), first)
     answer = client.post("/v1/jobs", json=short_request(), headers=KEY)
     assert (answer.status_code, slug(answer)) == (422, "idempotency-key-reused")
-
-
-def test_a_post_whose_server_dies_before_it_publishes_is_done_once(
-    settings: Settings, sessions: sessionmaker[Session]
-) -> None:
-    """The API is killed after the commit, while a broker that accepts and never answers keeps it from publishing."""
-    port = free_port()
-
-    def stored() -> list[UUID]:
-        with sessions() as session:
-            return list(session.scalars(select(Job.id)))
-
-    def listens() -> bool:
-        with socket.socket() as probe:
-            return probe.connect_ex(("127.0.0.1", port)) == 0
-
-    def lost_post() -> None:
-        with contextlib.suppress(httpx.HTTPError):
-            httpx.post(f"http://127.0.0.1:{port}/v1/jobs", json=short_request(), headers=KEY, timeout=60.0)
-
-    with socket.create_server(("127.0.0.1", 0)) as silent:
-        broker = f"redis://127.0.0.1:{silent.getsockname()[1]}/0"
-        deaf = settings.model_copy(update={"broker_url": broker, "broker_timeout_seconds": 60.0})
-        with ThreadPoolExecutor(1) as pool, running(deaf, "-m", "app.serve", "127.0.0.1", str(port)):
-            wait_until(listens, 60.0, "the API")
-            pool.submit(lost_post)
-            wait_until(stored, what="the commit")
-    (job_id,) = stored()
-    with service.running(settings) as client:
-        again = client.post("/v1/jobs", json=short_request(), headers=KEY)
-        assert again.headers["idempotency-replayed"] == "true"
-        assert again.json()["id"] == str(job_id)
-        assert again.headers["location"] == f"/v1/jobs/{job_id}"
-        assert jobs_made(client) == 1
-    assert sweep(sessions, settings.model_copy(update={"sweep_seconds": 1e-9})) == 1
