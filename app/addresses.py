@@ -6,6 +6,8 @@ between the look and the use.
 
 import asyncio
 import socket
+import threading
+from contextlib import suppress
 from dataclasses import dataclass
 from ipaddress import IPv4Address, IPv6Address, IPv6Network, ip_address, ip_network
 
@@ -49,10 +51,9 @@ async def vet(text: str, *, private: bool) -> Target:
     url = _parsed(text)
     try:
         with anyio.fail_after(_RESOLVE_SECONDS):
-            found = await asyncio.get_running_loop().getaddrinfo(url.host, url.port or 443, type=socket.SOCK_STREAM)
+            addresses = await _resolved(url.host, url.port or 443)
     except (OSError, UnicodeError, TimeoutError) as error:
         raise RefusedAddress(f"the host {url.host!r} cannot be resolved") from error
-    addresses = [ip_address(entry[4][0]) for entry in found]
     if not addresses:
         raise RefusedAddress(f"the host {url.host!r} has no address")
     for address in addresses:
@@ -70,6 +71,41 @@ def is_open(address: Address, *, private: bool) -> bool:
     if address.is_loopback or address in _SHARED or (address.is_private and not address.is_reserved):
         return private
     return address.is_global and not address.is_reserved
+
+
+async def _resolved(host: str, port: int) -> list[Address]:
+    """Return the addresses of a host.
+
+    Each look-up has a thread of its own: it cannot be cut off, so that a few which hang would fill a pool for all, and
+    hold up the end of the process.
+
+    Raises
+    ------
+    OSError, UnicodeError
+        If it has none.
+    """
+    loop = asyncio.get_running_loop()
+    answer: asyncio.Future[list[Address]] = loop.create_future()
+
+    def settle(found: list[Address] | Exception) -> None:
+        if answer.done():  # who asked waits no longer
+            return
+        if isinstance(found, Exception):
+            answer.set_exception(found)
+        else:
+            answer.set_result(found)
+
+    def look_up() -> None:
+        found: list[Address] | Exception
+        try:
+            found = [ip_address(entry[4][0]) for entry in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)]
+        except (OSError, UnicodeError) as error:
+            found = error
+        with suppress(RuntimeError):  # the loop has ended meanwhile
+            loop.call_soon_threadsafe(settle, found)
+
+    threading.Thread(target=look_up, name="resolver", daemon=True).start()
+    return await answer
 
 
 def _inner(address: IPv6Address) -> IPv4Address | None:

@@ -6,7 +6,7 @@ jobs and whoever was killed, and workers need no port of their own.
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -21,8 +21,11 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import tallies
 from app.db import database_time
-from app.tables import Job, JobStatus
+from app.tables import DeliveryState, Job, JobStatus, WebhookDelivery
 from app.tallies import Name
+from app.webhooks import GIVEN_UP, Outcome
+
+Totals = Mapping[tuple[str, str], tuple[int, float]]
 
 _METHODS = frozenset({"DELETE", "GET", "HEAD", "OPTIONS", "PATCH", "POST", "PUT"})
 _BUCKETS = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
@@ -77,7 +80,8 @@ class _Jobs:
         up = GaugeMetricFamily("galloping_database_up", "Whether the database has answered this question")
         try:
             with self.readers() as session:
-                families = [*_open_jobs(session), *_counted(session)]
+                totals = tallies.totals(session)
+                families = [*_open_jobs(session), *_counted(totals), *_webhooks(session, totals)]
             up.add_metric([], 1.0)
         except SQLAlchemyError:
             families = []
@@ -121,7 +125,7 @@ def _count_open(session: Session) -> Iterator[_Open]:
         yield _Open(*row)
 
 
-def _counted(session: Session) -> Iterator[Metric]:
+def _counted(totals: Totals) -> Iterator[Metric]:
     labels = ["kind", "status", "failure"]
     ended = CounterMetricFamily("galloping_jobs_ended", "Jobs and chunks that have ended", labels=labels)
     work = CounterMetricFamily("galloping_engine_seconds", "Work of the attempts that ended them", labels=["kind"])
@@ -130,7 +134,7 @@ def _counted(session: Session) -> Iterator[Metric]:
     )
     spent: dict[str, float] = dict.fromkeys(_KINDS.values(), 0.0)
     leases: dict[str, Any] = {"expired": 0, "returned": 0}
-    for (name, label), (count, seconds) in sorted(tallies.totals(session).items()):
+    for (name, label), (count, seconds) in sorted(totals.items()):
         if name == Name.LEASES:
             leases[label] = count
         elif kind := {name.value: kind for name, kind in _KINDS.items()}.get(name):
@@ -142,3 +146,20 @@ def _counted(session: Session) -> Iterator[Metric]:
     for why, count in leases.items():
         lost.add_metric([why], count)
     yield from (ended, work, lost)
+
+
+def _webhooks(session: Session, totals: Totals) -> Iterator[Metric]:
+    attempts = CounterMetricFamily("galloping_webhook_attempts", "Messages sent, once or again", labels=["outcome"])
+    given_up = CounterMetricFamily("galloping_webhooks_given_up", "Messages that no further attempt is made to send")
+    pending = GaugeMetricFamily("galloping_webhooks_pending", "Messages that are being sent or are to be sent")
+    late = GaugeMetricFamily("galloping_webhook_late_seconds", "Since when the oldest message should have been sent")
+    now = database_time(session)
+    due = func.min(WebhookDelivery.next_attempt_at)
+    open_ones = select(func.count(), due).where(WebhookDelivery.state == DeliveryState.PENDING.value)
+    count, oldest = session.execute(open_ones).one()
+    for outcome in Outcome:
+        attempts.add_metric([outcome.value], totals.get((Name.WEBHOOKS.value, outcome.value), (0, 0.0))[0])
+    given_up.add_metric([], totals.get((Name.WEBHOOKS.value, GIVEN_UP), (0, 0.0))[0])
+    pending.add_metric([], count)
+    late.add_metric([], max(0.0, (now - oldest).total_seconds()) if oldest is not None else 0.0)
+    yield from (attempts, given_up, pending, late)

@@ -18,11 +18,12 @@ _WORTH_FOLDING = 200
 
 
 class Name(StrEnum):
-    """What is counted: attempts that ended their job or chunk, and leases that were lost."""
+    """What is counted: attempts that ended their job or chunk, leases that were lost, and attempts to tell somebody."""
 
     JOBS = "jobs"
     CHUNKS = "chunks"
     LEASES = "leases"
+    WEBHOOKS = "webhooks"
 
 
 def add(session: Session, name: Name, label: str, *, count: int = 1, seconds: float = 0.0) -> None:

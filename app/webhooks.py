@@ -5,9 +5,10 @@ import hashlib
 import hmac
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from enum import StrEnum
 from typing import Any
 from uuid import UUID
 
@@ -17,14 +18,24 @@ from sqlalchemy.orm import Session
 from standardwebhooks import Webhook
 from uuid_utils.compat import uuid7
 
-from app import batches
+from app import batches, tallies
 from app.db import database_time
 from app.settings import Settings, cursor_key
 from app.tables import ENDED, Batch, DeliveryState, Job, WebhookDelivery
+from app.tallies import Name
 
 _ROWS_A_LOOK = 200
 _GROWTH = 5.0
 _GONE = 410
+GIVEN_UP = "given_up"
+
+
+class Outcome(StrEnum):
+    """What comes of an attempt: the receiver takes it, answers something else, or does not answer."""
+
+    DELIVERED = "delivered"
+    REFUSED = "refused"
+    NO_ANSWER = "no_answer"
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +48,14 @@ class Attempt:
     @property
     def arrived(self) -> bool:
         """Tell whether the receiver has taken it."""
-        return self.status_code is not None and 200 <= self.status_code < 300
+        return self.outcome is Outcome.DELIVERED
+
+    @property
+    def outcome(self) -> "Outcome":
+        """Return the kind of the answer."""
+        if self.status_code is None:
+            return Outcome.NO_ANSWER
+        return Outcome.DELIVERED if 200 <= self.status_code < 300 else Outcome.REFUSED
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +68,46 @@ class Message:
     receiver: str
     payload: str
     attempt: int
+
+
+class Share:
+    """How many messages are under way, of all, of each owner and to each receiver, and how many may be."""
+
+    def __init__(self, most: int, an_owner: int, a_receiver: int) -> None:
+        """Take the limits."""
+        self._most, self._an_owner, self._a_receiver = most, an_owner, a_receiver
+        self._owners: Counter[str] = Counter()
+        self._receivers: Counter[str] = Counter()
+
+    @property
+    def room(self) -> int:
+        """Return how many more may be under way."""
+        return self._most - self._owners.total()
+
+    def full(self) -> tuple[list[str], list[str]]:
+        """Return the owners and the receivers that may have no more."""
+        owners = [owner for owner, count in self._owners.items() if count >= self._an_owner]
+        return owners, [receiver for receiver, count in self._receivers.items() if count >= self._a_receiver]
+
+    def add(self, owner: str, receiver: str) -> bool:
+        """Count a message unless its owner or its receiver has enough; tell which."""
+        if self._owners[owner] >= self._an_owner or self._receivers[receiver] >= self._a_receiver:
+            return False
+        self._owners[owner] += 1
+        self._receivers[receiver] += 1
+        return True
+
+    def copy(self) -> "Share":
+        """Return another that begins with the same counts."""
+        other = Share(self._most, self._an_owner, self._a_receiver)
+        other._owners.update(self._owners)
+        other._receivers.update(self._receivers)
+        return other
+
+    def remove(self, owner: str, receiver: str) -> None:
+        """Count a message no longer."""
+        self._owners[owner] -= 1
+        self._receivers[receiver] -= 1
 
 
 def secret(settings: Settings, owner: str) -> str:
@@ -132,29 +190,33 @@ def enlist(session: Session) -> int:
     return len(found)
 
 
-def take_due(session: Session, busy: Mapping[str, int], most: int, each: int, lease_seconds: float) -> list[Message]:
-    """Take messages whose time has come, so that no receiver has more than `each` with those that are under way.
+def take_due(session: Session, share: Share, lease_seconds: float) -> list[Message]:
+    """Take messages whose time has come, the oldest first, as far as the share allows beside what is under way.
 
     When the lease is over, others take what was not noted by then.
     """
-    now = database_time(session)
-    full = [receiver for receiver, count in busy.items() if count >= each]
-    due = WebhookDelivery.state == DeliveryState.PENDING.value, WebhookDelivery.next_attempt_at <= now
-    statement = select(WebhookDelivery).where(*due, WebhookDelivery.receiver.not_in(full))
-    oldest = statement.order_by(WebhookDelivery.next_attempt_at).limit(most).with_for_update(skip_locked=True)
-    count, taken = Counter(busy), []
-    for delivery in session.scalars(oldest).all():
-        if count[delivery.receiver] >= each:
-            continue
-        count[delivery.receiver] += 1
-        taken.append(delivery)
-        delivery.attempts += 1
-        delivery.next_attempt_at = now + timedelta(seconds=lease_seconds)
+    now, taken, count = database_time(session), [], share.copy()
+    while count.room > 0 and (found := _oldest_due(session, now, count)):
+        for delivery in found:
+            if count.add(delivery.owner, delivery.receiver):
+                taken.append(delivery)
+                delivery.attempts += 1
+                delivery.next_attempt_at = now + timedelta(seconds=lease_seconds)
     return [Message(d.id, d.owner, d.url, d.receiver, d.payload or "", d.attempts) for d in taken]
 
 
+def _oldest_due(session: Session, now: datetime, share: Share) -> Sequence[WebhookDelivery]:
+    """Return the oldest messages of those that may be sent: each look passes over who has had enough by the last."""
+    owners, receivers = share.full()
+    due = WebhookDelivery.state == DeliveryState.PENDING.value, WebhookDelivery.next_attempt_at <= now
+    free = WebhookDelivery.owner.not_in(owners), WebhookDelivery.receiver.not_in(receivers)
+    oldest = select(WebhookDelivery).where(*due, *free).order_by(WebhookDelivery.next_attempt_at).limit(share.room)
+    return session.scalars(oldest.with_for_update(skip_locked=True)).all()
+
+
 def note(session: Session, settings: Settings, message: Message, attempt: Attempt) -> None:
-    """Write what came of an attempt into the log, and say when the next one is due, if there is one."""
+    """Write what came of an attempt into the log, say when the next one is due, if there is one, and count it."""
+    tallies.add(session, Name.WEBHOOKS, attempt.outcome.value)
     delivery = session.get(WebhookDelivery, message.id, with_for_update=True)
     if delivery is None:  # removed with its job
         return
@@ -165,6 +227,7 @@ def note(session: Session, settings: Settings, message: Message, attempt: Attemp
         delivery.state = DeliveryState.DELIVERED.value
     elif attempt.status_code == _GONE or message.attempt >= settings.webhook_attempts:
         delivery.state = DeliveryState.FAILED.value
+        tallies.add(session, Name.WEBHOOKS, GIVEN_UP)
     else:
         pause = settings.webhook_retry_seconds * _GROWTH ** (message.attempt - 1)
         delivery.next_attempt_at = now + timedelta(seconds=pause)

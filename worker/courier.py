@@ -4,7 +4,6 @@ import asyncio
 import logging
 import ssl
 import threading
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -17,9 +16,10 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import addresses, webhooks
 from app.addresses import RefusedAddress
 from app.settings import Settings
-from app.webhooks import Attempt, Message
+from app.webhooks import Attempt, Message, Share
 
 _AT_ONCE = 64
+_AN_OWNER = 16
 _A_RECEIVER = 4
 _LOOK_SECONDS = 0.5
 
@@ -64,11 +64,11 @@ async def send(settings: Settings, message: Message, context: ssl.SSLContext) ->
 
 
 class _Rounds:
-    """What is being sent, counted by receiver."""
+    """What is being sent."""
 
     def __init__(self, sessions: sessionmaker[Session], settings: Settings) -> None:
         self._sessions, self._settings = sessions, settings
-        self._under_way: Counter[str] = Counter()
+        self._under_way = Share(_AT_ONCE, _AN_OWNER, _A_RECEIVER)
 
     async def run(self, stopped: threading.Event) -> None:
         """Look for what is due until it is stopped."""
@@ -77,7 +77,7 @@ class _Rounds:
         while not stopped.is_set():
             try:
                 for message in await asyncio.to_thread(self._take):
-                    self._under_way[message.receiver] += 1
+                    self._under_way.add(message.owner, message.receiver)
                     task = asyncio.create_task(self._deliver(message, context))
                     tasks.add(task)
                     task.add_done_callback(tasks.discard)
@@ -88,11 +88,9 @@ class _Rounds:
             task.cancel()
 
     def _take(self) -> list[Message]:
-        room = _AT_ONCE - self._under_way.total()
         with self._sessions.begin() as session:
             webhooks.enlist(session)
-            lease = 2.0 * self._settings.webhook_timeout_seconds
-            return webhooks.take_due(session, self._under_way, room, _A_RECEIVER, lease) if room > 0 else []
+            return webhooks.take_due(session, self._under_way, 2.0 * self._settings.webhook_timeout_seconds)
 
     async def _deliver(self, message: Message, context: ssl.SSLContext) -> None:
         try:
@@ -101,7 +99,7 @@ class _Rounds:
         except SQLAlchemyError as error:
             _logger.warning("what came of a webhook is not noted, it is sent again: %s", error)
         finally:
-            self._under_way[message.receiver] -= 1
+            self._under_way.remove(message.owner, message.receiver)
 
     def _note(self, message: Message, attempt: Attempt) -> None:
         with self._sessions.begin() as session:

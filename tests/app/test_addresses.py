@@ -1,9 +1,12 @@
 import asyncio
+import socket
+import threading
 from ipaddress import ip_address
+from typing import Any
 
 import pytest
 
-from app.addresses import RefusedAddress, is_open, vet
+from app.addresses import RefusedAddress, Target, is_open, vet
 
 
 @pytest.mark.parametrize("address", ["8.8.8.8", "2606:4700:4700::1111", "::ffff:8.8.8.8", "64:ff9b::808:808"])
@@ -58,3 +61,28 @@ def test_what_was_vetted_is_pinned_and_the_name_kept() -> None:
     target = asyncio.run(vet("https://localhost:8443/hook?a=b", private=True))
     assert str(target.pinned) in {"https://127.0.0.1:8443/hook?a=b", "https://[::1]:8443/hook?a=b"}
     assert target.url.host == "localhost"
+
+
+def test_names_that_nobody_resolves_hold_up_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many look-ups hang as would fill the loop's pool of threads, which has at most 32."""
+    real, go_on = socket.getaddrinfo, threading.Event()
+
+    def hanging(host: str, *arguments: Any, **named: Any) -> Any:
+        if host.endswith(".silent"):
+            go_on.wait(60.0)
+        return real(host, *arguments, **named)
+
+    async def main() -> list[Target | BaseException]:
+        silent = [asyncio.create_task(vet(f"https://n{number}.silent/", private=True)) for number in range(40)]
+        await asyncio.sleep(0.0)
+        assert (await vet("https://localhost/", private=True)).url.host == "localhost"
+        assert not any(task.done() for task in silent)
+        return await asyncio.gather(*silent, return_exceptions=True)
+
+    monkeypatch.setattr(socket, "getaddrinfo", hanging)
+    try:
+        given_up = asyncio.run(main())
+    finally:
+        go_on.set()
+    assert all(str(error).endswith(".silent' cannot be resolved") for error in given_up)
+    assert len(given_up) == 40

@@ -9,9 +9,11 @@ from uuid import UUID
 
 import httpx
 import pytest
+from prometheus_client.parser import text_string_to_metric_families
 from sqlalchemy.orm import Session, sessionmaker
 from standardwebhooks import Webhook
 
+from app import webhooks
 from app.settings import Settings
 from tests.app import service
 from tests.app.lines import SHORT
@@ -58,6 +60,16 @@ def wait_for(client: httpx.Client, address: str, state: str) -> dict[str, Any]:
     return delivery(client, address)
 
 
+def counted(client: httpx.Client) -> dict[str, float]:
+    """Return what the metrics tell of webhooks."""
+    text = client.get("/metrics", headers={"Accept": "text/plain"}).text
+    samples = [sample for family in text_string_to_metric_families(text) for sample in family.samples]
+    attempts = {sample.labels["outcome"]: sample.value for sample in samples if "webhook_attempts" in sample.name}
+    named = {sample.name: sample.value for sample in samples}
+    given_up, pending = named["galloping_webhooks_given_up_total"], named["galloping_webhooks_pending"]
+    return {**attempts, "given_up": given_up, "pending": pending}
+
+
 def test_the_end_of_a_job_is_told_signed_and_logged(
     client: httpx.Client,
     open_settings: Settings,
@@ -67,6 +79,9 @@ def test_the_end_of_a_job_is_told_signed_and_logged(
     got = received[0].got
     address = ended(client, open_settings, received[0].url)
     assert delivery(client, address)["state"] == "waiting"
+    with sessions.begin() as session:
+        webhooks.enlist(session)
+    assert counted(client) == {"delivered": 0.0, "refused": 0.0, "no_answer": 0.0, "given_up": 0.0, "pending": 1.0}
     with courier(sessions, open_settings):
         told = wait_for(client, address, "delivered")
         assert [entry["status_code"] for entry in told["attempts"]] == [200]
@@ -80,6 +95,8 @@ def test_the_end_of_a_job_is_told_signed_and_logged(
         assert client.post(f"{address}/deliveries").status_code == 202
         wait_until(lambda: len(got) == 2, what="the second delivery")
         assert (got[1][0]["webhook-id"], got[1][1]) == (told["id"], body)
+        wait_until(lambda: counted(client)["delivered"] == 2.0, what="two attempts in the metrics")
+    assert counted(client) == {"delivered": 2.0, "refused": 0.0, "no_answer": 0.0, "given_up": 0.0, "pending": 0.0}
 
 
 def test_a_receiver_at_fault_is_tried_again_until_it_is_given_up(
@@ -93,6 +110,7 @@ def test_a_receiver_at_fault_is_tried_again_until_it_is_given_up(
     with courier(sessions, open_settings):
         told = wait_for(client, address, "failed")
     assert [entry["status_code"] for entry in told["attempts"]] == [500, 500, 500]
+    assert counted(client) == {"delivered": 0.0, "refused": 3.0, "no_answer": 0.0, "given_up": 1.0, "pending": 0.0}
 
 
 def test_a_redirect_is_not_followed(
@@ -124,6 +142,7 @@ def test_a_receiver_that_hangs_holds_up_no_other(
         wait_until(lambda: delivery(client, quick)["attempts"] != [], what="the other's attempt")
         assert all(delivery(client, address)["attempts"] == [] for address in slow) or time.monotonic() - start > 2.0
         told = wait_for(client, slow[0], "failed")
+        assert counted(client)["no_answer"] >= 3.0
     assert {entry["error"] for entry in told["attempts"]} == {"no answer within 2 s"}
 
 
