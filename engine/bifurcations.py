@@ -259,19 +259,19 @@ def _distinct(found: Bifurcations) -> Bifurcations:
     """Keep the best located of points that are one, sorted by member, branch and wind speed."""
     order = np.lexsort((found.wind_speed, found.branch, found.member))
     found = _pick(found, order)
-    kept: list[int] = []
-    for i in range(found.member.size):
-        twin = next((j for j in kept if _same(found, i, j)), None)
+    kept: dict[tuple[int, Kind], list[int]] = {}
+    for i, member in enumerate(found.member.tolist()):
+        known = kept.setdefault((member, found.kind[i]), [])
+        twin = next((place for place, j in enumerate(known) if _same(found, i, j)), None)
         if twin is None:
-            kept.append(i)
-        elif found.uncertainty[i] < found.uncertainty[twin]:
-            kept[kept.index(twin)] = i
-    return _pick(found, np.array(kept, dtype=np.intp))
+            known.append(i)
+        elif found.uncertainty[i] < found.uncertainty[known[twin]]:
+            known[twin] = i
+    return _pick(found, np.array(sorted(i for known in kept.values() for i in known), dtype=np.intp))
 
 
 def _same(found: Bifurcations, i: int, j: int) -> bool:
-    if found.member[i] != found.member[j] or found.kind[i] is not found.kind[j]:
-        return False
+    """Tell whether two points of one model and kind are one."""
     apart = abs(found.wind_speed[i] - found.wind_speed[j])
     near = abs(found.angular_frequency[i] / found.angular_frequency[j] - 1.0) < SAME
     return bool(near and apart <= SAME * found.wind_speed[i] + found.uncertainty[i] + found.uncertainty[j])

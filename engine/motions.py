@@ -1,8 +1,8 @@
 """Rows of the motions at each wind speed: the equilibrium and every cycle. Theory section 8."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,13 +12,18 @@ from engine.hybrid import Discretization, observation, take
 from engine.outcome import Outcome, Stability
 from engine.profile import horizontal_position
 from engine.resonance import motion_shares
-from engine.result import FoundBy, LimitCycleRow
+from engine.result import LimitCycleRow
 from engine.rows import Found, by_line, number
 from engine.spec import Model
 from engine.stability import at_wind, state_matrices, unstable_pairs
 
 ANGLE_SAMPLES = 48
 _UNSTABLE, _LOST = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
+_AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
+_SHARES = ("vertical_share", "horizontal_share", "torsional_share")
+_TRUST = ("found_by", "harmonics", "residual", "truncation", "detuning_sensitivity", "direct_difference")
+_UNMEASURED: dict[str, Any] = dict.fromkeys((*_AMPLITUDES, *_SHARES, *_TRUST, "branch", "frequency_hz"))
+_AT_REST = _UNMEASURED | dict.fromkeys(_AMPLITUDES, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +85,13 @@ def _equilibria(found: Found, loops: tuple[int, ...], scales: _Scales) -> Iterat
         for wind, k in ((w, k) for k in loops if k in found.loops[member] for w in range(found.winds.size)):
             place = _Place(found.name, k, float(found.winds[wind]), line)
             if static:
-                yield line, Motion(_row(place, scales, _State("equilibrium", Stability.UNSTABLE, _UNSTABLE)))
+                yield line, Motion(_row(place, scales, "equilibrium", Stability.UNSTABLE, _UNSTABLE))
                 continue
             stability = Stability.UNSTABLE if pairs[member, wind] else Stability.STABLE
             stability = Stability.UNKNOWN if undecided[member, wind] else stability
-            yield line, Motion(_row(place, scales, _State("equilibrium", stability, amplitude=(0.0, 0.0, 0.0))))
+            yield line, Motion(_row(place, scales, "equilibrium", stability, Outcome.CONVERGED, _AT_REST))
             if oscillating[member, wind] and (member, wind) not in reached and k == found.loops[member, 0]:
-                yield line, Motion(_row(place, scales, _State("periodic", Stability.UNKNOWN, _LOST)))
+                yield line, Motion(_row(place, scales, "periodic", Stability.UNKNOWN, _LOST))
 
 
 def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
@@ -101,46 +106,34 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
         here = loops == k
         seen = observation(made, shapes[here], int(k))
         series[here] = seen.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
-    amplitude = half_peak_to_peak(series)
-    mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[cycles.member]
-    shares = motion_shares(mass, cycles.orbits.coefficients, found.model.direction)
-    trust = _trusted(found)
     outside = _outside_fit(found, made.sections.fitted_range[line])
-    for i in range(cycles.member.size):
-        place = _Place(found.name, int(loops[i]), float(cycles.orbits.wind_speed[i]), int(line[i]))
-        state = _State(
-            "periodic",
-            cycles.floquet.stability[i],
-            Outcome.OUTSIDE_FIT if outside[i] else Outcome.CONVERGED,
-            amplitude=tuple(amplitude[i].tolist()),
-            shares=tuple(shares[i].tolist()),
-            frequency=float(cycles.orbits.angular_frequency[i] / (2.0 * np.pi)),
-            branch=int(cycles.branch[i]),
-            trust=trust[i],
-        )
-        yield int(line[i]), Motion(_row(place, scales, state), series[i])
+    outcome = [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()]
+    places = zip(loops.tolist(), cycles.orbits.wind_speed.tolist(), line.tolist(), strict=True)
+    told = zip(cycles.floquet.stability.tolist(), outcome, _measures(found, series), strict=True)
+    for i, (place, (stability, judged, measures)) in enumerate(zip(places, told, strict=True)):
+        row = _row(_Place(found.name, *place), scales, "periodic", stability, judged, measures)
+        yield place[-1], Motion(row, series[i])
 
 
-@dataclass(frozen=True, slots=True)
-class _Trust:
-    """How a cycle was found and how far it may be trusted, None where there is nothing to say."""
-
-    found_by: FoundBy | None = None
-    harmonics: int | None = None
-    residual: float | None = None
-    truncation: float | None = None
-    detuning: float | None = None
-    direct: float | None = None
-
-
-def _trusted(found: Found) -> list[_Trust]:
-    """Say of each cycle how it was found and how far it may be trusted."""
-    cycles, measured = found.cycles, found.confidence
-    columns = zip(measured.residual, measured.truncation, measured.detuning, measured.direct, strict=True)
-    return [
-        _Trust(found_by, int(harmonics), *(number(float(value)) for value in values))
-        for found_by, harmonics, values in zip(cycles.found_by, cycles.harmonics, columns, strict=True)
-    ]
+def _measures(found: Found, series: FloatArray) -> Iterator[dict[str, Any]]:
+    """Yield the fields of a row that only a cycle has, None where a number is not known."""
+    cycles, trust = found.cycles, found.confidence
+    mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[cycles.member]
+    columns = {
+        **dict(zip(_AMPLITUDES, half_peak_to_peak(series).T, strict=True)),
+        **dict(zip(_SHARES, motion_shares(mass, cycles.orbits.coefficients, found.model.direction).T, strict=True)),
+        "frequency_hz": cycles.orbits.angular_frequency / (2.0 * np.pi),
+        "residual": trust.residual,
+        "truncation": trust.truncation,
+        "detuning_sensitivity": trust.detuning,
+        "direct_difference": trust.direct,
+    }
+    known: dict[str, Sequence[Any]] = {
+        name: [number(value) for value in column.tolist()] for name, column in columns.items()
+    }
+    known |= {"branch": cycles.branch.tolist(), "harmonics": cycles.harmonics.tolist(), "found_by": cycles.found_by}
+    for values in zip(*known.values(), strict=True):
+        yield dict(zip(known, values, strict=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,57 +146,33 @@ class _Place:
     line: int
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
-    """What was found there; amplitude holds V, W [m] and Theta [rad], shares their part in the kinetic energy.
-
-    frequency is in Hz.
-    """
-
-    kind: Literal["equilibrium", "periodic"]
-    stability: Stability
-    outcome: Outcome = Outcome.CONVERGED
-    amplitude: tuple[float | None, ...] = (None, None, None)
-    shares: tuple[float | None, ...] = (None, None, None)
-    frequency: float | None = None
-    branch: int | None = None
-    trust: _Trust = _Trust()
-
-
-def _row(place: _Place, scales: _Scales, state: _State) -> LimitCycleRow:
-    vertical, horizontal, torsional = state.amplitude
-    vertical_share, horizontal_share, torsional_share = state.shares
-    trust = state.trust
+def _row(
+    place: _Place,
+    scales: _Scales,
+    kind: Literal["equilibrium", "periodic"],
+    stability: Stability,
+    outcome: Outcome,
+    measures: Mapping[str, Any] = _UNMEASURED,
+) -> LimitCycleRow:
+    """Write a row; amplitudes V, W [m] and Theta [rad] and all that goes with them stand in its measures."""
     sag, speed = float(scales.sag[place.line]), float(scales.speed[place.line])
+    vertical, horizontal = measures["vertical_m"], measures["horizontal_m"]
     return LimitCycleRow(
         model=place.model,
         loops=place.loops,
         wind_speed_m_per_s=place.wind_speed,
-        branch=state.branch,
-        kind=state.kind,
-        stability=state.stability,
-        frequency_hz=state.frequency,
+        kind=kind,
+        stability=stability,
         second_frequency_hz=None,
         observed_at_m=float(scales.observed[place.loops][place.line]),
-        vertical_m=vertical,
-        horizontal_m=horizontal,
-        torsional_rad=torsional,
         vertical_min_m=None,
         horizontal_min_m=None,
         torsional_min_rad=None,
         vertical_ratio=None if vertical is None else vertical / sag,
         horizontal_ratio=None if horizontal is None else horizontal / sag,
         reduced_wind_speed=place.wind_speed / speed if np.isfinite(speed) else None,
-        vertical_share=vertical_share,
-        horizontal_share=horizontal_share,
-        torsional_share=torsional_share,
-        found_by=trust.found_by,
-        harmonics=trust.harmonics,
-        residual=trust.residual,
-        truncation=trust.truncation,
-        detuning_sensitivity=trust.detuning,
-        direct_difference=trust.direct,
-        outcome=state.outcome,
+        outcome=outcome,
+        **measures,
     )
 
 
