@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from app.convert import STACK
 from benchmarks.auto import Branch, continued_branch
 from benchmarks.lines import random_line, source_line
 from benchmarks.measure import median_seconds, numpy_forms, recorded_lapack
@@ -24,7 +25,6 @@ from engine.stability import critical_wind_speeds
 
 HARMONICS = 5
 HIGHEST_WIND = 30.0  # m/s
-STACK = 32  # lines a stack: the arrays of one stay in the processor's cache
 STANDARD_JOB = Analysis(
     loops=(1, 2),
     models=(Model.HYBRID, Model.FINITE_ELEMENT),

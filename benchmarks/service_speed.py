@@ -20,11 +20,11 @@ import numpy as np
 import psycopg
 
 from app import processes, schemas
+from app.convert import STACK
 from app.convert.assemble import SoundParts, gather
 from app.examples import example
 from app.serve import migrate
 from app.settings import Settings
-from benchmarks.engine_speed import STACK
 from benchmarks.load import CLIENTS, Request, closed_loop, open_loop
 from benchmarks.processor import seconds_by_role
 from engine.analysis import analyse_stack

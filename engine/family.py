@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
 from engine.arrays import BoolArray, FloatArray, IntArray, merged
 from engine.harmonic import Orbits, pick
@@ -176,10 +174,19 @@ class CycleFamily:
 
     def _labels(self) -> IntArray:
         """Label the connected families of cycles and followed branches: (cycles + branches,)."""
-        size = len(self._place) + len(self._followed)
-        cycle, branch = np.array(self._links, dtype=np.intp).reshape(-1, 2).T
-        graph = csr_array((np.ones(cycle.size), (cycle, branch + len(self._place))), shape=(size, size))
-        return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+        # By hand: to import scipy.sparse takes longer than a whole analysis.
+        above = list(range(len(self._place) + len(self._followed)))
+        for cycle, branch in self._links:
+            above[_root(above, cycle)] = _root(above, len(self._place) + branch)
+        return np.array([_root(above, node) for node in range(len(above))], dtype=np.intp)
+
+
+def _root(above: list[int], node: int) -> int:
+    """Climb to the top of a tree, shortening the way for the next."""
+    while above[node] != node:
+        above[node] = above[above[node]]
+        node = above[node]
+    return node
 
 
 def _signature(model: ReducedModel, starts: Starts) -> FloatArray:

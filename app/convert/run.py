@@ -153,12 +153,13 @@ def _steps(
     placement: schemas.Placement | None, line: spec.Line, analysis: spec.Analysis
 ) -> Generator[Progress, None, Result]:
     """Return the computation of one point, which has not begun yet."""
-    # The API and `galloping --help` need no solver.
-    from engine.analysis import analyse  # noqa: PLC0415
+    # The API and `galloping --help` need no solver, and an analysis needs no optimizer.
+    if placement is None:
+        from engine.analysis import analyse  # noqa: PLC0415
+
+        return analyse(line, analysis)
     from engine.placement import place  # noqa: PLC0415
 
-    if placement is None:
-        return analyse(line, analysis)
     return place(line, analysis, parts.placement(placement))
 
 

@@ -16,11 +16,11 @@ from app.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.outcome import InvalidSpec
 
-STACK = 32
+STACK = 128  # lines side by side: fewer share too little of the work between them, more gain nothing
 _LINE, _ANALYSIS = "/line", "/analysis"
 _NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
 
-# Seconds of one core for a line in a stack, measured with benchmarks.engine_speed's lines: fixed, and per wind speed.
+# Seconds of one core for a line in a stack, fixed and per wind speed, measured by `benchmarks.line_costs`.
 _HYBRID_SECONDS = (0.001, 0.0002)
 _FINITE_ELEMENT_SECONDS = (0.035, 0.02)
 _FULL_MODES_SECONDS = 0.003

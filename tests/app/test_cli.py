@@ -32,6 +32,15 @@ def written(directory: Path, name: str, document: Any) -> str:
     return str(path)
 
 
+def test_an_analysis_does_not_wait_for_scipy(tmp_path: Path) -> None:
+    command = ["analyse", written(tmp_path, "line", short_request()), "--output", str(tmp_path / "result.json")]
+    told = "import sys; from app.cli import main\ntry: main()\nfinally: print('scipy' in sys.modules)"
+    ended = subprocess.run(
+        [sys.executable, "-c", told, *command], capture_output=True, text=True, timeout=120.0, check=False
+    )
+    assert ended.stdout.strip() == "False", ended.stderr
+
+
 def refused(*arguments: str, text: str | None = None) -> str:
     ended = galloping(*arguments, text=text)
     assert ended.returncode == 2, ended.stderr

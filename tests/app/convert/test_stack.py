@@ -84,10 +84,13 @@ def test_a_defect_fails_its_line_without_showing_its_inside(monkeypatch: pytest.
 
 
 def test_progress_rises_to_the_end() -> None:
-    items = list(run_stack(SHORT, [NumberedLine(n, TWIN) for n in range(1, 41)]))
+    lines = convert.STACK + convert.STACK // 4
+    items = list(run_stack(SHORT, [NumberedLine(n, TWIN) for n in range(1, lines + 1)]))
     fractions = [item.fraction for item in items if isinstance(item, convert.Advance)]
     assert fractions == [0.0, 0.8, 1.0]
-    assert "lines 33 to 40 of 40" in [item.step for item in items if isinstance(item, convert.Advance)]
+    assert f"lines {convert.STACK + 1} to {lines} of {lines}" in [
+        item.step for item in items if isinstance(item, convert.Advance)
+    ]
 
 
 def test_faults_of_a_line_point_from_its_root() -> None:

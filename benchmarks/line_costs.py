@@ -1,0 +1,54 @@
+"""What a line of a batch costs by what its analysis asks for; the messages of a batch are sized by it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from app.convert import STACK
+from benchmarks.engine_speed import analysed
+from benchmarks.lines import random_line
+from benchmarks.measure import median_seconds
+from engine.spec import Analysis, Line, LoopCompetition, Model, StaticTwist
+
+FEW, MANY = 2, 22  # wind speeds
+HYBRID = Analysis(loops=(1, 2), models=(Model.HYBRID,))
+FREQUENCIES = replace(HYBRID, models=(Model.HYBRID, Model.FINITE_ELEMENT), finite_element_loops=())
+FINITE_ELEMENT = replace(FREQUENCIES, finite_element_loops=(1, 2, 3))
+
+
+def costs() -> Iterator[tuple[str, float]]:
+    """Yield seconds of one core for a line."""
+    generator = np.random.default_rng(20260101)
+    lines = [random_line(generator) for _ in range(STACK)]
+    fixed, per_wind = _fitted(lines, HYBRID)
+    loops = len(HYBRID.loops)
+    yield "hybrid model, for each number of loops", fixed / loops
+    yield "and for each wind speed", per_wind / loops
+    both, _ = _fitted(lines, FREQUENCIES)
+    yield "frequencies of the finite element model", both - fixed
+    whole, whole_per_wind = _fitted(lines[: STACK // 8], FINITE_ELEMENT)
+    yield "motions of the finite element model", whole - both
+    yield "and for each wind speed ", whole_per_wind - per_wind
+    yield "static twist", _fitted(lines, replace(HYBRID, static_twist=StaticTwist.SOLVED))[0] - fixed
+    competing = replace(HYBRID, loop_competition=LoopCompetition.CHECKED)
+    yield (
+        "loop competition, for each number of loops and wind speed",
+        ((_fitted(lines[: STACK // 8], competing)[1] - per_wind) / loops),
+    )
+
+
+def _fitted(lines: Sequence[Line], analysis: Analysis) -> tuple[float, float]:
+    """Return what a line costs without wind speeds, and for each of them [s]."""
+    seconds = []
+    for count in (FEW, MANY):
+        winds = tuple(np.linspace(4.0, 12.0, count).tolist())
+        asked = replace(analysis, wind_speeds=winds)
+        seconds.append(median_seconds(lambda asked=asked: analysed(lines, asked), 3) / len(lines))  # type: ignore[misc]
+    per_wind = (seconds[1] - seconds[0]) / (MANY - FEW)
+    return seconds[0] - FEW * per_wind, per_wind
+
+
+if __name__ == "__main__":
+    for what, seconds in costs():
+        print(f"{what:60} {1e3 * seconds:9.3f} ms", flush=True)
