@@ -191,7 +191,12 @@ def at_winds(traces: Traces, winds: FloatArray) -> tuple[IntArray, IntArray, Orb
     (guesses,), (guesses,), Orbits
         Branch and index of the wind speed of each guess, and the orbit guessed.
     """
-    points, problem = traces.points, traces.problem
+    branch, wind, guess = passed(traces.points, winds)
+    return branch, wind, orbits_of(guess, traces.problem.model.mass.shape[-1])
+
+
+def passed(points: Points, winds: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Guess where branches pass wind speeds (winds,), their last unknown: branch, index of the wind speed, point."""
     segment = np.flatnonzero(points.branch[1:] == points.branch[:-1])
     left, right = points.pick(segment), points.pick(segment + 1)
     part = np.linspace(0.0, 1.0, PARTS + 1)
@@ -201,7 +206,7 @@ def at_winds(traces: Traces, winds: FloatArray) -> tuple[IntArray, IntArray, Orb
     share = (cell + (winds[wind] - speed[row, cell]) / (speed[row, cell + 1] - speed[row, cell])) / PARTS
     guess = interpolated(left.pick(row), right.pick(row), share)
     guess[:, -1] = winds[wind]
-    return left.branch[row], wind, orbits_of(guess, problem.model.mass.shape[-1])
+    return left.branch[row], wind, guess
 
 
 def first_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:

@@ -70,7 +70,7 @@ def monodromy(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> FloatAr
     """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed."""
     size = 2 * model.mass.shape[-1]
     inverse = np.asarray(np.linalg.inv(model.mass), dtype=np.float64)
-    steps = fineness * _steps(inverse @ model.stiffness, orbits)
+    steps = fineness * steps_needed(inverse @ model.stiffness, orbits.angular_frequency)
     if compiled.AVAILABLE:
         return _compiled_products(model, orbits, inverse, np.where(steps <= MOST_STEPS, steps, 0))
     matrices: FloatArray = np.full((orbits.wind_speed.size, size, size), np.nan)
@@ -101,13 +101,20 @@ def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> Flo
     """
     width = 2.0 * np.pi / steps
     with np.errstate(over="ignore", invalid="ignore"):
-        first, second = (_generator(model, orbits, tau) for tau in _gauss_phases(steps))
-        commutator = second @ first - first @ second
-        exponent = 0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator
-        return _ordered_product(_exponential(exponent))
+        first, second = (
+            generator(model, states(orbits, tau), orbits.angular_frequency, orbits.wind_speed)
+            for tau in gauss_phases(steps)
+        )
+        return ordered_product(transfers(first, second, width))
 
 
-def _gauss_phases(steps: int) -> FloatArray:
+def transfers(first: FloatArray, second: FloatArray, width: float) -> FloatArray:
+    """Return the maps over steps of this width from the generators at their two Gauss points, all (..., n, n)."""
+    commutator = second @ first - first @ second
+    return _exponential(0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator)
+
+
+def gauss_phases(steps: int) -> FloatArray:
     """Return the phases of the two Gauss points of every step: (2, steps) [rad]."""
     offset = np.array([[-1.0], [1.0]]) * np.sqrt(3.0) / 6.0
     return np.asarray((np.arange(steps) + 0.5 + offset) * (2.0 * np.pi / max(steps, 1)))
@@ -116,23 +123,24 @@ def _gauss_phases(steps: int) -> FloatArray:
 @lru_cache
 def _gauss_basis(steps: int, harmonics: int) -> tuple[FloatArray, FloatArray]:
     """Return the Fourier basis and its derivative at all first, then all second Gauss points: (2 steps, 2 H + 1)."""
-    values = fourier(_gauss_phases(steps).ravel(), harmonics)
+    values = fourier(gauss_phases(steps).ravel(), harmonics)
     return values, values @ basis(harmonics).derivative
 
 
-def _steps(square: FloatArray, orbits: Orbits) -> IntArray:
-    """Return the number of steps, a power of two, that resolves the fastest mode of M^-1 K: (cycles,)."""
+def steps_needed(square: FloatArray, angular_frequency: FloatArray) -> IntArray:
+    """Return the number of steps a period, a power of two, that resolves the fastest mode of M^-1 K: (cycles,)."""
     trace = np.trace(square, axis1=-2, axis2=-1)
-    needed = 2.0 * np.pi / PHASE_PER_STEP * np.sqrt(np.abs(trace)) / orbits.angular_frequency
+    needed = 2.0 * np.pi / PHASE_PER_STEP * np.sqrt(np.abs(trace)) / angular_frequency
     return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, FEWEST_STEPS, 2 * MOST_STEPS))), dtype=np.intp)
 
 
-def _generator(model: ReducedModel, orbits: Orbits, tau: FloatArray) -> FloatArray:
-    """Return A(tau) of y' = A y for y = (q, dq/dtau): (cycles, steps, 2 m, 2 m)."""
+def generator(
+    model: ReducedModel, state: FloatArray, angular_frequency: FloatArray, wind_speed: FloatArray
+) -> FloatArray:
+    """Return A of y' = A y, y = (q, dq/dtau), about states (cycles, samples, 2 m): (cycles, samples, 2 m, 2 m)."""
     m = model.mass.shape[-1]
-    gradient = force_gradient(model.load, states(orbits, tau))
-    omega = orbits.angular_frequency[:, None, None, None]
-    speed = orbits.wind_speed[:, None, None, None]
+    gradient = force_gradient(model.load, state)
+    omega, speed = angular_frequency[:, None, None, None], wind_speed[:, None, None, None]
     stiffness = (model.stiffness[:, None] - speed**2 * gradient[..., :m]) / omega**2
     damping = (model.damping[:, None] - speed * gradient[..., m:]) / omega
     inverse = np.linalg.inv(model.mass)[:, None]
@@ -152,7 +160,7 @@ def _exponential(matrix: FloatArray) -> FloatArray:
     return np.asarray(identity + matrix + square / 2.0 + cube / 6.0 + fourth @ high)
 
 
-def _ordered_product(factors: FloatArray) -> FloatArray:
+def ordered_product(factors: FloatArray) -> FloatArray:
     """Multiply (cycles, steps, n, n) in time order, later factors on the left, pairwise; steps is a power of two."""
     while factors.shape[1] > 1:
         factors = factors[:, 1::2] @ factors[:, ::2]

@@ -1,0 +1,202 @@
+"""Branches of quasi-periodic motions over the wind speed, born at torus points of cycles. Theory section 7.3."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.bifurcations import Bifurcations, Kind
+from engine.branches import Traces, at_winds
+from engine.continuation import Points, Problem, Steps, branches, points_at
+from engine.harmonic import Orbits, balance, pick, resized
+from engine.hybrid import ReducedModel, take
+from engine.torus import Order, Tori, lattice, linearized, phase_rows, phasors, points_of, tori_of
+
+STEPS = Steps(first=0.05, points=100)
+SMALLEST_SHARE = 0.2  # of the whole size, by which a co-ordinate that hardly moves is measured
+LOCATED = 1e-4  # relative uncertainty of a torus point that is one for certain
+SAME_FREQUENCY = 1e-3  # relative difference up to which a point of a branch is the torus point
+
+
+@dataclass(frozen=True, slots=True)
+class TorusProblem(Problem):
+    """Balance of tori with the wind speed as parameter, for `engine.continuation`.
+
+    model: leading axis (members,); member: (branches,).
+    """
+
+    model: ReducedModel
+    member: IntArray
+    order: Order
+
+    def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return the balance and both phase conditions <q - q_anchor, dq_anchor/dtheta> = 0 with their slopes."""
+        member = self.member[branch]
+        rows = phase_rows(self.read(anchor), self._weight(branch))
+        rest, slopes = linearized(take(self.model, member), self.read(z))
+        drift = np.einsum("kpx,kx->kp", rows, (z - anchor)[:, :-1])
+        rows = np.concatenate([rows, np.zeros((*rows.shape[:2], 1))], axis=-1)
+        return np.concatenate([rest, drift], axis=-1), np.concatenate([slopes, rows], axis=1)
+
+    def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
+        """Measure each co-ordinate by its own size, or by a share of the whole, frequencies and wind by themselves."""
+        weight = np.sqrt(self._weight(branch))
+        coefficients = self.read(z).coefficients
+        own = weight * np.linalg.norm(coefficients, axis=-1)
+        size = np.maximum(own, SMALLEST_SHARE * np.linalg.norm(own, axis=-1, keepdims=True)) / weight
+        return np.concatenate([np.repeat(size, coefficients.shape[-1], axis=-1), np.abs(z[:, -3:])], axis=-1)
+
+    def read(self, z: FloatArray) -> Tori:
+        """Read points as tori."""
+        return tori_of(z, self.model.mass.shape[-1], self.order)
+
+    def _weight(self, branch: IntArray) -> FloatArray:
+        return np.asarray(np.diagonal(self.model.mass, axis1=-2, axis2=-1)[self.member[branch]])
+
+
+@dataclass(frozen=True, slots=True)
+class Births:
+    """Tori without modulation from which branches are followed.
+
+    member, family: (k,), the model, and the number of the family of cycles; tori: (k,); direction: (k, N + 3), the
+    disturbance that begins to grow there, of unit length in the mass.
+    """
+
+    member: IntArray
+    family: IntArray
+    tori: Tori
+    direction: FloatArray
+
+
+def born_at_torus_points(model: ReducedModel, traces: Sequence[Traces], found: Bifurcations, order: Order) -> Births:
+    """Take the cycles at all torus points, with the disturbance of the second frequency.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    traces : sequence of Traces
+        Of the branches on which the torus points lie.
+    found : Bifurcations
+    order : Order
+
+    Returns
+    -------
+    Births
+        Without those whose cycle is not met again.
+    """
+    located = np.isfinite(found.second) & (found.uncertainty < LOCATED * found.wind_speed)
+    points = np.flatnonzero(located & np.array([kind is Kind.TORUS for kind in found.kind], dtype=np.bool_))
+    guesses = [_nearest(traces, found, int(i)) for i in points]
+    points = points[[guess is not None for guess in guesses]]
+    m = model.mass.shape[-1]
+    known = [guess for guess in guesses if guess is not None]
+    start = Orbits(
+        np.concatenate([resized(g, order[0]).coefficients for g in known] or [np.zeros((0, m, 2 * order[0] + 1))]),
+        np.array([g.angular_frequency[0] for g in known]),
+        found.wind_speed[points],
+    )
+    member = found.member[points]
+    orbits, solution = balance(model, member, start)
+    good = np.flatnonzero(solution.converged)
+    base, second = orbits.angular_frequency[good], found.second[points[good]]
+    beat = np.abs(second - np.round(second / base) * base)
+    tori = modulated(pick(orbits, good), beat, order)
+    return Births(member[good], found.branch[points[good]], tori, critical_directions(take(model, member[good]), tori))
+
+
+def modulated(orbits: Orbits, beat: FloatArray, order: Order) -> Tori:
+    """Write cycles as tori that are not modulated yet, with W = beat (cycles,) [rad/s]."""
+    pairs = lattice(order).pairs
+    coefficients = np.zeros((*orbits.coefficients.shape[:2], 2 * len(pairs) - 1))
+    own = resized(orbits, order[0]).coefficients
+    coefficients[..., 0] = own[..., 0]
+    place = np.flatnonzero((pairs[:, 1] == 0) & (pairs[:, 0] > 0))
+    coefficients[..., 2 * place - 1], coefficients[..., 2 * place] = own[..., 1::2], own[..., 2::2]
+    return Tori(coefficients, np.stack([orbits.angular_frequency, beat], axis=-1), orbits.wind_speed, order)
+
+
+def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
+    """Return the harmonics of order one in W that change the balance of tori without modulation least: (tori, N + 3).
+
+    The model has the leading axis (tori,).
+    """
+    count, m, size = tori.coefficients.shape
+    first = np.repeat(np.abs(lattice(tori.order).pairs[:, 1]) == 1, 2)[1:]
+    index = np.flatnonzero(np.tile(first, m))
+    scale = np.repeat(np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1)), size, axis=-1)[:, index]
+    matrix = linearized(model, tori)[1][:, index[:, None], index] / scale[:, None] / scale[:, :, None]
+    direction = np.zeros((count, m * size + 3))
+    direction[:, index] = np.linalg.svd(matrix)[2][:, -1] / scale
+    return direction
+
+
+def traced(model: ReducedModel, births: Births, winds: FloatArray) -> Points:
+    """Follow the branches of tori inside the range of the wind speeds (winds,), until they end in another cycle.
+
+    Returns
+    -------
+    Points
+        Sorted by branch, in the order in which they were met; the births are left out.
+    """
+    problem = TorusProblem(model, births.member, births.tori.order)
+    start = points_of(births.tori)
+    size = np.linalg.norm(start / problem.scale(start, np.arange(births.member.size)), axis=-1, keepdims=True)
+    steps = branches(problem, start, births.direction * size, STEPS)
+    last = points_at(problem, np.arange(births.member.size), start.copy(), births.direction)
+    found, fresh = [last.pick(np.zeros(0, dtype=np.intp))], np.ones(births.member.size, dtype=np.bool_)
+    alive: BoolArray | None = None
+    while True:
+        try:
+            new = steps.send(alive)
+        except StopIteration:
+            break
+        ended = _ended(problem, last.pick(new.branch), new) & ~fresh[new.branch]
+        rising = new.tangent[:, -1] > 0.0
+        alive = ~ended & np.where(rising, new.z[:, -1] < winds[-1], new.z[:, -1] > winds[0])
+        found.append(new.pick(~ended))
+        fresh[new.branch] = False
+        last.put(new)
+    every = Points(*(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent")))
+    return every.pick(np.argsort(every.branch, kind="stable"))
+
+
+def base_lines(mass: FloatArray, torus: Tori) -> tuple[IntArray, IntArray]:
+    """Return the strongest pair of harmonics of one torus, and the strongest that makes a basis with it: (2,) each.
+
+    mass: (m,), the diagonal of the mass matrix.
+    """
+    pairs = lattice(torus.order).pairs
+    strength = mass @ np.abs(phasors(torus.coefficients[0])) ** 2
+    strength[0] = -1.0
+    order = np.argsort(-strength)
+    first = pairs[order[0]]
+    area = np.abs(pairs[:, 0] * first[1] - pairs[:, 1] * first[0])
+    return first, pairs[next(i for i in order if area[i] == 1)]
+
+
+def _nearest(traces: Sequence[Traces], found: Bifurcations, point: int) -> Orbits | None:
+    """Guess the cycle at a torus point from the branches of its model that pass its wind speed."""
+    nearest, best = SAME_FREQUENCY, None
+    for trace in traces:
+        branch, _, orbits = at_winds(trace, found.wind_speed[[point]])
+        gap = np.abs(orbits.angular_frequency / found.angular_frequency[point] - 1.0)
+        gap[trace.problem.member[branch] != found.member[point]] = np.inf
+        if gap.min(initial=np.inf) < nearest:
+            nearest, best = gap.min(), pick(orbits, np.array([gap.argmin()]))
+    return best
+
+
+def _ended(problem: TorusProblem, before: Points, new: Points) -> BoolArray:
+    """Tell which branches passed through a cycle, where one of the two base lines turns over."""
+    mass = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[problem.member[new.branch]]
+    old, fresh = problem.read(before.z), problem.read(new.z)
+    pairs = lattice(problem.order).pairs.tolist()
+    ended = np.zeros(new.branch.size, dtype=np.bool_)
+    for i in range(new.branch.size):
+        one = np.array([i])
+        lines = [pairs.index(line.tolist()) for line in base_lines(mass[i], old.pick(one))]
+        left, right = (phasors(tori.coefficients[i])[:, lines] for tori in (old, fresh))
+        ended[i] = (mass[i] @ (left.conj() * right).real).min() < 0.0
+    return ended
