@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from engine.aerodynamics import force, force_gradient
 from engine.arrays import ComplexArray, FloatArray
-from engine.bifurcations import Bifurcations, Kind, bifurcations
+from engine.bifurcations import FACTORS, Bifurcations, Kind, bifurcations
 from engine.branches import traced_from_hopf
 from engine.cycles import Cycles, energy_starts, find_cycles
 from engine.harmonic import Orbits, balance, half_peak_to_peak, pick, resized, states
@@ -162,3 +162,9 @@ def test_torus_point_of_two_oscillators_is_exact() -> None:
     assert found.angular_frequency[torus] == pytest.approx([first], abs=1e-6)
     assert found.second[torus] == pytest.approx([second], abs=1e-6)
     assert (found.uncertainty[torus] < 1e-6).all()
+
+
+def test_multipliers_beyond_all_numbers_cross_nothing_and_warn_of_nothing() -> None:
+    huge = np.array([1e200 + 1e200j, 1e200 - 1e200j, 0.5])
+    assert not np.isfinite(FACTORS[Kind.TORUS](huge)).all()
+    assert FACTORS[Kind.TORUS](np.array([0.5, 3.0, 2.0])) == pytest.approx([-0.5, 0.0, -5.0])
