@@ -12,6 +12,7 @@ from anyio import CapacityLimiter, from_thread, to_thread
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
+from starlette.requests import ClientDisconnect
 
 from app import idempotency, intake, webhooks
 from app.auth import Caller
@@ -198,6 +199,8 @@ def _pieces(request: Request) -> Iterator[bytes]:
     try:
         while (piece := from_thread.run(following)) is not None:
             yield piece
+    except ClientDisconnect as error:
+        raise ProblemError(ProblemKind.INVALID_DOCUMENT, "The body broke off.") from error  # only the log hears of it
     except TimeoutError as error:
         said = f"Nothing of the body came for {_SILENT_SECONDS:g} s."
         raise ProblemError(ProblemKind.INVALID_DOCUMENT, said, headers={"Connection": "close"}) from error
