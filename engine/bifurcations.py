@@ -16,7 +16,7 @@ from engine.branches import CycleProblem, Traces, orbits_of, points_of, reaches
 from engine.continuation import Points, located, onto, points_at
 from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, pick, resized
-from engine.hybrid import ReducedModel, take
+from engine.hybrid import ReducedModel
 from engine.modes import solve_symmetric
 from engine.stability import Crossings, crossing_error
 
@@ -103,7 +103,7 @@ def bifurcations(
     branch = np.split(followed, np.cumsum([trace.problem.member.size for trace in traces])[:-1]) if traces else []
     found = [_hopf(traces, branch, model, crossings)]
     for trace, numbers in zip(traces, branch, strict=True):
-        judged = floquet(take(model, trace.member), trace.orbits)
+        judged = floquet(model, trace.member, trace.orbits)
         segment, turns = _segments(trace), trace.points.tangent[:, -1]
         fold = turns[segment] * turns[segment + 1] < 0.0
         found.append(_located(trace, numbers, segment[fold], Kind.FOLD))
@@ -178,7 +178,7 @@ def _multipliers(problem: CycleProblem, points: Points) -> tuple[ComplexArray, F
     size = 2 * problem.model.mass.shape[-1] - 1
     values = np.full((points.branch.size, size), np.nan, dtype=np.complex128)
     error = np.full(points.branch.size, np.nan)
-    judged = floquet(take(problem.model, problem.member[points.branch[known]]), pick(orbits, known), FINENESS)
+    judged = floquet(problem.model, problem.member[points.branch[known]], pick(orbits, known), FINENESS)
     values[known], error[known] = judged.multipliers[:, 1:], judged.trivial_error
     return values, error
 

@@ -11,7 +11,7 @@ import numpy as np
 from engine.arrays import ComplexArray, FloatArray, IntArray
 from engine.floquet import judged, monodromy
 from engine.harmonic import Orbits, balance, half_peak_to_peak, oscillation_size
-from engine.hybrid import Discretization, ReducedModel, observation, take
+from engine.hybrid import Discretization, ReducedModel, observation
 from engine.outcome import Outcome, Stability
 from engine.result import LoopCompetitionRow
 from engine.rows import Found
@@ -51,7 +51,7 @@ def loop_competitions(
     orbits, solution = balance(joint, line, start)
     ratio = oscillation_size(joint, line, orbits) / oscillation_size(joint, line, start)
     held = solution.converged & (ratio < SAME_SIZE) & (ratio > 1.0 / SAME_SIZE)
-    multiplier, vector, error = _leading(monodromy(take(joint, line), orbits, FINENESS))
+    multiplier, vector, error = _leading(monodromy(joint, line, orbits, FINENESS))
     verdict = judged(np.abs(multiplier), error)
     energy = _energy_by_loops(joint, line, vector, len(loops))
     for i, cycle in enumerate(alone.tolist()):

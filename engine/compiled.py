@@ -119,7 +119,7 @@ def balance_slopes(
 
 def products_over_period(
     model: ReducedModel,
-    orbits: tuple[FloatArray, ...],
+    orbits: tuple[AnyArray, ...],
     basis: tuple[FloatArray, FloatArray],
     steps: tuple[IntArray, IntArray],
 ) -> FloatArray:
@@ -128,9 +128,10 @@ def products_over_period(
     Parameters
     ----------
     model : ReducedModel
-        Leading axis (cycles,).
+        Leading axis (members,).
     orbits : tuple of arrays
-        Inverse mass (cycles, m, m), coefficients (cycles, m, 2 H + 1), angular frequency and wind speed (cycles,).
+        The model of each (cycles,), inverse mass (members, m, m), coefficients (cycles, m, 2 H + 1), angular frequency
+        and wind speed (cycles,).
     basis : pair of arrays (rows, 2 H + 1)
         The Fourier basis and its derivative at Gauss points.
     steps : pair of arrays (cycles,)
@@ -142,10 +143,10 @@ def products_over_period(
     (cycles, 2 m, 2 m)
         NaN where the number of steps is 0.
     """
-    cycles, m, size = orbits[1].shape
+    cycles, m, size = orbits[2].shape
     matrices = np.empty((cycles, 2 * m, 2 * m))
     places = _contiguous(*orbits, *basis, *steps)
-    monodromies(_parts(model), _shape(model), (basis[0].shape[0], size // 2), places, matrices)
+    monodromies(_parts(model), _shape(model), (cycles, basis[0].shape[0], size // 2), places, matrices)
     return matrices
 
 

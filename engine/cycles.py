@@ -156,7 +156,7 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
     everything = np.arange(len(family))
     member, wind = family.places(everything)
     orbits = family.orbits_of(everything)
-    judged = floquet(take(model, member), orbits)
+    judged = floquet(model, member, orbits)
     largest = np.abs(judged.multipliers).max(axis=-1, initial=1.0)
     coarse = np.flatnonzero((_tail(model, member, orbits) > TAIL) | (judged.trivial_error > TAIL * largest))
     kept = np.ones(member.size, dtype=np.bool_)
@@ -195,7 +195,7 @@ def _refined(
     """Balance some cycles again with more harmonics, judge them anew, and tell which of them that resolved."""
     harmonics = max(MOST_HARMONICS, orbits.coefficients.shape[-1] // 2)
     finer, solution = balance(model, member[coarse], resized(pick(orbits, coarse), harmonics))
-    again = floquet(take(model, member[coarse]), finer, FINENESS)
+    again = floquet(model, member[coarse], finer, FINENESS)
     orbits = resized(orbits, harmonics)
     orbits.coefficients[coarse] = finer.coefficients
     frequency, multipliers = orbits.angular_frequency.copy(), judged.multipliers.copy()

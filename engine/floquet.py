@@ -31,13 +31,15 @@ class Floquet:
     stability: ObjectArray
 
 
-def floquet(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> Floquet:
+def floquet(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int = 1) -> Floquet:
     """Integrate the linearized equations over one period and judge the multipliers.
 
     Parameters
     ----------
     model : ReducedModel
-        Leading axis (cycles,).
+        Leading axis (members,).
+    member : (cycles,)
+        The model of each orbit.
     orbits : Orbits
     fineness : int
         Factor on the number of steps, a power of two.
@@ -46,7 +48,7 @@ def floquet(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> Floquet:
     -------
     Floquet
     """
-    matrices = monodromy(model, orbits, fineness)
+    matrices = monodromy(model, member, orbits, fineness)
     cycles, size, _ = matrices.shape
     values = np.full((cycles, size), np.nan, dtype=np.complex128)
     known = np.isfinite(matrices).all(axis=(-1, -2))
@@ -66,24 +68,29 @@ def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
     return verdicts[1 * (largest < 1.0 - margin) + 2 * (largest > 1.0 + margin)]
 
 
-def monodromy(model: ReducedModel, orbits: Orbits, fineness: int = 1) -> FloatArray:
-    """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed."""
+def monodromy(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int = 1) -> FloatArray:
+    """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed.
+
+    Parameters as of `floquet`.
+    """
     size = 2 * model.mass.shape[-1]
     inverse = np.asarray(np.linalg.inv(model.mass), dtype=np.float64)
-    steps = fineness * steps_needed(inverse @ model.stiffness, orbits.angular_frequency)
+    steps = fineness * steps_needed((inverse @ model.stiffness)[member], orbits.angular_frequency)
     if compiled.AVAILABLE:
-        return _compiled_products(model, orbits, inverse, np.where(steps <= MOST_STEPS, steps, 0))
+        return _compiled_products(model, member, orbits, inverse, np.where(steps <= MOST_STEPS, steps, 0))
     matrices: FloatArray = np.full((orbits.wind_speed.size, size, size), np.nan)
     for count in np.unique(steps[steps <= MOST_STEPS]).tolist():
         here = np.flatnonzero(steps == count)
         block = max(1, BLOCK_NUMBERS // (count * size**2))
         for first in range(0, here.size, block):
             some = here[first : first + block]
-            matrices[some] = _product_over_period(take(model, some), pick(orbits, some), count)
+            matrices[some] = _product_over_period(take(model, member[some]), pick(orbits, some), count)
     return matrices
 
 
-def _compiled_products(model: ReducedModel, orbits: Orbits, inverse: FloatArray, steps: IntArray) -> FloatArray:
+def _compiled_products(
+    model: ReducedModel, member: IntArray, orbits: Orbits, inverse: FloatArray, steps: IntArray
+) -> FloatArray:
     """Return the products of all steps over one period, NaN where there are none."""
     harmonics = orbits.coefficients.shape[-1] // 2
     counts = np.unique(np.append(steps, 0))
@@ -91,7 +98,7 @@ def _compiled_products(model: ReducedModel, orbits: Orbits, inverse: FloatArray,
     values, slopes = (np.concatenate(parts) for parts in zip(*made, strict=True))
     first = (np.cumsum(2 * counts) - 2 * counts)[np.searchsorted(counts, steps)]
     motion = (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
-    return compiled.products_over_period(model, (inverse, *motion), (values, slopes), (steps, first))
+    return compiled.products_over_period(model, (member, inverse, *motion), (values, slopes), (steps, first))
 
 
 def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> FloatArray:

@@ -57,7 +57,7 @@ WIDE static void generate(Workspace *w, const Model *model, const Monodromies *w
     const ptrdiff_t steps = wanted->steps[cycle], stretch = steps / LANES;
     const double omega = wanted->angular_frequency[cycle], speed = wanted->wind_speed[cycle];
     const double *coefficients = wanted->coefficients + cycle * m * w->size;
-    const double *inverse = wanted->inverse_mass + cycle * m * m;
+    const double *inverse = wanted->inverse_mass + wanted->member[cycle] * m * m;
     Lanes *block = w->blocks + point * m * n;
     for (int lane = 0; lane < LANES; lane++) {
         const ptrdiff_t at = (wanted->first[cycle] + point * steps + lane * stretch + step) * w->size;
@@ -162,7 +162,7 @@ int integrate_monodromies(const Model *stack, const Monodromies *wanted)
     Workspace workspace;
     const int ready = prepare(&workspace, stack, wanted->harmonics);
     for (ptrdiff_t cycle = 0; ready && cycle < wanted->cycles; cycle++) {
-        const Model model = model_of(stack, cycle);
+        const Model model = model_of(stack, wanted->member[cycle]);
         if (wanted->steps[cycle])
             integrate(&workspace, &model, wanted, cycle);
         else

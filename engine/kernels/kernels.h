@@ -74,14 +74,14 @@ typedef struct {
 /* Evaluate every balance and its slopes; return 0 if memory is short. */
 int linearize_balances(const Model *stack, const Linearizations *wanted);
 
-/* Orbits whose monodromy is wanted: inverse_mass (cycles, m, m); coefficients (cycles, m, 2 H + 1);
- * angular_frequency, wind_speed, steps, first (cycles); values, slopes (rows, 2 H + 1), the basis and its derivative by
+/* Orbits whose monodromy is wanted: member (cycles); inverse_mass (members, m, m); coefficients
+ * (cycles, m, 2 H + 1); angular_frequency, wind_speed, steps, first (cycles); values, slopes (rows, 2 H + 1), the basis and its derivative by
  * tau, for each cycle from row `first` on at the first and then at the second Gauss points of its steps, a multiple of
  * LANES; matrices (cycles, 2 m, 2 m), NaN where there are no steps. */
 typedef struct {
     ptrdiff_t cycles;
     int harmonics;
-    const ptrdiff_t *steps, *first;
+    const ptrdiff_t *member, *steps, *first;
     const double *inverse_mass, *coefficients, *angular_frequency, *wind_speed, *values, *slopes;
     double *matrices;
 } Monodromies;

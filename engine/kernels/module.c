@@ -140,18 +140,19 @@ static int whole_steps(const Monodromies *wanted, Py_ssize_t rows)
 static PyObject *monodromies(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *parts, *inverse, *coefficients, *frequency, *speed, *values, *slopes, *steps, *first, *matrices;
+    PyObject *parts, *member, *inverse, *coefficients, *frequency, *speed, *values, *slopes, *steps, *first, *matrices;
     int shape[3], harmonics;
-    Py_ssize_t cycles, rows;
-    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOOOOOO)O", &PyTuple_Type, &parts, &cycles, shape, shape + 1,
-                          shape + 2, &rows, &harmonics, &inverse, &coefficients, &frequency, &speed, &values, &slopes,
+    Py_ssize_t members, cycles, rows;
+    if (!PyArg_ParseTuple(arguments, "O!(niii)(nni)(OOOOOOOOO)O", &PyTuple_Type, &parts, &members, shape, shape + 1,
+                          shape + 2, &cycles, &rows, &harmonics, &member, &inverse, &coefficients, &frequency, &speed, &values, &slopes,
                           &steps, &first, &matrices))
         return NULL;
     const Py_ssize_t m = shape[0], size = 2 * (Py_ssize_t)harmonics + 1;
     Model model;
     Monodromies wanted = {.cycles = cycles, .harmonics = harmonics};
     int done = 1;
-    if (read_model(&buffers, parts, shape, &model, cycles) && (wanted.inverse_mass = REALS(inverse, cycles * m * m))
+    if (read_model(&buffers, parts, shape, &model, members) && (wanted.member = INDICES(member, cycles))
+        && within(wanted.member, cycles, members) && (wanted.inverse_mass = REALS(inverse, members * m * m))
         && (wanted.coefficients = REALS(coefficients, cycles * m * size))
         && (wanted.angular_frequency = REALS(frequency, cycles)) && (wanted.wind_speed = REALS(speed, cycles))
         && (wanted.values = REALS(values, rows * size)) && (wanted.slopes = REALS(slopes, rows * size))

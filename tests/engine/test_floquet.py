@@ -9,9 +9,11 @@ from engine.arrays import FloatArray
 from engine.describing import energy_balance_cycles
 from engine.floquet import floquet, judged, monodromy
 from engine.harmonic import Orbits, balance, resized, states
-from engine.hybrid import ReducedModel, take
+from engine.hybrid import ReducedModel
 from engine.outcome import Stability
 from tests.builders import finite_element, hybrid, source_line
+
+ALONE = np.array([0])
 
 
 def orbit_of(model: ReducedModel, wind_speed: float) -> Orbits:
@@ -60,10 +62,10 @@ def compare(model: ReducedModel, orbit: Orbits) -> None:
     brute = by_integration(model, orbit)
     # The engine's velocities are by phase, x'/w: a similarity by the frequency.
     scale = np.repeat([1.0, 1.0 / float(orbit.angular_frequency[0])], m)
-    found = monodromy(model, orbit)[0]
+    found = monodromy(model, ALONE, orbit)[0]
     # Magnus' method of fourth order; what it leaves must stay below the 1e-4 that the trivial multiplier may be off.
     assert found == pytest.approx(scale[:, None] * brute / scale, abs=1e-4 * np.abs(found).max())
-    result = floquet(model, orbit)
+    result = floquet(model, ALONE, orbit)
     values = np.linalg.eigvals(brute)
     trivial = np.abs(values - 1.0).argmin()
     assert abs(values[trivial] - 1.0) < 1e-5  # the orbit itself is periodic
@@ -82,7 +84,7 @@ def test_trivial_direction_is_the_velocity_of_the_orbit() -> None:
     step = 1e-5
     around = states(orbit, np.array([-step, step]))[0]
     tangent = (around[1] - around[0]) / (2.0 * step) * np.repeat([1.0, speed], 3)
-    assert monodromy(model, orbit)[0] @ tangent == pytest.approx(tangent, abs=1e-4 * np.abs(tangent).max())
+    assert monodromy(model, ALONE, orbit)[0] @ tangent == pytest.approx(tangent, abs=1e-4 * np.abs(tangent).max())
 
 
 def test_stack_is_judged_as_its_members() -> None:
@@ -93,9 +95,9 @@ def test_stack_is_judged_as_its_members() -> None:
         np.concatenate([first.angular_frequency, second.angular_frequency]),
         np.array([5.0, 6.0]),
     )
-    together = monodromy(take(one, np.zeros(2, dtype=np.intp)), both)
-    assert together[1] == pytest.approx(monodromy(one, second)[0], abs=1e-6)
-    assert not np.allclose(together[1], monodromy(other, second)[0], atol=1e-3)
+    together = monodromy(one, np.zeros(2, dtype=np.intp), both)
+    assert together[1] == pytest.approx(monodromy(one, ALONE, second)[0], abs=1e-6)
+    assert not np.allclose(together[1], monodromy(other, ALONE, second)[0], atol=1e-3)
 
 
 def test_what_the_error_does_not_decide_is_unknown() -> None:

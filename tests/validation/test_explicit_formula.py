@@ -27,7 +27,7 @@ def stable_balance(model: ReducedModel, guesses: Orbits) -> list[tuple[Orbits, O
     """Return pairs of an explicit cycle and the stable orbit of nine harmonics that it leads to."""
     member = np.zeros(guesses.wind_speed.size, dtype=np.intp)
     found, solution = balance(model, member, resized(guesses, 9))
-    judged = floquet(take(model, member), found)
+    judged = floquet(model, member, found)
     good = solution.converged & (judged.stability == Stability.STABLE)
     return [(pick(guesses, i), pick(found, i)) for i in np.flatnonzero(good).tolist()]
 

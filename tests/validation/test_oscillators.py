@@ -62,7 +62,7 @@ def test_section_11_van_der_pol_at_small_mu(mu: float, wind_speed: float) -> Non
     amplitude = 2.0 + mu**2 / 96.0 - 1033.0 * mu**4 / 552960.0
     assert wave.max() == pytest.approx(amplitude, abs=1e-4 * mu**6 + 3e-8)  # the samples miss the peak by 2.5e-8
     assert half_peak_to_peak(orbit.coefficients[0, 0]) == pytest.approx(wave.max(), rel=1e-5)
-    judged = floquet(model, orbit)
+    judged = floquet(model, np.array([0]), orbit)
     # -mu + O(mu^3) by Liouville's formula; Magnus' method adds less than a thousandth.
     assert exponent(judged, orbit) == pytest.approx(-mu, rel=mu**2 + 1e-3)
     assert judged.stability[0] is Stability.STABLE
@@ -99,7 +99,7 @@ def test_section_11_circular_cycle_is_exact(mu: float, wind_speed: float) -> Non
     assert orbit.angular_frequency[0] == pytest.approx(1.0, rel=1e-12)
     assert np.hypot(*orbit.coefficients[0, 0, 1:3]) == pytest.approx(1.0, rel=1e-12)
     assert np.abs(orbit.coefficients[0, 0, [0, 3, 4, 5, 6]]).max() < 1e-12
-    judged = floquet(model, orbit)
+    judged = floquet(model, np.array([0]), orbit)
     # Magnus' method of fourth order with 24 steps or more: its error goes with the fourth power of the step.
     assert exponent(judged, orbit) == pytest.approx(-mu, rel=1e-3)
     assert judged.trivial_error[0] < 3e-3 * abs(mu)
