@@ -7,7 +7,7 @@ import platform
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from benchmarks import engine_speed, scaling
+from benchmarks import cores, engine_speed, scaling, service_speed
 
 ROOT = Path(__file__).parents[1]
 Section = Callable[[], Iterator[tuple[str, float]]]
@@ -33,7 +33,14 @@ MEANING = {
     "fleet_exponent": "exponent of the time over the number of lines",
     "finite_element_over_hybrid": "cost of the finite element model over the hybrid one",
     "service_overhead_ratio": "a batch through HTTP, queue, worker and database over the engine alone",
-    "two_worker_speedup": "two workers over one on two cores",
+    "two_worker_speedup": "two workers over one on two cores, from the start of the first chunk to the end of the last",
+    "two_worker_batch_speedup": "the same from the first byte of the batch to the last byte of its results",
+    "machine_two_core_speedup": "two processes of the engine alone over one: what this machine gives at most",
+    "analyse_start_seconds": "`galloping analyse` from its start until it has read and checked a line [s]",
+    "analyse_seconds": "`galloping analyse`, a line with both models at one wind speed, the whole process [s]",
+    "claim_database_ms": "processor time of PostgreSQL for the claim and the end of a chunk, its lines aside [ms]",
+    "heartbeat_database_ms": "the same for a heartbeat [ms]",
+    "sweep_database_ms": "the same for a sweep that finds nothing [ms]",
     "post_p99_ms": "POST /v1/jobs, 50 clients that each post again at once, 99th percentile [ms]",
     "posts_per_s": "posts a second of that closed loop, two API processes, load generator on the same cores",
     "post_open_p99_ms": "POST /v1/jobs at 100 posts a second over 50 connections (open loop), 99th percentile [ms]",
@@ -58,13 +65,14 @@ def main() -> None:
     """Run the sections asked for and write what they found."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--fleet", type=int, default=1000, help="largest number of lines of the fleet")
+    parser.add_argument("--batch", type=int, default=10_000, help="lines of the batch sent through the service")
     parser.add_argument("--long", type=int, nargs="?", const=10_000, help="run the fleet alone, up to so many lines")
     arguments = parser.parse_args()
     if arguments.long:
         _write_long(arguments.long)
         return
     figures: dict[str, float] = {}
-    for section in _sections(arguments.fleet):
+    for section in _sections(arguments.fleet, arguments.batch):
         for name, value in section():
             figures[name] = value
             print(f"{name:28} {value:12.5g}  {MEANING.get(name, '')}", flush=True)
@@ -72,7 +80,7 @@ def main() -> None:
     _write_page(figures)
 
 
-def _sections(fleet: int) -> Iterator[Section]:
+def _sections(fleet: int, lines: int) -> Iterator[Section]:
     yield engine_speed.one_cycle
     if importlib.util.find_spec("xpplab"):
         yield engine_speed.branch
@@ -80,8 +88,9 @@ def _sections(fleet: int) -> Iterator[Section]:
         print("branch: left out, the development extra `bench` is not installed")
     yield lambda: engine_speed.fleet(fleet)
     yield engine_speed.hybrid_against_finite_element
-    if importlib.util.find_spec("benchmarks.service_speed"):
-        yield importlib.import_module("benchmarks.service_speed").service
+    yield cores.command_line
+    yield cores.two_processes
+    yield lambda: service_speed.service(lines)
 
 
 def _write_page(figures: dict[str, float]) -> None:

@@ -25,6 +25,7 @@ from app.convert.assemble import SoundParts, gather
 from app.examples import example
 from app.serve import migrate
 from app.settings import Settings
+from benchmarks.lease_costs import lease_costs
 from benchmarks.load import CLIENTS, Request, closed_loop, open_loop
 from benchmarks.processor import seconds_by_role
 from engine.analysis import analyse_stack
@@ -36,6 +37,7 @@ POSTS_PER_S = 100.0
 READS = 5000
 RUNS = 3
 LOOK_SECONDS = 0.2
+COST_LINES = 1000
 WARM_LINES = 64
 STANDARD: dict[str, Any] = {
     "loops": [1, 2],
@@ -63,12 +65,15 @@ def service(lines: int = 1000) -> Iterator[tuple[str, float]]:
     documents = _documents(lines)
     alone = _engine_seconds(documents)
     with _running() as running:
-        one = _batch_seconds(running, documents, workers=1)
-        yield "service_overhead_ratio", one / alone
-        yield "two_worker_speedup", one / _batch_seconds(running, documents, workers=2)
-        yield from _costs(running, documents)
+        one = _timed_batch(running, documents, workers=1)
+        yield "service_overhead_ratio", one.whole / alone
+        two = _timed_batch(running, documents, workers=2)
+        yield "two_worker_speedup", one.working / two.working
+        yield "two_worker_batch_speedup", one.whole / two.whole
+        yield from _costs(running, documents[:COST_LINES])
         yield from _posts(running)
         yield from _reads(running)
+        yield from lease_costs(running.settings)
 
 
 def _documents(count: int) -> list[dict[str, Any]]:
@@ -153,15 +158,25 @@ def _working(running: Running, workers: int) -> Iterator[httpx.Client]:
         processes.stop([worker], signal.SIGTERM, 30.0)
 
 
-def _batch_seconds(running: Running, documents: list[dict[str, Any]], workers: int) -> float:
-    """Return the time from the first byte of a batch to the last byte of its results [s]."""
+@dataclass(frozen=True, slots=True)
+class Times:
+    """Seconds from the first byte of a batch to the last of its results, and those of work on its chunks."""
+
+    whole: float
+    working: float
+
+
+def _timed_batch(running: Running, documents: list[dict[str, Any]], workers: int) -> Times:
     body = _body(documents)
-    with _working(running, workers) as client:
+    with _working(running, workers) as client, psycopg.connect(_plain(running), autocommit=True) as database:
+        after = _number(database, "SELECT extract(epoch FROM clock_timestamp())")
         begin = time.perf_counter()
         found = _run_batch(client, body)
         seconds = time.perf_counter() - begin
+        working = "SELECT extract(epoch FROM max(finished_at) - min(started_at)) FROM jobs"
+        recent = _number(database, f"{working} WHERE started_at > to_timestamp({after})")
     assert [json.loads(text)["status"] for text in found.splitlines()] == ["successful"] * len(documents)
-    return seconds
+    return Times(seconds, recent)
 
 
 def _costs(running: Running, documents: list[dict[str, Any]]) -> Iterator[tuple[str, float]]:
