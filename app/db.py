@@ -10,7 +10,19 @@ from typing import Any, cast
 import orjson
 import psycopg
 from psycopg.sql import SQL, Identifier
-from sqlalchemy import JSON, Connection, Engine, NullPool, Table, create_engine, event, insert, make_url, select
+from sqlalchemy import (
+    JSON,
+    ColumnElement,
+    Connection,
+    Engine,
+    NullPool,
+    Table,
+    create_engine,
+    event,
+    insert,
+    make_url,
+    select,
+)
 from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.functions import func
@@ -75,6 +87,13 @@ def database_time(session: Session) -> datetime:
         session.info[_CLOCK] = session.get_transaction(), moment
     found: datetime = moment
     return found
+
+
+def database_moment(session: Session) -> datetime | ColumnElement[datetime]:
+    """Return `database_time` for a statement that writes it: a server reads its clock there and need not be asked."""
+    if session.get_bind().dialect.name != "postgresql":
+        return database_time(session)
+    return func.clock_timestamp(type_=UtcDateTime)
 
 
 def insert_rows(session: Session, kind: type[Base], records: Sequence[Mapping[str, Any]]) -> None:

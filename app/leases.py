@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session
 
 from app import results, tallies
 from app.correlation import Ids
-from app.db import database_time
+from app.db import database_moment, database_time
 from app.jobs import record
 from app.settings import Settings
 from app.tables import FailureKind, Job, JobEventKind, JobStatus
@@ -166,7 +166,7 @@ def take_undispatched(
 
 def mark_dispatched(session: Session, job_ids: Sequence[UUID]) -> None:
     """Note that these jobs' messages are with the broker."""
-    _set_dispatched(session, job_ids, database_time(session))
+    _set_dispatched(session, job_ids, database_moment(session))
 
 
 def mark_undispatched(session: Session, job_ids: Sequence[UUID]) -> None:
@@ -174,7 +174,9 @@ def mark_undispatched(session: Session, job_ids: Sequence[UUID]) -> None:
     _set_dispatched(session, job_ids, None)
 
 
-def _set_dispatched(session: Session, job_ids: Sequence[UUID], moment: datetime | None) -> None:
+def _set_dispatched(
+    session: Session, job_ids: Sequence[UUID], moment: datetime | ColumnElement[datetime] | None
+) -> None:
     statement = update(Job).where(Job.id.in_(job_ids), Job.status == JobStatus.ACCEPTED).values(dispatched_at=moment)
     session.execute(statement.execution_options(synchronize_session=False))
 
