@@ -1,13 +1,17 @@
 """The commands that run the service: migrate, api, worker, and serve, which is the whole of it in one command."""
 
+import asyncio
 import logging
 import math
 import os
 import shutil
 import signal
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from types import FrameType
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import uvicorn
 from alembic import command
@@ -144,7 +148,26 @@ def _application() -> "Service":
     if settings.api_processes > 1:
         logs.configure(settings)
         processes.end_with_parent(os.getppid())
-    return create_app(settings)
+    app = create_app(settings)
+    _release_at_a_stop(app)
+    return app
+
+
+def _release_at_a_stop(app: "Service") -> None:
+    """Let those go who wait for a change as soon as a stop is asked for: the server waits for them before it ends."""
+    loop = asyncio.get_running_loop()
+
+    def release() -> None:
+        for watch in (app.state.job_watch, app.state.batch_watch):
+            watch.release()
+
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, partial(_after, partial(loop.call_soon_threadsafe, release), signal.getsignal(number)))
+
+
+def _after(first: Callable[[], object], handler: Any, number: int, frame: FrameType | None) -> None:
+    first()
+    handler(number, frame)
 
 
 def _empty_folder(path: Path) -> Path:

@@ -40,16 +40,17 @@ class Watch(Generic[Subject, State]):
         self._thread = ThreadPoolExecutor(1, thread_name_prefix=name)
         self._watched: dict[Subject, _Watched[State]] = {}
         self._work: asyncio.Task[None] | None = None
+        self._released = False
 
     async def follow(self, subject: Subject) -> AsyncGenerator[State]:
-        """Yield the state of a subject and then every other one that is seen, until the subject is gone."""
+        """Yield the state of a subject and then every other one that is seen, until it is gone or all are released."""
         watched = self._watched.setdefault(subject, _Watched())
         watched.followers += 1
         if self._work is None:
             self._work = asyncio.create_task(self._look_on())
         last: State | None = None
         try:
-            while not (watched.seen and watched.state is None):
+            while not self._released and not (watched.seen and watched.state is None):
                 changed = watched.changed
                 if watched.state is not None and watched.state != last:
                     last = watched.state
@@ -60,6 +61,12 @@ class Watch(Generic[Subject, State]):
             watched.followers -= 1
             if not watched.followers:
                 del self._watched[subject]
+
+    def release(self) -> None:
+        """Let all go who follow, and those who come later."""
+        self._released = True
+        for watched in self._watched.values():
+            watched.changed.set()
 
     async def close(self) -> None:
         """End the thread; nobody may follow any more."""

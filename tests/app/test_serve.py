@@ -1,13 +1,18 @@
-"""What `tests/e2e/test_serve.py` and `tests/migrations` leave of app.serve: a worker that dies under the service."""
+"""What `tests/e2e/test_serve.py` and `tests/migrations` leave of app.serve: a worker that dies, streams at a stop."""
 
 import os
 import signal
 from pathlib import Path
 
+import httpx
+import pytest
+
+from app.serve import migrate
 from app.settings import Settings
+from tests.app.lines import SHORT
 from tests.documents import short_request
-from tests.e2e.test_serve import serving, submit, wait_for
-from tests.processes import children
+from tests.e2e.test_serve import is_ready, serving, submit, wait_for
+from tests.processes import children, running
 from tests.servers import free_port, wait_until
 
 
@@ -20,3 +25,27 @@ def test_worker_that_dies_is_started_again(tmp_path: Path) -> None:
         os.kill(worker, signal.SIGKILL)
         wait_until(lambda: len(children(process.pid)) == 2 and worker not in children(process.pid), what="another")
         wait_for(client, submit(client, short_request()), "successful")
+
+
+@pytest.mark.parametrize("api_processes", [1, 2])
+def test_streams_end_at_a_stop(tmp_path: Path, api_processes: int) -> None:
+    settings = Settings(data_dir=tmp_path, api_processes=api_processes, shutdown_seconds=120.0)
+    migrate(settings)
+    port = free_port()
+    address = f"http://127.0.0.1:{port}"
+    with (
+        running(settings, "-m", "app.serve", "127.0.0.1", str(port)) as process,
+        httpx.Client(base_url=address, timeout=60.0) as client,
+    ):
+        wait_until(lambda: is_ready(client), 60.0, "readiness")
+        job = submit(client, short_request())
+        lines = {"lines": [short_request()["line"]], "analysis": SHORT}
+        batch = client.post("/v1/batches", json=lines).headers["location"]
+        with client.stream("GET", f"{job}/events") as first, client.stream("GET", f"{batch}/events") as second:
+            streams = [first.iter_lines(), second.iter_lines()]
+            seen = [next(lines) for lines in streams]
+            process.terminate()
+            rest = [line for lines in streams for line in lines]  # to their ends, which one cut off would not reach
+        assert process.wait(20.0) in {0, -signal.SIGTERM}
+        assert seen == ["event: accepted"] * 2
+        assert not any(line.startswith("event: ") for line in rest)

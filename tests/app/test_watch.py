@@ -116,3 +116,21 @@ def test_a_database_that_fails_is_looked_at_again() -> None:
         return found
 
     assert asyncio.run(main()) == "a"
+
+
+def test_all_are_let_go_at_once() -> None:
+    async def main() -> list[list[str]]:
+        watch = Watch("test", Table(n1="a").look, 0.01)
+
+        async def follow() -> list[str]:
+            async with aclosing(watch.follow(1)) as states:
+                return [state async for state in states]
+
+        following = [asyncio.create_task(follow()) for _ in range(3)]
+        await first(watch, 1)
+        watch.release()
+        seen = [*await asyncio.gather(*following), await follow()]
+        await watch.close()
+        return seen
+
+    assert asyncio.run(main())[3] == []

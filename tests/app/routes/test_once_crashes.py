@@ -7,6 +7,7 @@ import socket
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from uuid import UUID
 
 import httpx
@@ -103,6 +104,54 @@ def test_a_batch_whose_server_dies_while_it_comes_in_is_taken_in_once(
         assert batch.lines.total == len(LINES)
         assert [found["id"] for found in http.get("/v1/batches").json()["batches"]] == [str(batch.id)]
         assert client.submit_batch(LINES, SHORT, idempotency_key=KEY["Idempotency-Key"]).id == batch.id
+
+
+@contextlib.contextmanager
+def lossy(address: str, losses: int) -> Iterator[tuple[str, list[int]]]:
+    """Pass posts on to a service, but lose its first answers; give the address and the statuses of all answers."""
+    statuses: list[int] = []
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            body = self.rfile.read(int(self.headers["Content-Length"]))
+            kept = {name: self.headers[name] for name in ("Content-Type", "Idempotency-Key")}
+            answer = httpx.post(f"{address}{self.path}", content=body, headers=kept, timeout=60.0)
+            statuses.append(answer.status_code)
+            if len(statuses) <= losses:
+                self.close_connection = True
+                return
+            self.send_response(answer.status_code)
+            self.send_header("Content-Length", str(len(answer.content)))
+            self.end_headers()
+            self.wfile.write(answer.content)
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        thread = threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{server.server_address[1]}", statuses
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def test_the_client_gets_the_job_whose_answer_was_lost(settings: Settings) -> None:
+    with service.running(settings) as http, lossy(str(http.base_url).rstrip("/"), 2) as (address, statuses):
+        with Client(address) as client:
+            job = client.submit_document(short_request())
+        assert statuses == [202] * 3
+        assert [found["id"] for found in http.get("/v1/jobs").json()["jobs"]] == [str(job.id)]
+
+
+def test_the_client_gets_the_batch_whose_answer_was_lost(settings: Settings) -> None:
+    with service.running(settings) as http, lossy(str(http.base_url).rstrip("/"), 1) as (address, statuses):
+        with Client(address) as client:
+            batch = client.submit_batch(LINES[:2], SHORT)
+        assert statuses == [202] * 2
+        assert [found["id"] for found in http.get("/v1/batches").json()["batches"]] == [str(batch.id)]
 
 
 def test_the_client_outlasts_the_lease_of_a_server_that_died() -> None:
