@@ -26,6 +26,7 @@ from engine.hybrid import (
 )
 from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.outcome import Fault, InvalidSpec
+from engine.quasi_periodic import quasi_periodic_motions
 from engine.report import assembled
 from engine.result import LoopCompetitionRow, Progress, Result
 from engine.rows import Found, FrequencyTable, coupled_squares
@@ -133,6 +134,7 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     starts = explicit_starts(published, winds, analysis.harmonics)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
     cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
+    turning = bifurcations(cycles.traces, cycles.followed, model, crossings)
     return Found(
         name=Model.HYBRID,
         model=model,
@@ -141,7 +143,8 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
         crossings=crossings,
         cycles=cycles,
         confidence=confidence(model, cycles, analysis.check),
-        bifurcations=bifurcations(cycles.traces, cycles.followed, model, crossings),
+        bifurcations=turning,
+        quasi_periodic=quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic),
         winds=winds,
     )
 
@@ -157,6 +160,7 @@ def _finite_element(
     winds = hybrid.winds
     starts = _lifted(prepared.made, modes, hybrid, model, analysis.harmonics)
     cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
+    turning = bifurcations(cycles.traces, cycles.followed, model, crossings)
     return Found(
         name=Model.FINITE_ELEMENT,
         model=model,
@@ -165,7 +169,8 @@ def _finite_element(
         crossings=crossings,
         cycles=cycles,
         confidence=confidence(model, cycles, analysis.check),
-        bifurcations=bifurcations(cycles.traces, cycles.followed, model, crossings),
+        bifurcations=turning,
+        quasi_periodic=quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic),
         winds=winds,
     )
 

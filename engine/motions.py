@@ -11,18 +11,22 @@ from engine.harmonic import half_peak_to_peak, pick, states
 from engine.hybrid import Discretization, observation, take
 from engine.outcome import Outcome, Stability
 from engine.profile import horizontal_position
-from engine.resonance import motion_shares
+from engine.resonance import divided, motion_shares
 from engine.result import LimitCycleRow
 from engine.rows import Found, by_line, number
 from engine.spec import Model
 from engine.stability import at_wind, state_matrices, unstable_pairs
+from engine.torus_lines import amplitude_range, base_frequencies, largest_angle, mean_square_velocity
 
 ANGLE_SAMPLES = 48
 _UNSTABLE, _LOST = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
 _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
 _TRUST = ("found_by", "harmonics", "residual", "truncation", "detuning_sensitivity", "direct_difference")
-_UNMEASURED: dict[str, Any] = dict.fromkeys((*_AMPLITUDES, *_SHARES, *_TRUST, "branch", "frequency_hz"))
+_SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
+_FREQUENCIES = ("frequency_hz", "second_frequency_hz")
+_MEASURES = (*_AMPLITUDES, *_SMALLEST, *_SHARES, *_TRUST, *_FREQUENCIES, "branch")
+_UNMEASURED: dict[str, Any] = dict.fromkeys(_MEASURES)
 _AT_REST = _UNMEASURED | dict.fromkeys(_AMPLITUDES, 0.0)
 
 
@@ -55,6 +59,8 @@ def motion_rows(made: Discretization, found: Found, loops: tuple[int, ...], lowe
     for line, motion in _equilibria(found, loops, scales):
         table[line].append(motion)
     for line, motion in _cycles(made, found, scales):
+        table[line].append(motion)
+    for line, motion in _tori(made, found, scales):
         table[line].append(motion)
     for motions in table:
         motions.sort(key=lambda m: (m.row.loops, m.row.wind_speed_m_per_s, m.row.kind != "equilibrium"))
@@ -131,9 +137,42 @@ def _measures(found: Found, series: FloatArray) -> Iterator[dict[str, Any]]:
     known: dict[str, Sequence[Any]] = {
         name: [number(value) for value in column.tolist()] for name, column in columns.items()
     }
+    unknown = dict.fromkeys((*_SMALLEST, "second_frequency_hz"))
     known |= {"branch": cycles.branch.tolist(), "harmonics": cycles.harmonics.tolist(), "found_by": cycles.found_by}
     for values in zip(*known.values(), strict=True):
-        yield dict(zip(known, values, strict=True))
+        yield unknown | dict(zip(known, values, strict=True))
+
+
+def _tori(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
+    """Yield the rows of all quasi-periodic motions, and of wind speeds where one is likely but none was found."""
+    known, model = found.quasi_periodic, found.model
+    tori, member = known.tori, known.member
+    frequency, _ = base_frequencies(model, member, tori)
+    energy = np.diagonal(model.mass, axis1=-2, axis2=-1)[member] * mean_square_velocity(tori)
+    shares = divided(energy, model.direction)
+    for i, line in enumerate(found.line[member].tolist()):
+        one = tori.pick(np.array([i]))
+        loops = int(found.loops[member[i], energy[i].argmax()])
+        series = observation(made, model.shapes[member[i]], loops).T @ one.coefficients[0]
+        largest, smallest = amplitude_range(series, one, float(frequency[i, 0]))
+        beyond = largest_angle(model, int(member[i]), one) > made.sections.fitted_range[line]
+        measures = _UNMEASURED | {
+            **dict(zip(_AMPLITUDES, largest.tolist(), strict=True)),
+            **dict(zip(_SMALLEST, smallest.tolist(), strict=True)),
+            **dict(zip(_SHARES, shares[i].tolist(), strict=True)),
+            **dict(zip(_FREQUENCIES, (frequency[i] / (2.0 * np.pi)).tolist(), strict=True)),
+            "branch": int(known.branch[i]),
+            "found_by": known.found_by[i],
+            "harmonics": tori.order[0],
+            "residual": float(known.residual[i]),
+            "truncation": number(float(known.truncation[i])),
+        }
+        place = _Place(found.name, loops, float(one.wind_speed[0]), line)
+        outcome = Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED
+        yield line, Motion(_row(place, scales, "quasi_periodic", known.stability[i], outcome, measures))
+    for at, wind in known.lost.tolist():
+        place = _Place(found.name, int(found.loops[at, 0]), float(found.winds[wind]), int(found.line[at]))
+        yield place.line, Motion(_row(place, scales, "quasi_periodic", Stability.UNKNOWN, _LOST))
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +188,7 @@ class _Place:
 def _row(
     place: _Place,
     scales: _Scales,
-    kind: Literal["equilibrium", "periodic"],
+    kind: Literal["equilibrium", "periodic", "quasi_periodic"],
     stability: Stability,
     outcome: Outcome,
     measures: Mapping[str, Any] = _UNMEASURED,
@@ -163,11 +202,7 @@ def _row(
         wind_speed_m_per_s=place.wind_speed,
         kind=kind,
         stability=stability,
-        second_frequency_hz=None,
         observed_at_m=float(scales.observed[place.loops][place.line]),
-        vertical_min_m=None,
-        horizontal_min_m=None,
-        torsional_min_rad=None,
         vertical_ratio=None if vertical is None else vertical / sag,
         horizontal_ratio=None if horizontal is None else horizontal / sag,
         reduced_wind_speed=place.wind_speed / speed if np.isfinite(speed) else None,

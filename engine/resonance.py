@@ -73,6 +73,10 @@ def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArra
         Vertical, horizontal and torsional share; they add up to 1.
     """
     order = np.repeat(np.arange(1, coefficients.shape[-1] // 2 + 1), 2)
-    energy = mass * ((order * coefficients[..., 1:]) ** 2).sum(axis=-1)
+    return divided(mass * ((order * coefficients[..., 1:]) ** 2).sum(axis=-1), direction)
+
+
+def divided(energy: FloatArray, direction: IntArray) -> FloatArray:
+    """Divide the energy of the co-ordinates (motions, m) between the directions: (motions, 3), adding up to 1."""
     by_direction = energy @ np.eye(3)[direction]
     return np.asarray(by_direction / by_direction.sum(axis=-1, keepdims=True))

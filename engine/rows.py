@@ -13,6 +13,7 @@ from engine.cycles import Cycles
 from engine.hybrid import ReducedModel
 from engine.modes import assign, solve_symmetric
 from engine.outcome import Outcome
+from engine.quasi_periodic import QuasiPeriodic
 from engine.result import BifurcationRow, CriticalWindSpeedRow, Direction, FrequencyRow
 from engine.spec import Model
 from engine.stability import Crossings
@@ -36,6 +37,7 @@ class Found:
     cycles: Cycles
     confidence: Confidence
     bifurcations: Bifurcations
+    quasi_periodic: QuasiPeriodic
     winds: FloatArray
 
 

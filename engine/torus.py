@@ -6,6 +6,7 @@ k_1 theta_1 + k_2 theta_2 for each pair of `lattice`. The load is a cubic polyno
 samples for each harmonic gives them without aliasing.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -195,6 +196,13 @@ def points_of(tori: Tori) -> FloatArray:
 def tori_of(z: FloatArray, m: int, order: Order) -> Tori:
     """Read points (k, m (2 n - 1) + 3) as tori."""
     return Tori(z[:, :-3].reshape(z.shape[0], m, (z.shape[1] - 3) // m), z[:, -3:-1], z[:, -1], order)
+
+
+def stacked(parts: Sequence[Tori]) -> Tori:
+    """Put tori of one order one after another."""
+    names = ("coefficients", "angular_frequency", "wind_speed")
+    arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    return Tori(order=parts[0].order, **arrays)
 
 
 def resized(tori: Tori, order: Order) -> Tori:

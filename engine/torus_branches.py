@@ -1,21 +1,27 @@
 """Branches of quasi-periodic motions over the wind speed, born at torus points of cycles. Theory section 7.3."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
 from engine.bifurcations import Bifurcations, Kind
 from engine.branches import Traces, at_winds
 from engine.continuation import Points, Problem, Steps, branches, points_at
+from engine.floquet import floquet
 from engine.harmonic import Orbits, balance, pick, resized
 from engine.hybrid import ReducedModel, take
+from engine.newton import Options
 from engine.torus import Order, Tori, lattice, linearized, phase_rows, phasors, points_of, tori_of
+from engine.torus_lines import base_lines, line_strengths
 
 STEPS = Steps(first=0.05, points=100)
+FIRST_STEPS = Steps(first=0.01, points=2)
 SMALLEST_SHARE = 0.2  # of the whole size, by which a co-ordinate that hardly moves is measured
 LOCATED = 1e-4  # relative uncertainty of a torus point that is one for certain
+NEAR = Options(tolerance=1e-3)  # convergence is quadratic
+BESIDE = 1e-3  # share of the wind speed beside a torus point at which its cycle is judged
 SAME_FREQUENCY = 1e-3  # relative difference up to which a point of a branch is the torus point
 
 
@@ -68,6 +74,10 @@ class Births:
     tori: Tori
     direction: FloatArray
 
+    def pick(self, index: IntArray) -> "Births":
+        """Pick some of them."""
+        return Births(self.member[index], self.family[index], self.tori.pick(index), self.direction[index])
+
 
 def born_at_torus_points(model: ReducedModel, traces: Sequence[Traces], found: Bifurcations, order: Order) -> Births:
     """Take the cycles at all torus points, with the disturbance of the second frequency.
@@ -98,7 +108,7 @@ def born_at_torus_points(model: ReducedModel, traces: Sequence[Traces], found: B
         found.wind_speed[points],
     )
     member = found.member[points]
-    orbits, solution = balance(model, member, start)
+    orbits, solution = balance(model, member, start, NEAR)
     good = np.flatnonzero(solution.converged)
     base, second = orbits.angular_frequency[good], found.second[points[good]]
     beat = np.abs(second - np.round(second / base) * base)
@@ -132,6 +142,45 @@ def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
     return direction
 
 
+def born_stable(model: ReducedModel, births: Births) -> IntArray:
+    """Return which of the births leave stable tori: those on the side where the cycle has lost its stability.
+
+    There the torus takes over what the cycle loses, provided that nothing grows on the cycle on the other side.
+    """
+    problem = TorusProblem(model, births.member, births.tori.order)
+    steps = _steps(problem, births, FIRST_STEPS)
+    speed, side = np.full((2, births.member.size), np.nan)
+    for new in steps:
+        # Against the first point of the branch: with the harmonics left out the torus point itself moves.
+        side[new.branch] = np.sign(new.z[:, -1] - speed[new.branch])
+        speed[new.branch] = new.z[:, -1]
+    known = np.flatnonzero(np.isfinite(side))
+    both = np.tile(known, 2)
+    away = np.concatenate([side[known], -side[known]])
+    cycles = pick(cycles_of(births.tori), both)
+    beside = replace(cycles, wind_speed=cycles.wind_speed * (1.0 + BESIDE * away))
+    orbits, solution = balance(model, births.member[both], beside, NEAR)
+    multipliers = floquet(model, births.member[both], orbits).multipliers[:, 1:]
+    growing = np.where(solution.converged, (np.abs(multipliers) > 1.0).sum(axis=-1), -1).reshape(2, -1)
+    return np.asarray(known[(growing[0] == 2) & (growing[1] == 0)])
+
+
+def _steps(problem: TorusProblem, births: Births, steps: Steps) -> Generator[Points, BoolArray | None, ObjectArray]:
+    """Leave the cycles in the direction that grows, by shares of their size."""
+    start = points_of(births.tori)
+    size = np.linalg.norm(start / problem.scale(start, np.arange(births.member.size)), axis=-1, keepdims=True)
+    return branches(problem, start, births.direction * size, steps)
+
+
+def cycles_of(tori: Tori) -> Orbits:
+    """Return the harmonics of w alone."""
+    pairs = lattice(tori.order).pairs
+    place = np.flatnonzero((pairs[:, 1] == 0) & (pairs[:, 0] > 0))
+    both = np.stack([2 * place - 1, 2 * place], axis=-1).ravel()
+    kept = tori.coefficients[..., np.concatenate([[0], both])]
+    return Orbits(kept, tori.angular_frequency[:, 0], tori.wind_speed)
+
+
 def traced(model: ReducedModel, births: Births, winds: FloatArray) -> Points:
     """Follow the branches of tori inside the range of the wind speeds (winds,), until they end in another cycle.
 
@@ -141,10 +190,8 @@ def traced(model: ReducedModel, births: Births, winds: FloatArray) -> Points:
         Sorted by branch, in the order in which they were met; the births are left out.
     """
     problem = TorusProblem(model, births.member, births.tori.order)
-    start = points_of(births.tori)
-    size = np.linalg.norm(start / problem.scale(start, np.arange(births.member.size)), axis=-1, keepdims=True)
-    steps = branches(problem, start, births.direction * size, STEPS)
-    last = points_at(problem, np.arange(births.member.size), start.copy(), births.direction)
+    steps = _steps(problem, births, STEPS)
+    last = points_at(problem, np.arange(births.member.size), points_of(births.tori), births.direction)
     found, fresh = [last.pick(np.zeros(0, dtype=np.intp))], np.ones(births.member.size, dtype=np.bool_)
     alive: BoolArray | None = None
     while True:
@@ -162,20 +209,6 @@ def traced(model: ReducedModel, births: Births, winds: FloatArray) -> Points:
     return every.pick(np.argsort(every.branch, kind="stable"))
 
 
-def base_lines(mass: FloatArray, torus: Tori) -> tuple[IntArray, IntArray]:
-    """Return the strongest pair of harmonics of one torus, and the strongest that makes a basis with it: (2,) each.
-
-    mass: (m,), the diagonal of the mass matrix.
-    """
-    pairs = lattice(torus.order).pairs
-    strength = mass @ np.abs(phasors(torus.coefficients[0])) ** 2
-    strength[0] = -1.0
-    order = np.argsort(-strength)
-    first = pairs[order[0]]
-    area = np.abs(pairs[:, 0] * first[1] - pairs[:, 1] * first[0])
-    return first, pairs[next(i for i in order if area[i] == 1)]
-
-
 def _nearest(traces: Sequence[Traces], found: Bifurcations, point: int) -> Orbits | None:
     """Guess the cycle at a torus point from the branches of its model that pass its wind speed."""
     nearest, best = SAME_FREQUENCY, None
@@ -190,13 +223,12 @@ def _nearest(traces: Sequence[Traces], found: Bifurcations, point: int) -> Orbit
 
 def _ended(problem: TorusProblem, before: Points, new: Points) -> BoolArray:
     """Tell which branches passed through a cycle, where one of the two base lines turns over."""
-    mass = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[problem.member[new.branch]]
     old, fresh = problem.read(before.z), problem.read(new.z)
-    pairs = lattice(problem.order).pairs.tolist()
+    member = problem.member[new.branch]
+    mass = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[member]
     ended = np.zeros(new.branch.size, dtype=np.bool_)
-    for i in range(new.branch.size):
-        one = np.array([i])
-        lines = [pairs.index(line.tolist()) for line in base_lines(mass[i], old.pick(one))]
+    for i, strengths in enumerate(line_strengths(problem.model, member, old)):
+        lines = base_lines(strengths, lattice(problem.order).pairs)
         left, right = (phasors(tori.coefficients[i])[:, lines] for tori in (old, fresh))
         ended[i] = (mass[i] @ (left.conj() * right).real).min() < 0.0
     return ended

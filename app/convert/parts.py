@@ -144,6 +144,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         finite_element_loops=tuple(part.finite_element_loops),
         static_twist=spec.StaticTwist(part.static_twist),
         loop_competition=spec.LoopCompetition(part.loop_competition),
+        quasi_periodic=spec.TorusSearch(part.quasi_periodic),
         device_effect=spec.DeviceEffect(part.device_effect),
         check=spec.Check(part.check),
     )

@@ -115,6 +115,12 @@ class Analysis(Document):
         examples=["reported"],
     )
 
+    quasi_periodic: Literal["lasting", "every"] = Field(
+        default="lasting",
+        description="Which quasi-periodic motions are sought: those that may last, or unstable ones too",
+        examples=["every"],
+    )
+
     check: Literal["none", "direct"] = Field(
         default="none",
         description="Whether every stable cycle is held against 50 periods of direct integration",

@@ -8,6 +8,7 @@ from app.schemas.fields import Answer, told
 
 Model = Literal["hybrid", "finite_element"]
 Outcome = Literal["converged", "no_convergence", "statically_unstable", "outside_fit", "limit_reached"]
+FoundBy = Literal["hopf_branch", "explicit", "energy_balance", "branch", "torus_point", "unstable_cycle"]
 Number = float | None
 
 
@@ -73,12 +74,14 @@ class LimitCycle(Row):
     vertical_share: Number = told("Vertical share of the mean kinetic energy; null at rest [1]", 0.9927)
     horizontal_share: Number = told("Horizontal share of the mean kinetic energy; null at rest [1]", 0.0034)
     torsional_share: Number = told("Torsional share of the mean kinetic energy; null at rest [1]", 0.0039)
-    found_by: Literal["hopf_branch", "explicit", "energy_balance", "branch"] | None = told(
-        "How it was found: on the branch of a Hopf point, from the explicit formula or the balance of energy, or on "
-        "the branch of such a one; null at rest",
+    found_by: FoundBy | None = told(
+        "How it was found: on the branch of a Hopf point, from the explicit formula or the balance of energy, on the "
+        "branch of such a one; if quasi-periodic from a torus point or beside an unstable cycle; null at rest",
         "hopf_branch",
     )
-    harmonics: int | None = told("Harmonics of the balance; null at rest [1]", 5)
+    harmonics: int | None = told(
+        "Harmonics of the balance, of the cycle's frequency if quasi-periodic; null at rest [1]", 5
+    )
     residual: Number = told("Largest rest of the equations over the largest elastic force [1]", 2.1e-13)
     truncation: Number = told("Relative change of the amplitude with one harmonic more [1]", 3.4e-8)
     detuning_sensitivity: Number = told(

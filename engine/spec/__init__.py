@@ -14,6 +14,7 @@ from engine.spec.analysis import (
     LoopCompetition,
     Model,
     StaticTwist,
+    TorusSearch,
     check_compatible,
 )
 from engine.spec.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
@@ -64,6 +65,7 @@ __all__ = [
     "StaticTwist",
     "Support",
     "Supports",
+    "TorusSearch",
     "Wind",
     "check_compatible",
     "check_placement",

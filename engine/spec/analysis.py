@@ -61,6 +61,13 @@ class DeviceEffect(StrEnum):
     REPORTED = "reported"
 
 
+class TorusSearch(StrEnum):
+    """Which quasi-periodic motions are sought: those that may last, or unstable ones beside stable cycles as well."""
+
+    LASTING = "lasting"
+    EVERY = "every"
+
+
 class Check(StrEnum):
     """Whether stable cycles are held against direct integration of the same equations. Theory section 7.5."""
 
@@ -88,6 +95,7 @@ class Analysis:
     loop_competition: LoopCompetition = LoopCompetition.NEGLECTED
     device_effect: DeviceEffect = DeviceEffect.NEGLECTED
     check: Check = Check.NONE
+    quasi_periodic: TorusSearch = TorusSearch.LASTING
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""

@@ -5,13 +5,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine.aerodynamics import force
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import FloatArray
 from engine.bifurcations import bifurcations
 from engine.branches import passed, traced_from_hopf
 from engine.hybrid import ReducedModel, take
 from engine.stability import critical_wind_speeds
 from engine.torus import Tori, balance, lattice, phasors, resized, states, tori_of
-from engine.torus_branches import base_lines, born_at_torus_points, traced
+from engine.torus_branches import born_at_torus_points, traced
+from engine.torus_lines import base_frequencies, base_lines, line_strengths
 from tests.engine.test_bifurcations import LIGHT, analysed
 from tests.engine.tori import FREQUENCIES, coupled_circles
 
@@ -45,16 +46,10 @@ def test_branch_from_an_exact_torus_point() -> None:
     assert wind.tolist() == [0, 1]
     for i, speed in enumerate(winds):
         torus = tori.pick(np.array([i]))
-        lines = np.array(base_lines(np.ones(2), torus))
-        assert np.abs(lines @ torus.angular_frequency[0]) == pytest.approx(FREQUENCIES, rel=2e-3)
-        assert strengths(torus, lines) == pytest.approx(averaged(speed), rel=0.01)
-
-
-def strengths(torus: Tori, lines: IntArray) -> FloatArray:
-    """Return the amplitude of the first line in the first co-ordinate and of the second one in the second."""
-    known = lattice(torus.order).pairs.tolist()
-    amplitude = np.abs(phasors(torus.coefficients[0]))
-    return np.array([amplitude[i, known.index(line.tolist())] for i, line in enumerate(lines)])
+        assert base_frequencies(model, ONE, torus)[0] == pytest.approx(np.array([FREQUENCIES]), rel=2e-3)
+        lines = base_lines(line_strengths(model, ONE, torus)[0], lattice(torus.order).pairs)
+        amplitude = np.abs(phasors(torus.coefficients[0]))
+        assert amplitude[[0, 1], lines] == pytest.approx(averaged(speed), rel=0.01)
 
 
 def followed(model: ReducedModel, torus: Tori, periods: float) -> tuple[FloatArray, FloatArray]:
@@ -85,10 +80,7 @@ def test_branch_joins_both_torus_points_of_the_single_conductor() -> None:
     assert at.tolist() == [1, 1]
     tori, solution = balance(model, np.zeros(2, dtype=np.intp), resized(tori_of(guess, 3, (3, 2)), (5, 4)))
     assert solution.converged.all()
-    lines = [
-        np.sort(np.abs(np.array(base_lines(model.mass[0].diagonal(), t)) @ t.angular_frequency[0]))
-        for t in (tori.pick(np.array([i])) for i in (0, 1))
-    ]
-    assert lines[0] == pytest.approx(lines[1], rel=1e-6)
+    frequencies, _ = base_frequencies(model, np.zeros(2, dtype=np.intp), tori)
+    assert frequencies[0] == pytest.approx(frequencies[1], rel=1e-6)
     reached, expected = followed(model, tori.pick(np.array([0])), 60.0)
     assert reached == pytest.approx(expected, abs=2e-4 * np.abs(expected).max())
