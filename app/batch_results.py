@@ -9,12 +9,11 @@ from sqlalchemy import Row, and_, select
 from sqlalchemy.orm import Session
 
 from app import convert
+from app.convert import Table
 from app.results import PEAKS, STATIC, tables_of, unpacked
 from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
 
-BatchTable = Literal[
-    "frequencies", "internal_resonances", "critical_wind_speeds", "limit_cycles", "bifurcations", "summary"
-]
+BatchTable = Literal[Table, "summary"]
 
 _LINES_A_FETCH = 200
 _LABELS = ("number", "reference", "asset_id")

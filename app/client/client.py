@@ -14,14 +14,12 @@ from app.client import uploads
 from app.client.connection import Connection, ServiceError, Show
 from app.client.uploads import Lines, Upload, as_json
 from app.schemas import Analysis, Line, Study
-from app.schemas.answers import JobDocument, JobPage, ResultDocument
-from app.schemas.batch import BatchDocument
+from app.schemas.answers import JobDocument, JobPage, ResultDocument, TableName
+from app.schemas.batch import BatchDocument, BatchTableName
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Table = Literal["frequencies", "critical-wind-speeds", "limit-cycles"]
-BatchTable = Literal["frequencies", "critical-wind-speeds", "limit-cycles", "bifurcations", "summary"]
 Json = dict[str, Any]
 Model = TypeVar("Model", bound=BaseModel)
 Followed = TypeVar("Followed", JobDocument, BatchDocument)
@@ -153,12 +151,12 @@ class Client:
         """Return everything that was found by an ended job."""
         return self._get(ResultDocument, f"{_address(job)}/results")
 
-    def rows(self, job: JobDocument, table: Table) -> list[Json]:
+    def rows(self, job: JobDocument, table: TableName) -> list[Json]:
         """Return the rows of one table of an ended job."""
         found: dict[str, list[Json]] = json.loads(self.download(job, f"results/{table}?format=json"))
         return next(iter(found.values()))
 
-    def frame(self, job: JobDocument, table: Table) -> "pd.DataFrame":
+    def frame(self, job: JobDocument, table: TableName) -> "pd.DataFrame":
         """Return one table of an ended job as a data frame; needs pandas (`galloping[pandas]`)."""
         return uploads.frame(self.rows(job, table))
 
@@ -203,13 +201,13 @@ class Client:
         """Return the status of a batch."""
         return self._get(BatchDocument, f"/v1/batches/{batch_id}")
 
-    def batch_rows(self, batch: BatchDocument, table: BatchTable | None = None) -> Iterator[Json]:
+    def batch_rows(self, batch: BatchDocument, table: BatchTableName | None = None) -> Iterator[Json]:
         """Yield the rows of one table of a batch, or an object a line with everything, as they come in."""
         named = {"format": "ndjson"} | ({"table": table} if table else {})
         for line in self._connection.lines(str(httpx.URL(f"{_address(batch)}/results", params=named))):
             yield json.loads(line)
 
-    def batch_frame(self, batch: BatchDocument, table: BatchTable = "summary") -> "pd.DataFrame":
+    def batch_frame(self, batch: BatchDocument, table: BatchTableName = "summary") -> "pd.DataFrame":
         """Return one table of a batch as a data frame; needs pandas (`galloping[pandas]`)."""
         return uploads.frame(self.batch_rows(batch, table))
 

@@ -1,7 +1,7 @@
 """Results of a batch, streamed as NDJSON, CSV or Parquet, and the faults of the lines that were rejected."""
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 from uuid import UUID
 
 from fastapi import APIRouter, Query, Request
@@ -18,34 +18,23 @@ from app.routes import batch_documentation, documentation
 from app.routes.batch_common import require_results
 from app.routes.common import PREFIX, CallerOf, Readers, streamed
 from app.routes.ended import Known
-from app.schemas.batch import BatchErrors
+from app.schemas.batch import BatchErrors, BatchTableName
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
 BatchFormat = Literal["ndjson", "csv", "parquet"]
-TableName = Literal[
-    "limit-cycles", "critical-wind-speeds", "frequencies", "internal-resonances", "bifurcations", "summary"
-]
-
 _MEDIA_TYPES: dict[BatchFormat, str] = {
     "ndjson": "application/x-ndjson",
     "csv": "text/csv",
     "parquet": export.PARQUET,
 }
-_TABLES: dict[TableName, BatchTable] = {
-    "limit-cycles": "limit_cycles",
-    "critical-wind-speeds": "critical_wind_speeds",
-    "frequencies": "frequencies",
-    "internal-resonances": "internal_resonances",
-    "bifurcations": "bifurcations",
-    "summary": "summary",
-}
+_TABLES: dict[BatchTableName, BatchTable] = dict(zip(get_args(BatchTableName), get_args(BatchTable), strict=True))
 
 
 class ResultsQuery(BaseModel):
     """Which results of a batch, and in which form."""
 
-    table: TableName | None = Field(
+    table: BatchTableName | None = Field(
         default=None, description="One table of flat rows; CSV and Parquet are the summary if absent"
     )
     format: BatchFormat | None = Field(default=None, description="Wins over the Accept header")

@@ -1,7 +1,7 @@
 """Results of a job: the whole document, single tables as JSON, CSV or Parquet, and pictures. Everything is streamed."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 from uuid import UUID
 
 from fastapi import APIRouter, Query, Request, Response
@@ -16,7 +16,7 @@ from app.export import Format
 from app.routes import documentation
 from app.routes.common import PREFIX, Readers, failure_of, streamed
 from app.routes.ended import EndedJob
-from app.schemas.answers import ResultDocument
+from app.schemas.answers import ResultDocument, TableName
 from app.tables import Job
 
 router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
@@ -25,26 +25,7 @@ Picture = Literal["amplitude", "orbit", "modes"]
 PictureFormat = Literal["svg", "png"]
 Rows = Iterator[dict[str, object]]
 
-TableName = Literal[
-    "frequencies",
-    "internal-resonances",
-    "critical-wind-speeds",
-    "limit-cycles",
-    "model-comparisons",
-    "loop-competitions",
-    "device-effects",
-    "placements",
-]
-_TABLES: dict[TableName, Table] = {
-    "frequencies": "frequencies",
-    "internal-resonances": "internal_resonances",
-    "critical-wind-speeds": "critical_wind_speeds",
-    "limit-cycles": "limit_cycles",
-    "model-comparisons": "model_comparisons",
-    "loop-competitions": "loop_competitions",
-    "device-effects": "device_effects",
-    "placements": "placements",
-}
+_TABLES: dict[TableName, Table] = dict(zip(get_args(TableName), convert.TABLES, strict=True))
 _PROBLEMS = {
     **documentation.UNCHANGED,
     **documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED),

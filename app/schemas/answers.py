@@ -42,6 +42,20 @@ class PointFailure(Answer):
     failure: str = told("Why, in a sentence", "InvalidSpec: devices.0.position must lie on the span")
 
 
+TableName = Literal[
+    "frequencies",
+    "internal-resonances",
+    "critical-wind-speeds",
+    "limit-cycles",
+    "bifurcations",
+    "model-comparisons",
+    "loop-competitions",
+    "device-effects",
+    "placements",
+]
+"""Tables of flat rows as addresses name them, in the order of the result document."""
+
+
 class ResultDocument(Answer):
     """Everything that was found; in a study every row begins with the values of the axes."""
 

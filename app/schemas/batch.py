@@ -1,18 +1,19 @@
 """Batches: what comes in, and the documents that tell how far they are."""
 
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Literal
 from uuid import UUID
 
 from pydantic import Field
 
 from app.examples import example
 from app.schemas.analysis import Analysis
-from app.schemas.answers import Link, Status
+from app.schemas.answers import Link, Status, TableName
 from app.schemas.fields import Answer, Document, Label, example_of, told
 from app.schemas.line import Line
 from app.schemas.rows import Number
 
+BatchTableName = Literal[TableName, "summary"]
 Count = Annotated[int, Field(ge=0)]
 
 
