@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Callable, Iterator, Mapping
 
 from benchmarks.validation import (
+    completeness,
     critical_wind_speeds,
     device_placement,
     direct_integration,
@@ -31,6 +32,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "critical_wind_speeds": critical_wind_speeds.section,
     "limit_cycles": limit_cycles.section,
     "direct_integration": direct_integration.section,
+    "completeness": completeness.section,
     "model_comparison": model_comparison.section,
     "studies": studies.section,
     "relative_wind": relative_wind.section,

@@ -1,0 +1,243 @@
+"""Attractors that direct integration reaches from a spread of starts, held against the stable motions reported."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from benchmarks.engine_speed import analysed
+from benchmarks.lines import random_line
+from benchmarks.models import discretized, hybrid_models, plain_rate
+from benchmarks.settling import STEPS, Runs, advanced, flow
+from benchmarks.starts import LEVELS, LONGEST, LOOPS, WINDS, Case, Ends, ends, spread
+from benchmarks.validation.common import table
+from engine.arrays import FloatArray
+from engine.hybrid import take
+from engine.outcome import Outcome
+from engine.result import LimitCycleRow, Orbit, Result
+from engine.spec import Analysis, Line, Model
+
+SEED, LINES = 20261122, 48
+COMPARED, COMPARED_LINES = 40, 8  # shortest periods, and lines, held against DOP853
+SAME = 0.01  # relative distance of two motions that count as one
+STRAIGHT = 0.9  # share of its last change by which a motion comes nearer to one that it is on its way to
+
+
+class Verdict(StrEnum):
+    """What the product says of an attractor."""
+
+    REPORTED = "reported as stable"
+    MISJUDGED = "reported, but not as stable"
+    MISSED = "not reported"
+
+
+@dataclass(frozen=True, slots=True)
+class Attractor:
+    """Where starts of one case settled.
+
+    size: (6,), root mean square of V, W [m], Theta [rad] and their rates where they are observed; starts: their number;
+    verdict; nearest: distance of the nearest stable motion that the product reports, relative to the larger of both.
+    """
+
+    case: Case
+    size: FloatArray
+    starts: int
+    verdict: Verdict
+    nearest: float
+
+    @property
+    def amplitude(self) -> FloatArray:
+        """Amplitudes V, W [m] and Theta [rad] of a harmonic motion of this size: (3,)."""
+        return np.asarray(np.sqrt(2.0) * self.size[:3])
+
+    @property
+    def frequency(self) -> float:
+        """Frequency of the largest co-ordinate, as if it were harmonic [Hz]."""
+        largest = int((self.case.weight * self.size[:3]).argmax())
+        return float(self.size[3 + largest] / self.size[largest] / (2.0 * np.pi)) if self.size.any() else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Explored:
+    """What the starts of some lines led to.
+
+    approaching, unsettled, diverged: the case of each start that was still on its straight way to a motion reported as
+    stable, that still changed otherwise, and that left all bounds; starts: number of all; stable: number of motions
+    reported as stable; unreached: of these, that no start settled on or was on its way to.
+    """
+
+    cases: list[Case]
+    attractors: list[Attractor]
+    approaching: list[Case]
+    unsettled: list[Case]
+    diverged: list[Case]
+    starts: int
+    stable: int
+    unreached: int
+
+
+def reported(lines: Sequence[Line], winds: Sequence[float] = WINDS) -> list[Result]:
+    """Analyse the hybrid models of lines as the product does."""
+    return analysed(lines, Analysis(loops=LOOPS, models=(Model.HYBRID,), wind_speeds=tuple(winds)))
+
+
+def compared(ended: Ends, results: Sequence[Result]) -> Explored:
+    """Hold the ends of starts against what `reported` says of the lines at the same wind speeds."""
+    runs, each = ended.runs, ended.runs.outcome.size // len(ended.cases)
+    found = Explored(ended.cases, [], [], [], [], runs.outcome.size, 0, 0)
+    for i, case in enumerate(ended.cases):
+        rows = np.arange(i * each, (i + 1) * each)
+        stable, others = _reported(results[case.line - 1], case)
+        reached: set[int] = set()
+        for row in rows[runs.outcome[rows] == Outcome.LIMIT_REACHED]:
+            towards = {k for k, motion in enumerate(stable) if _comes_nearer(case, runs, row, motion)}
+            (found.approaching if towards else found.unsettled).append(case)
+            reached |= towards
+        found.diverged.extend([case] * int((runs.outcome[rows] == Outcome.NO_CONVERGENCE).sum()))
+        for end, count in _distinct(case, runs.size[rows[runs.outcome[rows] == Outcome.CONVERGED]]):
+            found.attractors.append(_judged(case, end, count, stable, others))
+            reached |= {k for k, motion in enumerate(stable) if _distance(case, motion, end) <= SAME}
+        found = replace(
+            found, stable=found.stable + len(stable), unreached=found.unreached + len(stable) - len(reached)
+        )
+    return found
+
+
+def _comes_nearer(case: Case, runs: Runs, row: int, motion: FloatArray) -> bool:
+    """Tell whether a start goes straight to a motion of size (6,)."""
+    before, now = runs.before[row], runs.size[row]
+    was, is_now, step = (np.linalg.norm(case.weight * x[:3]) for x in (before - motion, now - motion, now - before))
+    return bool(was - is_now > STRAIGHT * step)
+
+
+def _distinct(case: Case, ends: FloatArray) -> list[tuple[FloatArray, int]]:
+    """Return the distinct motions (6,) among ends (k, 6), each with the number of starts that led there."""
+    found: list[tuple[FloatArray, int]] = []
+    for end in ends:
+        same = next((j for j, (other, _) in enumerate(found) if _distance(case, end, other) <= SAME), None)
+        if same is None:
+            found.append((end, 1))
+        else:
+            found[same] = (found[same][0], found[same][1] + 1)
+    return found
+
+
+def _judged(case: Case, size: FloatArray, count: int, stable: list[FloatArray], others: list[FloatArray]) -> Attractor:
+    near, elsewhere = (min((_distance(case, size, m) for m in motions), default=np.inf) for motions in (stable, others))
+    verdict = Verdict.MISJUDGED if elsewhere <= SAME else Verdict.MISSED
+    return Attractor(case, size, count, Verdict.REPORTED if near <= SAME else verdict, near)
+
+
+def _distance(case: Case, one: FloatArray, other: FloatArray) -> float:
+    """Return the distance of two motions (6,) in the kinetic energy, relative to the larger of both."""
+    a, b = (case.weight * motion[:3] for motion in (one, other))
+    rate_a, rate_b = (case.weight * motion[3:] for motion in (one, other))
+    larger = max(np.linalg.norm(a), np.linalg.norm(b))
+    if larger == 0.0:
+        return 0.0
+    quicker = max(np.linalg.norm(rate_a), np.linalg.norm(rate_b))
+    return float(max(np.linalg.norm(a - b) / larger, np.linalg.norm(rate_a - rate_b) / quicker))
+
+
+def _reported(result: Result, case: Case) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Return the sizes (6,) of the motions that a result holds for a case: the stable ones, and the others."""
+    orbits = {orbit.cycle: orbit for orbit in result.orbits}
+    stable: list[FloatArray] = []
+    others: list[FloatArray] = []
+    for i, row in enumerate(result.limit_cycles):
+        if (row.loops, row.wind_speed_m_per_s) == (case.loops, case.wind_speed) and row.vertical_m is not None:
+            size = _size(row, orbits[i]) if i in orbits else np.zeros(6)
+            (stable if row.stability == "stable" else others).append(size)
+    return stable, others
+
+
+def _size(row: LimitCycleRow, orbit: Orbit) -> FloatArray:
+    """Return the root mean square of V, W, Theta and their rates: (6,)."""
+    series = np.array([orbit.vertical, orbit.horizontal, orbit.torsional])
+    order = np.repeat(np.arange(1, series.shape[1] // 2 + 1), 2) * 2.0 * np.pi * (row.frequency_hz or 0.0)
+    waves = 0.5 * series[:, 1:] ** 2
+    return np.asarray(np.sqrt(np.concatenate([series[:, 0] ** 2 + waves.sum(axis=1), (waves * order**2).sum(axis=1)])))
+
+
+def integration_error(lines: Sequence[Line], seed: int) -> float:
+    """Return the largest relative difference from DOP853 (tolerance 1e-11) after some periods from the largest starts.
+
+    The starts are those of each line and number of loops at the highest wind speed.
+    """
+    model, _ = hybrid_models(discretized(lines), LOOPS)
+    member = np.flatnonzero(~model.statically_unstable)
+    wind = np.full(member.size, WINDS[-1])
+    start = spread(model, member, wind, np.random.default_rng(seed))[:, -1]
+    equations = flow(model, member, wind)
+    state = start.T
+    for _ in range(COMPARED * STEPS):
+        state = advanced(equations, state)
+    errors = []
+    for i in range(member.size):
+        rate, end = plain_rate(take(model, int(member[i])), WINDS[-1]), COMPARED * STEPS * float(equations.step[i])
+        run = solve_ivp(rate, (0.0, end), start[i], method="DOP853", rtol=1e-11, atol=1e-13)
+        errors.append(float(np.abs(run.y[:, -1] - state[:, i]).max() / np.abs(run.y[:, -1]).max()))
+    return max(errors)
+
+
+def section() -> Iterator[str]:
+    """Yield the section's text."""
+    generator = np.random.default_rng(SEED)
+    lines = [random_line(generator) for _ in range(LINES)]
+    found = compared(ends(lines, SEED), reported(lines))
+    yield "## Completeness: where direct integration ends\n"
+    yield (
+        f"{LINES} lines drawn at random (seed {SEED}), loops {_listed(LOOPS)}, wind speeds {_listed(WINDS)} m/s: "
+        f"{len(found.cases)} cases of the hybrid model. Each is integrated from {found.starts // len(found.cases)} "
+        f"starts, vertical, horizontal, torsional and mixed, of random phases and four sizes, up to {LEVELS[-1]:g} rad "
+        f"of torsion or turn of the wind, for at most {LONGEST} blocks of fifty of the shortest periods. The method "
+        f"(benchmarks/settling.py) is within {integration_error(lines[:COMPARED_LINES], SEED):.0e} of DOP853 after "
+        f"{COMPARED} periods from the largest starts. Two motions are one if their sizes by direction and the sizes of "
+        f"their velocities differ by less than {SAME:.0%}; the largest difference between an attractor and the motion "
+        f"reported for it is {_worst(found):.2%}.\n"
+    )
+    yield table(["", "number"], list(_counts(found)))
+    missed = [a for a in found.attractors if a.verdict is not Verdict.REPORTED]
+    if missed:
+        yield "\nAttractors that are not reported as stable:\n"
+        head = ["line", "loops", "wind m/s", "starts", "vertical m", "horizontal m", "torsional rad", "Hz", ""]
+        yield table(head, [_missed_row(a) for a in missed])
+    for text, cases in (("that still changed otherwise", found.unsettled), ("that diverged", found.diverged)):
+        if cases:
+            yield f"\nStarts {text}, by line, loops and wind speed: {_placed(cases)}."
+
+
+def _listed(values: Sequence[float]) -> str:
+    return ", ".join(f"{value:g}" for value in values[:-1]) + f" and {values[-1]:g}"
+
+
+def _worst(found: Explored) -> float:
+    return max((a.nearest for a in found.attractors if a.verdict is Verdict.REPORTED), default=0.0)
+
+
+def _counts(found: Explored) -> Iterator[list[object]]:
+    settled_starts = sum(a.starts for a in found.attractors)
+    yield ["starts", found.starts]
+    yield ["settled", settled_starts]
+    yield ["on their straight way to a motion reported as stable when given up", len(found.approaching)]
+    yield ["still changing otherwise when given up", len(found.unsettled)]
+    yield ["diverged (angle of attack beyond 180 degrees)", len(found.diverged)]
+    yield ["attractors that starts settled on, rest among them", len(found.attractors)]
+    for verdict in Verdict:
+        yield [f"of these {verdict.value}", sum(a.verdict is verdict for a in found.attractors)]
+    yield ["motions reported as stable, rest among them", found.stable]
+    yield ["of these that no start settled on or was on its way to", found.unreached]
+
+
+def _missed_row(a: Attractor) -> list[object]:
+    amplitudes = [f"{value:.4f}" for value in a.amplitude.tolist()]
+    case = a.case
+    return [case.line, case.loops, f"{case.wind_speed:g}", a.starts, *amplitudes, f"{a.frequency:.4f}", a.verdict.value]
+
+
+def _placed(cases: Sequence[Case]) -> str:
+    counted = Counter(f"{case.line}/{case.loops}/{case.wind_speed:g}" for case in cases)
+    return ", ".join(f"{place} ({count})" for place, count in counted.items())
