@@ -5,7 +5,7 @@ period doubles and 1 at a branch point; at a fold the branch turns back over the
 function along the branch.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
@@ -15,7 +15,7 @@ from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, ObjectA
 from engine.branches import CycleProblem, Traces, orbits_of, points_of, reaches
 from engine.continuation import Points, located, onto, points_at
 from engine.floquet import Floquet, floquet
-from engine.harmonic import Orbits, pick, resized
+from engine.harmonic import Orbits, resized
 from engine.hybrid import ReducedModel
 from engine.modes import solve_symmetric
 from engine.stability import Crossings, crossing_error
@@ -102,15 +102,19 @@ def bifurcations(
     """
     branch = np.split(followed, np.cumsum([trace.problem.member.size for trace in traces])[:-1]) if traces else []
     found = [_hopf(traces, branch, model, crossings)]
-    for trace, numbers in zip(traces, branch, strict=True):
-        judged = floquet(model, trace.member, trace.orbits)
-        segment, turns = _segments(trace), trace.points.tangent[:, -1]
-        fold = turns[segment] * turns[segment + 1] < 0.0
-        found.append(_located(trace, numbers, segment[fold], Kind.FOLD))
-        for kind in FACTORS:
-            crosses = _crosses(judged, segment, kind) & ~(fold & (kind is Kind.BRANCH_POINT))
-            found.append(_located(trace, numbers, segment[crosses], kind))
-    return _distinct(_joined(found))
+    return distinct([*found, *(part for one in zip(traces, branch, strict=True) for part in on_branches(*one))])
+
+
+def on_branches(trace: Traces, numbers: IntArray) -> Iterator[Bifurcations]:
+    """Locate the bifurcations on branches that were followed; numbers: (branches,), the family of each."""
+    problem, points = trace.problem, trace.points
+    judged = floquet(*problem.models(points.z, points.branch), trace.orbits)
+    segment, turns = _segments(trace), points.tangent[:, -1]
+    fold = turns[segment] * turns[segment + 1] < 0.0
+    yield _located(trace, numbers, segment[fold], Kind.FOLD)
+    for kind in FACTORS:
+        crosses = _crosses(judged, segment, kind) & ~(fold & (kind is Kind.BRANCH_POINT))
+        yield _located(trace, numbers, segment[crosses], kind)
 
 
 def _segments(trace: Traces) -> IntArray:
@@ -137,14 +141,15 @@ def _product(factors: ComplexArray) -> FloatArray:
 
 def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) -> Bifurcations:
     """Locate the zero in each of these segments with more harmonics; where that fails the segment is what is known."""
-    problem, m = trace.problem, trace.problem.model.mass.shape[-1]
+    problem = trace.problem
     ends = [_finer(problem, trace.points.pick(segment + step)) for step in (0, 1)]
     zero = located(problem, ends[0], ends[1], lambda points: _test(problem, points, kind), ACCURACY)
     multipliers, error = _multipliers(problem, zero.points)
     critical, distance = _critical(multipliers, kind)
     speed = [trace.points.z[segment + step, -1] for step in (0, 1)]
     inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE)
-    orbits = orbits_of(np.where(inside[:, None], zero.points.z, ends[0].z), m)
+    z = np.where(inside[:, None], zero.points.z, ends[0].z)
+    orbits = problem.orbits(z, zero.points.branch)
     member = problem.member[zero.points.branch]
     # Two real multipliers whose product is 1 are no torus point.
     real = (np.abs(critical.imag) < ON_CIRCLE) & inside & (kind is Kind.TORUS)
@@ -154,7 +159,7 @@ def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) ->
         member=member,
         branch=numbers[zero.points.branch],
         kind=_repeated(kind, member.size),
-        wind_speed=np.where(inside, orbits.wind_speed, 0.5 * (speed[0] + speed[1])),
+        wind_speed=np.where(inside, z[:, -1], 0.5 * (speed[0] + speed[1])),
         angular_frequency=orbits.angular_frequency,
         second=_second(problem.model, member, orbits, critical, kind),
         co_ordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
@@ -173,12 +178,12 @@ def _finer(problem: CycleProblem, points: Points) -> Points:
 
 
 def _multipliers(problem: CycleProblem, points: Points) -> tuple[ComplexArray, FloatArray]:
-    orbits = orbits_of(points.z, problem.model.mass.shape[-1])
     known = np.flatnonzero(np.isfinite(points.z).all(axis=-1))
     size = 2 * problem.model.mass.shape[-1] - 1
     values = np.full((points.branch.size, size), np.nan, dtype=np.complex128)
     error = np.full(points.branch.size, np.nan)
-    judged = floquet(problem.model, problem.member[points.branch[known]], pick(orbits, known), FINENESS)
+    here = (points.z[known], points.branch[known])
+    judged = floquet(*problem.models(*here), problem.orbits(*here), FINENESS)
     values[known], error[known] = judged.multipliers[:, 1:], judged.trivial_error
     return values, error
 
@@ -256,8 +261,9 @@ def _pick(all_of: Bifurcations, index: IntArray) -> Bifurcations:
     return Bifurcations(*(getattr(all_of, f.name)[index] for f in fields(Bifurcations)))
 
 
-def _distinct(found: Bifurcations) -> Bifurcations:
+def distinct(parts: list[Bifurcations]) -> Bifurcations:
     """Keep the best located of points that are one, sorted by member, branch and wind speed."""
+    found = _joined(parts)
     order = np.lexsort((found.wind_speed, found.branch, found.member))
     found = _pick(found, order)
     kept: dict[tuple[int, Kind], list[int]] = {}

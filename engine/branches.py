@@ -20,7 +20,7 @@ from engine.continuation import (
     points_at,
     tangents,
 )
-from engine.harmonic import Orbits, basis, linearized, pick
+from engine.harmonic import Orbits, basis, first_angle, linearized, pick
 from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution
 from engine.stability import Crossings, critical_modes
@@ -33,6 +33,7 @@ SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static 
 REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
 PARTS = 8  # of a segment between two points, in which crossings of a wind speed are looked for
 LOWEST_WIND = 0.25  # of the lowest wind speed asked for: branches are not followed below
+HIGHEST_WIND = 1.05  # of the highest: a branch that turns back just beyond it has more cycles there
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,16 +48,28 @@ class CycleProblem(Problem):
     member: IntArray
     reference: FloatArray
 
+    def orbits(self, z: FloatArray, branch: IntArray) -> Orbits:
+        """Return the cycles at points (k, n + 1) of branches (k,)."""
+        return orbits_of(z, self.model.mass.shape[-1])
+
+    def repeated(self, branch: IntArray) -> "CycleProblem":
+        """Return the problem with these of its branches."""
+        return CycleProblem(self.model, self.member[branch], self.reference[branch])
+
+    def models(self, z: FloatArray, branch: IntArray) -> tuple[ReducedModel, IntArray]:
+        """Return a stack of models and which of them each of the points (k, n + 1) of branches (k,) has: (k,)."""
+        return self.model, self.member[branch]
+
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the balance and the phase condition <q - q_anchor, dq_anchor/dtau> = 0 with their slopes."""
         member, m = self.member[branch], self.model.mass.shape[-1]
-        phase = self._phase(anchor, branch)
+        phase = self.phase(anchor, branch)
         drift = np.einsum("kx,kx->k", phase, z[:, :-2] - anchor[:, :-2])
         rows, slopes = linearized(self.model, member, orbits_of(z, m))
         last = np.concatenate([phase, np.zeros((phase.shape[0], 2))], axis=-1)
         return np.concatenate([rows, drift[:, None]], axis=-1), np.concatenate([slopes, last[:, None]], axis=1)
 
-    def _phase(self, anchor: FloatArray, branch: IntArray) -> FloatArray:
+    def phase(self, anchor: FloatArray, branch: IntArray) -> FloatArray:
         """Return the row of the phase condition by the coefficients."""
         near = orbits_of(anchor, self.model.mass.shape[-1]).coefficients
         weight = np.diagonal(self.model.mass, axis1=-2, axis2=-1)[self.member[branch]][..., None]
@@ -68,7 +81,7 @@ class CycleProblem(Problem):
         """Solve together with one linear condition more, in compiled code where there is any."""
         if not compiled.AVAILABLE:
             return corrected_by_newton(self, start, branch, condition, options)
-        phase = (self._phase(start.anchor, branch), start.anchor)
+        phase = (self.phase(start.anchor, branch), start.anchor)
         return compiled.followed_balances(
             self.model, self.member[branch], phase, condition, (start.guess, start.scale, options)
         )
@@ -102,7 +115,7 @@ class Traces:
     @property
     def orbits(self) -> Orbits:
         """The cycles of the points."""
-        return orbits_of(self.points.z, self.problem.model.mass.shape[-1])
+        return self.problem.orbits(self.points.z, self.points.branch)
 
     @property
     def last(self) -> IntArray:
@@ -156,22 +169,39 @@ def traced_from_hopf(
     problem = CycleProblem(model, member, reference)
     start = points_of(Orbits(np.zeros_like(first), born.angular_frequency, speed))
     direction = points_of(Orbits(first, np.zeros(hopf.size), np.zeros(hopf.size)))
-    return _traced(problem, start, direction, winds, speed)
+    return traced(problem, start, direction, _limits(winds), speed)
 
 
 def traced_from_cycles(model: ReducedModel, member: IntArray, orbits: Orbits, winds: FloatArray) -> Traces:
     """Follow the branch of each cycle, first all to higher, then all to lower wind speeds: 2 k branches."""
-    both = np.tile(np.arange(member.size), 2)
+    problem = CycleProblem(model, member, reference_size(model, member, orbits))
+    return traced_both_ways(problem, points_of(orbits), _limits(winds))
+
+
+def reference_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return the smallest size by which the amplitudes of the branch of each cycle are measured: (k,)."""
     angle = first_angle(model, member, orbits)
-    reference = _size(model, member, orbits.coefficients) * REFERENCE_ANGLE / np.maximum(angle, REFERENCE_ANGLE)
-    problem = CycleProblem(model, member[both], reference[both])
-    start = points_of(orbits)[both]
+    return _size(model, member, orbits.coefficients) * REFERENCE_ANGLE / np.maximum(angle, REFERENCE_ANGLE)
+
+
+def traced_both_ways(problem: CycleProblem, start: FloatArray, limits: tuple[float, float]) -> Traces:
+    """Follow branches from points (k, n + 1), first all to higher, then all to lower parameters: 2 k branches.
+
+    The problem has one entry a point.
+    """
+    both = np.tile(np.arange(start.shape[0]), 2)
+    problem, start = problem.repeated(both), start[both]
     along = np.zeros_like(start)
-    along[:, -1] = np.where(np.arange(both.size) < member.size, 1.0, -1.0) * start[:, -1]
+    up = np.where(np.arange(both.size) < both.size // 2, 1.0, -1.0)
+    along[:, -1] = up * problem.scale(start, np.arange(both.size))[:, -1]
     direction = tangents(problem, start, np.arange(both.size), along)
-    # At a fold the branch has no direction over the wind: nothing is followed from there.
+    # At a fold the branch has no direction over the parameter: nothing is followed from there.
     direction = np.where(np.isfinite(direction).all(axis=-1, keepdims=True), direction, along)
-    return _traced(problem, start, direction, winds, np.full(both.size, np.inf))
+    return traced(problem, start, direction, limits, np.full(both.size, np.inf))
+
+
+def _limits(winds: FloatArray) -> tuple[float, float]:
+    return LOWEST_WIND * float(winds[0]), HIGHEST_WIND * float(winds[-1])
 
 
 def reaches(traces: Traces, crossings: Crossings, hopf: IntArray) -> BoolArray:
@@ -192,7 +222,7 @@ def at_winds(traces: Traces, winds: FloatArray) -> tuple[IntArray, IntArray, Orb
         Branch and index of the wind speed of each guess, and the orbit guessed.
     """
     branch, wind, guess = passed(traces.points, winds)
-    return branch, wind, orbits_of(guess, traces.problem.model.mass.shape[-1])
+    return branch, wind, traces.problem.orbits(guess, branch)
 
 
 def passed(points: Points, winds: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
@@ -209,27 +239,15 @@ def passed(points: Points, winds: FloatArray) -> tuple[IntArray, IntArray, Float
     return left.branch[row], wind, guess
 
 
-def first_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return the largest amplitude along the span of the angle of attack in the first harmonic: (k,) [rad]."""
-    forms = model.load.angle[member]
-    m = orbits.coefficients.shape[1]
-    cosine, sine = orbits.coefficients[:, :, 1], orbits.coefficients[:, :, 2]
-    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None]
-    states = np.stack([np.concatenate([cosine, rate * sine], -1), np.concatenate([sine, -rate * cosine], -1)], axis=-1)
-    if m == 0 or forms.shape[1] == 0:
-        return np.zeros(member.size)
-    return np.asarray(np.linalg.norm(forms @ states, axis=-1).max(axis=-1))
-
-
 def _size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
     weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
     return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
 
 
-def _traced(
-    problem: CycleProblem, start: FloatArray, direction: FloatArray, winds: FloatArray, born: FloatArray
+def traced(
+    problem: CycleProblem, start: FloatArray, direction: FloatArray, limits: tuple[float, float], born: FloatArray
 ) -> Traces:
-    """Run the continuation and tell it where branches end."""
+    """Run the continuation from points (branches, n + 1) and tell it where branches end: at limits of the parameter."""
     before = points_at(problem, np.arange(start.shape[0]), start, direction)
     found, last = [before], before.pick(before.branch)
     steps = branches(problem, start, direction, STEPS)
@@ -244,7 +262,7 @@ def _traced(
         returned = _returned(problem, last.pick(new.branch), new)
         ended[new.branch] = returned
         found.append(new.pick(~returned))
-        alive = ~returned & _goes_on(problem, new, winds) & ~_closed(problem, before.pick(new.branch), new, len(found))
+        alive = ~returned & _goes_on(problem, new, limits) & ~_closed(problem, before.pick(new.branch), new, len(found))
         last.put(new)
     every = Points(*(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent")))
     return Traces(problem, every.pick(np.argsort(every.branch, kind="stable")), outcome, ended, born)
@@ -258,13 +276,12 @@ def _returned(problem: CycleProblem, before: Points, new: Points) -> BoolArray:
     return np.asarray(np.einsum("kmc,kmc,km->k", first, second, weight) < 0.0)
 
 
-def _goes_on(problem: CycleProblem, new: Points, winds: FloatArray) -> BoolArray:
-    """Tell which branches stay inside the range of wind speeds, angles and frequencies."""
+def _goes_on(problem: CycleProblem, new: Points, limits: tuple[float, float]) -> BoolArray:
+    """Tell which branches stay inside the range of the parameter, of angles and of frequencies."""
     member = problem.member[new.branch]
-    orbits = orbits_of(new.z, problem.model.mass.shape[-1])
-    rising = new.tangent[:, -1] > 0.0
-    wind = orbits.wind_speed
-    inside = (rising | (wind > LOWEST_WIND * winds[0])) & (~rising | (wind < winds[-1]))
+    orbits = problem.orbits(new.z, new.branch)
+    rising, value = new.tangent[:, -1] > 0.0, new.z[:, -1]
+    inside = (rising | (value > limits[0])) & (~rising | (value < limits[1]))
     natural = np.diagonal(problem.model.stiffness, axis1=-2, axis2=-1)
     natural = np.sqrt(np.abs(natural / np.diagonal(problem.model.mass, axis1=-2, axis2=-1)).min(axis=-1))
     quick = orbits.angular_frequency > SLOWEST * natural[member]

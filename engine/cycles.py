@@ -90,8 +90,10 @@ def find_cycles(
     traces = _from_hopf(model, crossings, wind_speeds, harmonics)
     for trace in traces:
         _cover(family, trace, wind_speeds, "hopf_branch")
-    family.add(*_solved(model, family.unlike_known(starts)), "explicit")
-    family.add(*_solved(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))), "energy_balance")
+    family.add(*solved_starts(model, family.unlike_known(starts)), "explicit")
+    family.add(
+        *solved_starts(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))), "energy_balance"
+    )
     while (apart := family.apart()).size:
         member, _ = family.places(apart)
         trace = traced_from_cycles(model, member, family.orbits_of(apart), wind_speeds)
@@ -114,7 +116,7 @@ def _cover(family: CycleFamily, trace: Traces, winds: FloatArray, found_by: Foun
     """Solve for the cycles at the wind speeds that followed branches pass; return the numbers of these branches."""
     followed = family.follow(trace.problem.member, trace.born)
     branch, wind, orbits = at_winds(trace, winds)
-    starts, good = _solved(trace.problem.model, Starts(trace.problem.member[branch], wind, orbits))
+    starts, good = solved_starts(trace.problem.model, Starts(trace.problem.member[branch], wind, orbits))
     numbers = family.add(starts, good, found_by)
     family.join(followed[branch[good]], numbers[good])
     return followed
@@ -138,8 +140,8 @@ def _starts(
     return Starts(member[guess.member], wind[guess.member], resized(orbits, harmonics))
 
 
-def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
-    """Balance all starts and tell which ended on a cycle."""
+def solved_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
+    """Balance all starts at members of a stack of models and tell which ended on a cycle."""
     orbits, solution = balance(model, starts.member, starts.orbits)
     before = oscillation_size(model, starts.member, starts.orbits)
     size = oscillation_size(model, starts.member, orbits)
@@ -150,20 +152,13 @@ def _solved(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
 
 
 def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]) -> Cycles:
-    """Judge the stability of all cycles, with more harmonics and finer steps where those taken were too few."""
+    """Judge the stability of all cycles and sort them."""
     if not len(family):
         return _nothing(model, traces, family.branches()[1])
     everything = np.arange(len(family))
     member, wind = family.places(everything)
     orbits = family.orbits_of(everything)
-    judged = floquet(model, member, orbits)
-    largest = np.abs(judged.multipliers).max(axis=-1, initial=1.0)
-    coarse = np.flatnonzero((_tail(model, member, orbits) > TAIL) | (judged.trivial_error > TAIL * largest))
-    kept = np.ones(member.size, dtype=np.bool_)
-    harmonics = np.full(member.size, orbits.coefficients.shape[-1] // 2)
-    if coarse.size:
-        orbits, judged, kept[coarse] = _refined(model, member, orbits, judged, coarse)
-        harmonics[coarse] = orbits.coefficients.shape[-1] // 2
+    orbits, judged, kept, harmonics = judged_orbits(model, member, orbits)
     branch, followed = family.branches()
     order = np.flatnonzero(kept)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]
@@ -179,6 +174,25 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
         tuple(family.found_by[i] for i in order.tolist()),
         harmonics[order],
     )
+
+
+def judged_orbits(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[Orbits, Floquet, BoolArray, IntArray]:
+    """Judge the stability of cycles (k,), with more harmonics and finer steps where those taken are too few.
+
+    Returns
+    -------
+    Orbits, Floquet, (k,), (k,)
+        Which of them are resolved, and the number of harmonics that each took.
+    """
+    judged = floquet(model, member, orbits)
+    largest = np.abs(judged.multipliers).max(axis=-1, initial=1.0)
+    coarse = np.flatnonzero((_tail(model, member, orbits) > TAIL) | (judged.trivial_error > TAIL * largest))
+    kept = np.ones(member.size, dtype=np.bool_)
+    harmonics = np.full(member.size, orbits.coefficients.shape[-1] // 2)
+    if coarse.size:
+        orbits, judged, kept[coarse] = _refined(model, member, orbits, judged, coarse)
+        harmonics[coarse] = orbits.coefficients.shape[-1] // 2
+    return orbits, judged, kept, harmonics
 
 
 def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:

@@ -188,6 +188,18 @@ def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> F
     return np.asarray(np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight)))
 
 
+def first_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return the largest amplitude along the span of the angle of attack in the first harmonic: (k,) [rad]."""
+    forms = model.load.angle[member]
+    m = orbits.coefficients.shape[1]
+    cosine, sine = orbits.coefficients[:, :, 1], orbits.coefficients[:, :, 2]
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None]
+    states = np.stack([np.concatenate([cosine, rate * sine], -1), np.concatenate([sine, -rate * cosine], -1)], axis=-1)
+    if m == 0 or forms.shape[1] == 0:
+        return np.zeros(member.size)
+    return np.asarray(np.linalg.norm(forms @ states, axis=-1).max(axis=-1))
+
+
 def resized(orbits: Orbits, harmonics: int) -> Orbits:
     """Cut or pad the coefficients to a number of harmonics."""
     size = 2 * harmonics + 1

@@ -78,6 +78,8 @@ def assembled(
                 loop_competitions=tuple(competitions[i]),
                 device_effects=(),
                 placements=(),
+                followed_cycles=(),
+                followed_bifurcations=(),
                 orbits=orbits,
                 warnings=(*said, *fit, *(text for table in dropped for text in table[i])),
                 engine_version=ENGINE_VERSION,

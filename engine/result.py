@@ -206,6 +206,40 @@ class PlacementRow:
 
 
 @dataclass(frozen=True, slots=True)
+class FollowedCycleRow:
+    """A cycle of the hybrid model on a branch that was followed over the field of a study, at one of its values.
+
+    branch numbers the connected families over the field, for each number of loops and wind speed from 0; found_by is
+    "point" where the analysis of the value alone has the cycle too.
+    """
+
+    loops: int
+    wind_speed_m_per_s: float
+    branch: int
+    stability: Stability
+    frequency_hz: float
+    observed_at_m: float
+    vertical_m: float
+    horizontal_m: float
+    torsional_rad: float
+    found_by: Literal["point", "field_branch"]
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedBifurcationRow:
+    """A bifurcation on a branch that was followed over the field of a study; value and uncertainty in its own unit."""
+
+    loops: int
+    wind_speed_m_per_s: float
+    branch: int
+    type: Literal["hopf", "fold", "torus", "period_doubling", "branch_point"]
+    value: float
+    frequency_hz: float
+    second_frequency_hz: float | None
+    uncertainty: float
+
+
+@dataclass(frozen=True, slots=True)
 class Orbit:
     """Fourier coefficients of a cycle where it is observed, for pictures.
 
@@ -234,6 +268,8 @@ class Result:
     loop_competitions: tuple[LoopCompetitionRow, ...]
     device_effects: tuple[DeviceEffectRow, ...]
     placements: tuple[PlacementRow, ...]
+    followed_cycles: tuple[FollowedCycleRow, ...]
+    followed_bifurcations: tuple[FollowedBifurcationRow, ...]
     orbits: tuple[Orbit, ...]
     warnings: tuple[str, ...]
     engine_version: str

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Generator, Iterator, Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from itertools import islice
 from typing import Any, Literal
@@ -19,6 +19,8 @@ from engine.result import (
     BifurcationRow,
     CriticalWindSpeedRow,
     DeviceEffectRow,
+    FollowedBifurcationRow,
+    FollowedCycleRow,
     FrequencyRow,
     InternalResonanceRow,
     LimitCycleRow,
@@ -39,6 +41,8 @@ Table = Literal[
     "loop_competitions",
     "device_effects",
     "placements",
+    "followed_cycles",
+    "followed_bifurcations",
 ]
 _ROW_TYPES: Mapping[Table, type[Any]] = {
     "frequencies": FrequencyRow,
@@ -50,6 +54,8 @@ _ROW_TYPES: Mapping[Table, type[Any]] = {
     "loop_competitions": LoopCompetitionRow,
     "device_effects": DeviceEffectRow,
     "placements": PlacementRow,
+    "followed_cycles": FollowedCycleRow,
+    "followed_bifurcations": FollowedBifurcationRow,
 }
 TABLES: tuple[Table, ...] = tuple(_ROW_TYPES)
 _NO_ROWS = orjson.dumps({name: [] for name in TABLES})
@@ -122,17 +128,65 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
     """
     request = schemas.JobRequest.model_validate(document)
     total = study.count(request.study)
+    follows = request.study is not None and request.study.follow
+    held: list[_Solved] = []
     for number, values in enumerate(study.points(request.study)):
         prefix = f"point {number + 1} of {total}: " if request.study else ""
         for item in _point(request, number, values):
             if isinstance(item, Advance):
-                yield Advance((number + item.fraction) / total, prefix + item.step)
-            else:
+                yield Advance((number + item.fraction) / (total + follows), prefix + item.step)
+            elif isinstance(item, PointResult):
                 yield item
+            elif follows:
+                held.append(item)
+            else:
+                yield item.told()
+    if follows:
+        yield Advance(total / (total + 1), "branches over the field")
+        yield from _followed(request, held)
     yield Advance(1.0, "done")
 
 
-def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> Iterator[Advance | PointResult]:
+@dataclass(frozen=True)
+class _Solved:
+    """A point of a study with what the engine found there."""
+
+    number: int
+    values: dict[str, Any]
+    line: spec.Line
+    result: Result
+
+    def told(self) -> PointResult:
+        """Return everything as plain values."""
+        return point_result(self.line, self.result, self.number, self.values)
+
+
+def _followed(request: schemas.JobRequest, held: list[_Solved]) -> Iterator[PointResult]:
+    """Follow the cycles of the points over the one field of a study; where that fails, its points say so."""
+    # The API and `galloping --help` need no solver.
+    from engine.followed import followed  # noqa: PLC0415
+
+    def line_at(value: float) -> spec.Line:
+        return specification(request, {parameter: value})[0]
+
+    assert request.study is not None, "only a study has a field to follow"
+    parameter = request.study.axes[0].parameter
+    rising = sorted(held, key=lambda point: point.values[parameter])
+    results = [point.result for point in rising]
+    if len(rising) > 1:
+        analysis = specification(request, rising[0].values)[1]
+        try:
+            results = followed(line_at, [point.values[parameter] for point in rising], results, analysis)
+        except (ArithmeticError, ValueError) as error:
+            said = f"The cycles were not followed over {parameter}: {error}"
+            results = [replace(result, warnings=(*result.warnings, said)) for result in results]
+    for point, result in zip(rising, results, strict=True):
+        yield replace(point, result=result).told()
+
+
+def _point(
+    request: schemas.JobRequest, number: int, values: dict[str, Any]
+) -> Iterator[Advance | _Solved | PointResult]:
     try:
         line, analysis = specification(request, values)
         progress = _steps(request.placement, line, analysis)
@@ -140,7 +194,7 @@ def _point(request: schemas.JobRequest, number: int, values: dict[str, Any]) -> 
             try:
                 step = next(progress)
             except StopIteration as end:
-                yield point_result(line, end.value, number, values)
+                yield _Solved(number, values, line, end.value)
                 return
             yield Advance(step.fraction, step.step)
     except (ArithmeticError, ValueError) as error:  # both also cover numpy's, and what a specification raises

@@ -96,6 +96,8 @@ RESULT: dict[str, Any] = {
     "loop_competitions": [],
     "device_effects": [],
     "placements": [],
+    "followed_cycles": [],
+    "followed_bifurcations": [],
 }
 RESULTS_ANSWER: dict[str, Any] = {
     "description": "NDJSON with one object a line, or rows of a table",

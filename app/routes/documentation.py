@@ -126,6 +126,8 @@ RESULT: dict[str, Any] = {
     "loop_competitions": [],
     "device_effects": [],
     "placements": [],
+    "followed_cycles": [],
+    "followed_bifurcations": [],
     "warnings": [],
     "failures": [],
     "failure": None,

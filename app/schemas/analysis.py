@@ -202,6 +202,11 @@ class Study(Document):
     axes: list[Axis] = Field(
         min_length=1, max_length=2, description="The fields that vary; the last one fastest", examples=[[_AXIS]]
     )
+    follow: bool = Field(
+        default=False,
+        description="Whether the hybrid model's cycles are followed over the one field that varies, through folds",
+        examples=[True],
+    )
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:
@@ -212,7 +217,13 @@ class Study(Document):
         if points > STUDY_POINTS_LIMIT:
             context = {"points": points, "limit": STUDY_POINTS_LIMIT}
             raise PydanticCustomError("too_many_points", "{points} points are more than {limit}", context)
+        if self.follow and (len(self.axes) > 1 or not _distinct_numbers(self.axes[0].values)):
+            raise PydanticCustomError("one_field", "follow takes one axis of two or more distinct numbers")
         return self
+
+
+def _distinct_numbers(values: list[Any]) -> bool:
+    return all(isinstance(value, int | float) for value in values) and len(set(values)) == len(values) > 1
 
 
 class JobRequest(Document):

@@ -13,6 +13,8 @@ from app.schemas.rows import (
     CriticalWindSpeed,
     DenHartog,
     DeviceEffect,
+    FollowedBifurcation,
+    FollowedCycle,
     Frequency,
     InternalResonance,
     LimitCycle,
@@ -52,6 +54,8 @@ TableName = Literal[
     "loop-competitions",
     "device-effects",
     "placements",
+    "followed-cycles",
+    "followed-bifurcations",
 ]
 """Tables of flat rows as addresses name them, in the order of the result document."""
 
@@ -72,9 +76,7 @@ class ResultDocument(Answer):
     limit_cycles: list[LimitCycle] = told(
         "Motions at every wind speed", [example_of(LimitCycle) | {"kind": "quasi_periodic"}]
     )
-    bifurcations: list[Bifurcation] = told(
-        "Changes of the motions over the wind speed; always empty yet", [example_of(Bifurcation)]
-    )
+    bifurcations: list[Bifurcation] = told("Changes of the motions over the wind speed", [example_of(Bifurcation)])
     model_comparisons: list[ModelComparison] = told(
         "Stable cycles of the hybrid model beside the finite element model's", [example_of(ModelComparison)]
     )
@@ -86,6 +88,13 @@ class ResultDocument(Answer):
         [example_of(DeviceEffect)],
     )
     placements: list[PlacedDevice] = told("Devices that a search has placed", [example_of(PlacedDevice)])
+    followed_cycles: list[FollowedCycle] = told(
+        "Cycles on branches over the field of a study; empty unless it has follow", [example_of(FollowedCycle)]
+    )
+    followed_bifurcations: list[FollowedBifurcation] = told(
+        "Where those branches turn, begin or change, with the nearest value of the axis",
+        [example_of(FollowedBifurcation)],
+    )
     warnings: list[str] = told("What to bear in mind, in sentences", ["The angle of attack leaves the fitted range."])
     failures: list[PointFailure] = told("Points that failed", [example_of(PointFailure)])
     failure: Failure | None = told("Why the job failed; null if it did not", example_of(Failure))

@@ -174,6 +174,38 @@ class PlacedDevice(Answer):
     generations: int = told("Generations of the search [1]", 4)
 
 
+class FollowedCycle(Answer):
+    """A cycle of the hybrid model on a branch over the field of a study, at one of its values."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    loops: int = told("Loops per span [1]", 1)
+    wind_speed_m_per_s: float = told("Wind speed [m/s]", 5.32)
+    branch: int = told("Family over the field, for each number of loops and wind speed from 0", 1)
+    stability: Literal["stable", "unstable", "unknown"] = told("Whether it lasts", "stable")
+    frequency_hz: float = told("Frequency [Hz]", 0.4819)
+    observed_at_m: float = told("Horizontal position of the amplitudes, from the left support [m]", 62.94)
+    vertical_m: float = told("Vertical amplitude [m]", 0.1128)
+    horizontal_m: float = told("Horizontal amplitude [m]", 0.0089)
+    torsional_rad: float = told("Torsional amplitude [rad]", 0.1213)
+    found_by: Literal["point", "field_branch"] = told("Whether the point alone has it too", "point")
+
+
+class FollowedBifurcation(Answer):
+    """A bifurcation on a branch over the field of a study; value and uncertainty are in the field's unit."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    loops: int = told("Loops per span [1]", 1)
+    wind_speed_m_per_s: float = told("Wind speed [m/s]", 5.32)
+    branch: int = told("Family over the field, for each number of loops and wind speed from 0", 1)
+    type: Literal["hopf", "fold", "torus", "period_doubling", "branch_point"] = told("Kind of change", "fold")
+    value: float = told("Value of the field, in its own unit", 0.0099985)
+    frequency_hz: float = told("Frequency there [Hz]", 0.4819)
+    second_frequency_hz: Number = told("Second frequency that begins there [Hz]", None)
+    uncertainty: float = told("How well the value is known, in its own unit", 6e-7)
+
+
 class StaticState(Answer):
     """Static state of the span; in a study one row a point, after the values of the axes."""
 

@@ -76,6 +76,46 @@ def test_fields_that_follow_an_axis_take_its_values() -> None:
     assert tied.axes == {"damping.vertical_ratio": 1e-3}
 
 
+def followed(parameter: str, values: list[float], line: dict[str, Any]) -> list[convert.PointResult]:
+    """Run a study that follows one field of a line, one loop at 6 m/s."""
+    study = {"axes": [{"parameter": parameter, "values": values}], "follow": True}
+    analysis = {"models": ["hybrid"], "loops": [1], "wind_speeds_m_per_s": [6.0]}
+    points, advances = results({"line": line, "analysis": analysis, "study": study})
+    assert advances[-2].step == "branches over the field"
+    assert advances[-1].fraction == 1.0
+    return points
+
+
+def test_a_study_follows_its_cycles_whatever_the_order_of_the_values() -> None:
+    points = followed("damping.vertical_ratio", [3e-3, 5e-4, 1e-3], example("c11-twin"))
+    assert {point.axes["damping.vertical_ratio"]: len(point.tables["followed_cycles"]) for point in points} == {
+        5e-4: 1,
+        1e-3: 1,
+        3e-3: 0,
+    }
+    for point in points:
+        for cycle in point.tables["followed_cycles"]:
+            assert list(cycle) == convert.columns("followed_cycles")
+            (own,) = (row for row in point.tables["limit_cycles"] if row["kind"] == "periodic")
+            assert cycle["vertical_m"] == pytest.approx(own["vertical_m"], rel=1e-3)
+    (hopf,) = (row for point in points for row in point.tables["followed_bifurcations"])
+    assert (hopf["type"], hopf["branch"]) == ("hopf", 0)
+    assert 1e-3 < hopf["value"] < 3e-3
+
+
+def test_a_point_that_fails_does_not_end_the_branches_of_its_study() -> None:
+    points = followed("damping.vertical_ratio", [5e-4, -1.0, 1e-3], example("c11-twin"))
+    assert sorted(len(point.tables["followed_cycles"]) for point in points) == [0, 1, 1]
+
+
+@pytest.mark.parametrize(("parameter", "values"), [("span.elements", [10, 12]), ("bundle.subconductors", [2, 3])])
+def test_a_field_of_whole_numbers_is_not_followed(parameter: str, values: list[float]) -> None:
+    points = followed(parameter, values, example("c11-twin"))
+    assert [point.failure for point in points] == [None, None]
+    bifurcations = [row for point in points for row in point.tables["followed_bifurcations"]]
+    assert bifurcations == []
+
+
 def test_a_point_that_fails_does_not_end_its_study() -> None:
     line = changed("devices", FULL_LINE["devices"][:1], example("c11-twin"))
     axis = {"parameter": "devices.0.position_m", "values": [20.0, 200.0, 30.0]}
