@@ -20,7 +20,7 @@ from engine.continuation import (
     points_at,
     tangents,
 )
-from engine.harmonic import Orbits, basis, first_angle, linearized, pick
+from engine.harmonic import Orbits, basis, first_angle, linearized, pick, whole_size
 from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution
 from engine.stability import Crossings, critical_modes
@@ -164,7 +164,7 @@ def traced_from_hopf(
     first = np.zeros((hopf.size, shape.shape[-1], 2 * harmonics + 1))
     first[..., 1], first[..., 2] = shape.real, -shape.imag
     born = Orbits(first, crossings.angular_frequency[hopf], speed)
-    size, angle = _size(model, member, first), first_angle(model, member, born)
+    size, angle = whole_size(model, member, first), first_angle(model, member, born)
     reference = size * REFERENCE_ANGLE / np.maximum(angle, 1e-300)
     problem = CycleProblem(model, member, reference)
     start = points_of(Orbits(np.zeros_like(first), born.angular_frequency, speed))
@@ -181,7 +181,7 @@ def traced_from_cycles(model: ReducedModel, member: IntArray, orbits: Orbits, wi
 def reference_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
     """Return the smallest size by which the amplitudes of the branch of each cycle are measured: (k,)."""
     angle = first_angle(model, member, orbits)
-    return _size(model, member, orbits.coefficients) * REFERENCE_ANGLE / np.maximum(angle, REFERENCE_ANGLE)
+    return whole_size(model, member, orbits.coefficients) * REFERENCE_ANGLE / np.maximum(angle, REFERENCE_ANGLE)
 
 
 def traced_both_ways(problem: CycleProblem, start: FloatArray, limits: tuple[float, float]) -> Traces:
@@ -237,11 +237,6 @@ def passed(points: Points, winds: FloatArray) -> tuple[IntArray, IntArray, Float
     guess = interpolated(left.pick(row), right.pick(row), share)
     guess[:, -1] = winds[wind]
     return left.branch[row], wind, guess
-
-
-def _size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
-    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
-    return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
 
 
 def traced(

@@ -182,6 +182,12 @@ def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[F
     return merged(residual(here, orbits), -2), np.concatenate([jacobian(here, orbits), by_wind], axis=-1)
 
 
+def whole_size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
+    """Return the root of sum M_ii |q_i|^2 over coefficients (cycles, m, 2 H + 1), the mean among them: (cycles,)."""
+    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
+
+
 def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
     """Return the root of sum M_ii |q_i|^2 over the oscillating harmonics: (cycles,)."""
     weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]

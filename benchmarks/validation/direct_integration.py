@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from benchmarks.engine_speed import found_cycles
 from benchmarks.lines import source_line
 from benchmarks.models import discretized, hybrid_models
 from benchmarks.validation.common import WINDS, table
-from engine.cycles import explicit_starts, find_cycles
 from engine.harmonic import half_peak_to_peak, pick, states
 from engine.hybrid import observation, take
 from engine.integrate import integrate
@@ -30,7 +30,7 @@ def _integrated(subconductors: int) -> Iterator[list[object]]:
     made = discretized((source_line(subconductors),))
     model, published = hybrid_models(made, (1, 2))
     winds = np.array(WINDS)
-    cycles = find_cycles(model, winds, explicit_starts(published, winds, 5), 5)
+    cycles = found_cycles(model, published, winds)
     for i in np.flatnonzero(cycles.floquet.stability == "stable"):
         orbit = pick(cycles.orbits, np.array([i]))
         member = int(cycles.member[i])
