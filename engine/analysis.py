@@ -26,11 +26,11 @@ from engine.hybrid import (
 )
 from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.outcome import Fault, InvalidSpec
-from engine.quasi_periodic import quasi_periodic_motions
+from engine.quasi_periodic import integrated, quasi_periodic_motions
 from engine.report import assembled
 from engine.result import LoopCompetitionRow, Progress, Result
 from engine.rows import Found, FrequencyTable, coupled_squares
-from engine.spec import Analysis, DeviceEffect, Line, LoopCompetition, Model, check_compatible
+from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, check_compatible
 from engine.stability import critical_wind_speeds
 
 
@@ -135,6 +135,7 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
     cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
     turning = bifurcations(cycles.traces, cycles.followed, model, crossings)
+    tori = quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic)
     return Found(
         name=Model.HYBRID,
         model=model,
@@ -144,7 +145,7 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
         cycles=cycles,
         confidence=confidence(model, cycles, analysis.check),
         bifurcations=turning,
-        quasi_periodic=quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic),
+        quasi_periodic=tori if analysis.check is Check.NONE else integrated(model, tori),
         winds=winds,
     )
 
@@ -161,6 +162,7 @@ def _finite_element(
     starts = _lifted(prepared.made, modes, hybrid, model, analysis.harmonics)
     cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
     turning = bifurcations(cycles.traces, cycles.followed, model, crossings)
+    tori = quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic)
     return Found(
         name=Model.FINITE_ELEMENT,
         model=model,
@@ -170,7 +172,7 @@ def _finite_element(
         cycles=cycles,
         confidence=confidence(model, cycles, analysis.check),
         bifurcations=turning,
-        quasi_periodic=quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic),
+        quasi_periodic=tori if analysis.check is Check.NONE else integrated(model, tori),
         winds=winds,
     )
 

@@ -95,9 +95,17 @@ def held_amplitude(model: ReducedModel, orbit: Orbits, periods: int) -> FloatArr
     m = model.mass.shape[-1]
     wind, period = float(orbit.wind_speed[0]), 2.0 * np.pi / float(orbit.angular_frequency[0])
     start = states(orbit, np.zeros(1))[0, 0] * np.repeat([1.0, wind], m)
-    times = np.append(0.0, period * (periods - 1.0 + np.arange(PERIOD_SAMPLES + 1) / PERIOD_SAMPLES))
-    last = _advance(model, wind, start, times)[1:, :m]
-    return np.asarray(0.5 * np.ptp(last, axis=0))
+    return np.asarray(0.5 * np.ptp(last_period(model, wind, start, last_times(period, periods)), axis=0))
+
+
+def last_times(period: float, periods: int) -> FloatArray:
+    """Return the times of samples of the last one of some periods [s]."""
+    return np.asarray(period * (periods - 1.0 + np.arange(PERIOD_SAMPLES + 1) / PERIOD_SAMPLES))
+
+
+def last_period(model: ReducedModel, wind_speed: float, start: FloatArray, times: FloatArray) -> FloatArray:
+    """Integrate from (q, q') at time 0 and return q at some later times: (times, m)."""
+    return _advance(model, wind_speed, start, np.append(0.0, times))[1:, : model.mass.shape[-1]]
 
 
 def _slowest(model: ReducedModel) -> float:

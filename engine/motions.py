@@ -166,6 +166,7 @@ def _tori(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple
             "harmonics": tori.order[0],
             "residual": float(known.residual[i]),
             "truncation": number(float(known.truncation[i])),
+            "direct_difference": number(float(known.direct[i])),
         }
         place = _Place(found.name, loops, float(one.wind_speed[0]), line)
         outcome = Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED

@@ -19,7 +19,7 @@ from engine.outcome import Stability
 from engine.result import FoundBy
 from engine.spec import TorusSearch
 from engine.stability import at_wind, state_matrices, unstable_pairs
-from engine.torus import Order, Tori, balance, lattice, linearized, resized, stacked, tori_of
+from engine.torus import Order, Tori, balance, lattice, linearized, resized, stacked, states, tori_of
 from engine.torus_branches import Births, born_at_torus_points, born_stable, critical_directions, modulated, traced
 from engine.torus_lines import base_frequencies, is_torus, line_strengths, tail
 from engine.torus_stability import long_map
@@ -33,6 +33,7 @@ REAL = 1e-3  # angle of a multiplier from the real axis below which it turns not
 TRIAL = Options(tolerance=1e-3, iterations=12)  # of starts that may lead nowhere
 ONE_STEP = Options(iterations=1)  # the change with one harmonic more is small
 PARTS = ("coefficients", "angular_frequency", "wind_speed")
+PERIODS = 50  # of direct integration from a torus
 DEPTHS = (0.1, 0.3, 0.6, 1.0)  # of modulation that are tried, over the size of the cycle
 
 
@@ -43,8 +44,9 @@ class QuasiPeriodic:
     member, wind: (tori,), indices of model and wind speed; branch: (tori,), family of the cycles that they come from;
     stability: (tori,) of Stability; found_by: of each; residual: (tori,), largest rest of the equations over the
     largest elastic force; truncation: (tori,), relative change of the size with one harmonic more of both frequencies;
-    lost: (k, 2), member and wind where nothing stable is known and an unstable cycle turns into no torus that was
-    found.
+    direct: (tori,), relative change of the largest amplitude in 50 periods of direct integration, NaN where that was
+    not asked for or the torus is not stable; lost: (k, 2), member and wind where nothing stable is known, although a
+    complex pair grows on some cycle.
     """
 
     member: IntArray
@@ -55,6 +57,7 @@ class QuasiPeriodic:
     found_by: tuple[FoundBy, ...]
     residual: FloatArray
     truncation: FloatArray
+    direct: FloatArray
     lost: IntArray
 
     def of(self, index: IntArray) -> "QuasiPeriodic":
@@ -68,6 +71,7 @@ class QuasiPeriodic:
             tuple(self.found_by[i] for i in index.tolist()),
             self.residual[index],
             self.truncation[index],
+            self.direct[index],
             self.lost,
         )
 
@@ -110,6 +114,23 @@ def quasi_periodic_motions(
     lost = sorted(_without_stable(model, cycles, known, winds)) if places else []
     sorted_motions = known.of(np.lexsort((known.wind, known.member)))
     return replace(sorted_motions, lost=np.array(lost, dtype=np.intp).reshape(-1, 2))
+
+
+def integrated(model: ReducedModel, known: QuasiPeriodic) -> QuasiPeriodic:
+    """Integrate the equations from each stable torus, too, and put down how far its amplitude moves."""
+    from engine.integrate import last_period, last_times  # noqa: PLC0415 - only who asks for it waits for scipy's
+
+    direct = np.full(known.member.size, np.nan)
+    for i in np.flatnonzero(known.stability == Stability.STABLE).tolist():
+        torus, alone = known.tori.pick(np.array([i])), take(model, int(known.member[i]))
+        wind, m = float(torus.wind_speed[0]), alone.mass.shape[-1]
+        times = last_times(2.0 * np.pi / float(torus.angular_frequency[0, 0]), PERIODS)
+        start = states(torus, np.zeros((1, 2)))[0, 0] * np.repeat([1.0, wind], m)
+        balanced = np.ptp(states(torus, times[:, None] * torus.angular_frequency[0])[0, :, :m], axis=0)
+        reached = np.ptp(last_period(alone, wind, start, times), axis=0)
+        main = int((balanced * np.sqrt(np.diagonal(alone.mass))).argmax())
+        direct[i] = reached[main] / balanced[main] - 1.0
+    return replace(known, direct=direct)
 
 
 def _from_torus_points(model: ReducedModel, births: Births, winds: FloatArray) -> QuasiPeriodic:
@@ -174,6 +195,7 @@ def _solved(
         np.array(stability, dtype=np.object_),
         (found_by,) * good.size,
         *_trusted(model, member[good], tori.pick(good)),
+        np.full(good.size, np.nan),
         np.zeros((0, 2), dtype=np.intp),
     )
 
@@ -237,7 +259,7 @@ def _joined(parts: list[QuasiPeriodic]) -> QuasiPeriodic:
     """Put motions of several searches together, with the larger order."""
     order = max(part.tori.order for part in parts)
     padded = [resized(part.tori, order) for part in parts]
-    names = ("member", "wind", "branch", "stability", "residual", "truncation")
+    names = ("member", "wind", "branch", "stability", "residual", "truncation", "direct")
     arrays = {name: np.concatenate([getattr(p, name) for p in parts]) for name in names}
     return QuasiPeriodic(
         tori=stacked(padded), found_by=tuple(name for p in parts for name in p.found_by), lost=parts[0].lost, **arrays
@@ -248,5 +270,5 @@ def _nothing(model: ReducedModel) -> QuasiPeriodic:
     none, empty, m = np.zeros(0, dtype=np.intp), np.zeros(0), model.mass.shape[-1]
     tori = Tori(np.zeros((0, m, 2 * len(lattice(FINE).pairs) - 1)), np.zeros((0, 2)), np.zeros(0), FINE)
     return QuasiPeriodic(
-        none, none, none, tori, np.zeros(0, dtype=np.object_), (), empty, empty, np.zeros((0, 2), dtype=np.intp)
+        none, none, none, tori, np.zeros(0, dtype=np.object_), (), empty, empty, empty, np.zeros((0, 2), dtype=np.intp)
     )

@@ -66,7 +66,7 @@ def _amplitude_figure(title: str, found: Found) -> Figure:
 
 
 def _cycle_markers(panel: Axes, cycles: Sequence[Row], column: str, factor: float) -> None:
-    for (model, branch, stability), group in _groups(cycles, column).items():
+    for (model, branch, stability, _), group in _groups(cycles, column).items():
         speeds = [cycle["wind_speed_m_per_s"] for cycle in group]
         joined = branch is not None and len(set(speeds)) == len(speeds)  # else a fold: joining would zigzag
         panel.plot(
@@ -84,11 +84,12 @@ def _cycle_markers(panel: Axes, cycles: Sequence[Row], column: str, factor: floa
         )
 
 
-def _groups(cycles: Sequence[Row], column: str) -> dict[tuple[str, int | None, str], list[Row]]:
-    groups: dict[tuple[str, int | None, str], list[Row]] = {}
+def _groups(cycles: Sequence[Row], column: str) -> dict[tuple[str, int | None, str, str | None], list[Row]]:
+    groups: dict[tuple[str, int | None, str, str | None], list[Row]] = {}
     for cycle in sorted(cycles, key=lambda cycle: cycle["wind_speed_m_per_s"]):
         if cycle[column] is not None:
-            groups.setdefault((cycle["model"], cycle["branch"], cycle["stability"]), []).append(cycle)
+            own = (cycle["model"], cycle["branch"], cycle["stability"], cycle.get("kind"))
+            groups.setdefault(own, []).append(cycle)
     return groups
 
 

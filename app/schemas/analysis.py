@@ -123,7 +123,7 @@ class Analysis(Document):
 
     check: Literal["none", "direct"] = Field(
         default="none",
-        description="Whether every stable cycle is held against 50 periods of direct integration",
+        description="Whether every stable motion is held against 50 periods of direct integration",
         examples=["direct"],
     )
 

@@ -1,12 +1,14 @@
 """Which quasi-periodic motions an analysis reports: exact oscillators, and the source's lines."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from engine.bifurcations import bifurcations
 from engine.cycles import energy_starts, find_cycles
 from engine.outcome import Outcome, Stability
-from engine.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
+from engine.quasi_periodic import QuasiPeriodic, integrated, quasi_periodic_motions
 from engine.result import LimitCycleRow
 from engine.spec import Model, TorusSearch
 from engine.stability import critical_wind_speeds
@@ -38,6 +40,15 @@ def test_a_torus_that_takes_over_from_its_cycle_is_found_and_stable(search: Toru
     frequencies, _ = base_frequencies(coupled_circles((0.4, 1.0)), found.member, found.tori)
     assert frequencies == pytest.approx(np.array([FREQUENCIES, FREQUENCIES]), rel=2e-3)
     assert found.lost.size == 0
+
+
+def test_direct_integration_stays_on_a_stable_torus() -> None:
+    found = motions((2.0, 3.0), [1.2], TorusSearch.LASTING)
+    assert np.isnan(found.direct).all()
+    direct = integrated(coupled_circles((0.4, 1.0), (2.0, 3.0)), found).direct
+    assert np.abs(direct) == pytest.approx([0.0], abs=1e-4)
+    wrong = replace(found, tori=replace(found.tori, coefficients=1.1 * found.tori.coefficients))
+    assert np.abs(integrated(coupled_circles((0.4, 1.0), (2.0, 3.0)), wrong).direct) > 0.01
 
 
 def test_it_is_found_from_one_wind_speed_alone() -> None:

@@ -1,0 +1,170 @@
+"""A search for lines whose motion stays quasi-periodic, and what direct integration makes of what it finds."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from benchmarks.lines import random_line, source_line
+from benchmarks.models import discretized, hybrid_models, plain_rate
+from benchmarks.validation.common import table
+from engine.arrays import FloatArray
+from engine.bifurcations import Kind, bifurcations
+from engine.cycles import explicit_starts, find_cycles
+from engine.hybrid import ReducedModel, take
+from engine.outcome import Stability
+from engine.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
+from engine.spec import Line, Span, TorusSearch
+from engine.stability import critical_wind_speeds
+from engine.torus import Tori, states
+from engine.torus_lines import base_frequencies
+
+SEED = 19
+LINES = 300
+LOOPS = (1, 2, 3)
+WINDS = np.linspace(3.0, 15.0, 7)
+HIGHEST_WIND = 30.0
+HARMONICS = 5
+INTEGRATED = 3  # tori
+CYCLES = 10_000
+WINDOW = 2_500  # cycles whose spectra are compared
+SAMPLES = 16  # a cycle
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A quasi-periodic motion with its line and the number of that in the generator, number of loops and model."""
+
+    number: int
+    line: Line
+    loops: int
+    model: ReducedModel
+    torus: Tori
+    stability: Stability
+
+
+def section() -> Iterator[str]:
+    """Yield the section's text."""
+    counts, found = _searched()
+    yield "## Quasi-periodic motions\n"
+    yield (
+        f"Searched: {LINES} lines of a seeded generator (half the source's, half random bundles) with spans of 60 to "
+        "350 m, tensions of 15 to 45 kN, torsional damping ratios of 0.001 to 0.3 and the others of 0.0002 to 0.01 "
+        f"(evenly in the logarithm); hybrid model, {', '.join(map(str, LOOPS))} loops alone, winds "
+        f"{', '.join(f'{wind:g}' for wind in WINDS)} m/s; tori that may last (`quasi_periodic: lasting`).\n"
+    )
+    yield table(["", "count"], list(counts.items()))
+    stable = [one for one in found if one.stability is Stability.STABLE]
+    if not stable:
+        yield "\nThe search found no stable quasi-periodic motion."
+        return
+    first = list({one.number: one for one in reversed(stable)}.values())[::-1][:INTEGRATED]
+    yield (
+        f"\nOn the first {len(first)} of these lines, direct integration (DOP853, relative tolerance 1e-8) over "
+        f"{CYCLES} cycles from the torus with all rates raised by 1 %: both frequencies in the spectrum of the last "
+        f"{WINDOW} cycles beside those of the balance, and the strength of both lines there over that in the balance. "
+        "A line in the spectrum that persists has the ratio 1.\n"
+    )
+    head = ["line", "n", "span m", "loops", "wind m/s", "f1 Hz", "f1 integrated", "f2 Hz", "f2 integrated"]
+    yield table([*head, "line 1", "line 2"], [_row(one) for one in first])
+
+
+@cache
+def _searched() -> tuple[dict[str, int], list[Found]]:
+    """Analyse the lines of the generator; return counts and the motions."""
+    generator = np.random.default_rng(SEED)
+    counts = dict.fromkeys(("models that are statically stable", "with torus points", "wind speeds of those models"), 0)
+    motions: list[Found] = []
+    lost = 0
+    for number in range(LINES):
+        line = drawn(generator)
+        for loops, model, known, points in _analysed(line):
+            counts["models that are statically stable"] += 1
+            counts["with torus points"] += points
+            counts["wind speeds of those models"] += points * WINDS.size
+            lost += len(known.lost)
+            motions += _listed((number, line), loops, model, known)
+    by_verdict = {f"{verdict} tori": sum(m.stability is verdict for m in motions) for verdict in Stability}
+    return counts | by_verdict | {"wind speeds without anything stable where no stable torus was found": lost}, motions
+
+
+def drawn(generator: np.random.Generator) -> Line:
+    """Draw one of the source's lines or a random bundle, with span, tension and damping over wide ranges."""
+    own = generator.random() < 0.5
+    line = source_line(int(generator.integers(1, 5))) if own else random_line(generator)
+    ratios = 10.0 ** generator.uniform((-3.7, -3.7, -3.0), (-2.0, -2.0, -0.5))
+    vertical, horizontal, torsional = ratios.tolist()
+    damping = replace(line.damping, vertical_ratio=vertical, horizontal_ratio=horizontal, torsional_ratio=torsional)
+    span = Span(float(generator.uniform(60.0, 350.0)), horizontal_tension=float(generator.uniform(15e3, 45e3)))
+    return replace(line, damping=damping, span=span)
+
+
+def _analysed(line: Line) -> Iterator[tuple[int, ReducedModel, QuasiPeriodic, bool]]:
+    """Yield number of loops, model, motions and whether there is a torus point, where the static state is stable."""
+    made = discretized((line,))
+    models, published = hybrid_models(made, LOOPS)
+    for i, loops in enumerate(LOOPS):
+        model, other = take(models, [i]), take(published, [i])
+        if not model.statically_unstable[0]:
+            crossings = critical_wind_speeds(model, HIGHEST_WIND)
+            cycles = find_cycles(model, crossings, WINDS, explicit_starts(other, WINDS, HARMONICS), HARMONICS)
+            found = bifurcations(cycles.traces, cycles.followed, model, crossings)
+            known = quasi_periodic_motions(model, cycles, found, WINDS, TorusSearch.LASTING)
+            yield loops, model, known, any(kind is Kind.TORUS for kind in found.kind)
+
+
+def _listed(line: tuple[int, Line], loops: int, model: ReducedModel, known: QuasiPeriodic) -> Iterator[Found]:
+    for i in range(known.member.size):
+        yield Found(*line, loops, model, known.tori.pick(np.array([i])), known.stability[i])
+
+
+def _row(one: Found) -> list[object]:
+    zero = np.zeros(1, dtype=np.intp)
+    frequencies = base_frequencies(one.model, zero, one.torus)[0][0] / (2.0 * math.pi)
+    times, before = _balanced(one)
+    after = _integrated(one, times)
+    cells: list[object] = [one.number, len(one.line.bundle.positions), f"{one.line.span.length:.1f}", one.loops]
+    cells.append(f"{one.torus.wind_speed[0]:g}")
+    shares = []
+    for frequency in frequencies.tolist():
+        (_, own), (there, reached) = (spectral_line(times, values, frequency) for values in (before, after))
+        cells += [f"{frequency:.6f}", f"{there:.6f}"]
+        shares.append(f"{reached / own:.4f}")
+    return [*cells, *shares]
+
+
+def _balanced(one: Found) -> tuple[FloatArray, FloatArray]:
+    """Return times of the last window [s] and the co-ordinate of most energy of the torus there."""
+    period = 2.0 * math.pi / float(one.torus.angular_frequency[0, 0])
+    times = period * (CYCLES - WINDOW + np.arange(WINDOW * SAMPLES) / SAMPLES)
+    values = states(one.torus, times[:, None] * one.torus.angular_frequency[0])[0]
+    return times, values[:, _largest(one)]
+
+
+def _largest(one: Found) -> int:
+    strength = np.diagonal(one.model.mass[0]) * (one.torus.coefficients[0, :, 1:] ** 2).sum(axis=-1)
+    return int(strength.argmax())
+
+
+def _integrated(one: Found, times: FloatArray) -> FloatArray:
+    """Integrate from beside the torus and return its largest co-ordinate at some times."""
+    m = one.model.mass.shape[-1]
+    wind = float(one.torus.wind_speed[0])
+    start = states(one.torus, np.zeros((1, 2)))[0, 0] * np.repeat([1.0, 1.01 * wind], m)
+    rate = plain_rate(take(one.model, 0), wind)
+    run = solve_ivp(rate, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-10)
+    return np.asarray(run.y[_largest(one)])
+
+
+def spectral_line(times: FloatArray, values: FloatArray, near: float) -> tuple[float, float]:
+    """Return frequency [Hz] and amplitude of the spectral line nearest to a frequency, through Hann's window."""
+    weight = np.hanning(times.size)
+    weight /= weight.sum()
+    length = float(times[-1] - times[0])
+    trials = near + np.linspace(-2.0, 2.0, 81) / length
+    strength = np.abs(np.exp(-2j * math.pi * trials[:, None] * (times - times[0])) @ (weight * values))
+    best = int(strength.argmax())
+    return float(trials[best]), 2.0 * float(strength[best])

@@ -1,0 +1,57 @@
+"""Three lines whose motion stays quasi-periodic, from the search of docs/validation.md.
+
+There direct integration keeps both spectral lines over 10^4 cycles; here it follows each torus over some of its beats.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from benchmarks.validation.quasi_periodic import SEED, drawn
+from engine.bifurcations import bifurcations
+from engine.cycles import energy_starts, find_cycles
+from engine.hybrid import ReducedModel, take
+from engine.outcome import Stability
+from engine.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
+from engine.spec import Line, Model, TorusSearch
+from engine.stability import critical_wind_speeds
+from tests.builders import hybrid, only, run
+from tests.engine.test_torus_branches import followed
+
+# number in the generator, wind speed [m/s], both frequencies [Hz]
+LINES = [(26, 15.0, (0.21635, 0.20902)), (76, 13.0, (0.1692, 0.1523)), (197, 11.0, (0.2439, 0.2298))]
+BEATS = 1.5
+
+
+@cache
+def lines() -> list[Line]:
+    generator = np.random.default_rng(SEED)
+    return [drawn(generator) for _ in range(max(number for number, _, _ in LINES) + 1)]
+
+
+def torus_of(line: Line, wind: float) -> tuple[ReducedModel, QuasiPeriodic]:
+    model, winds = take(hybrid(line), [0]), np.array([wind])
+    crossings = critical_wind_speeds(model, 30.0)
+    cycles = find_cycles(model, crossings, winds, energy_starts(model, winds, 5), 5)
+    found = bifurcations(cycles.traces, cycles.followed, model, crossings)
+    return model, quasi_periodic_motions(model, cycles, found, winds, TorusSearch.LASTING)
+
+
+@pytest.mark.parametrize(("number", "wind", "frequencies"), LINES)
+def test_a_line_that_stays_quasi_periodic(number: int, wind: float, frequencies: tuple[float, float]) -> None:
+    result = run(lines()[number], only(Model.HYBRID, loops=(1,), wind_speeds=(wind,)))
+    (row,) = (row for row in result.limit_cycles if row.kind == "quasi_periodic")
+    assert row.stability is Stability.STABLE
+    assert (row.frequency_hz, row.second_frequency_hz) == pytest.approx(frequencies, rel=5e-4)
+    assert row.vertical_m is not None
+    assert row.vertical_min_m is not None
+    model, found = torus_of(lines()[number], wind)
+    periods = BEATS * float(found.tori.angular_frequency[0, 0] / found.tori.angular_frequency[0, 1])
+    reached, expected = followed(model, found.tori, abs(periods))
+    assert reached == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
+    # The beat is deep: a cycle of its mean size would miss the range.
+    assert row.vertical_min_m < 0.9 * row.vertical_m
+    integrated = 0.5 * np.ptp(reached[:, :3], axis=0)
+    balanced = 0.5 * np.ptp(expected[:, :3], axis=0)
+    assert integrated == pytest.approx(balanced, rel=5e-3)
