@@ -31,6 +31,7 @@ SMALLEST_SHARE = 0.2  # of the whole size, by which a co-ordinate that hardly mo
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is a static one in disguise
 REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
+LAST = slice(-1, None)
 PARTS = 8  # of a segment between two points, in which crossings of a wind speed are looked for
 LOWEST_WIND = 0.25  # of the lowest wind speed asked for: branches are not followed below
 HIGHEST_WIND = 1.05  # of the highest: a branch that turns back just beyond it has more cycles there
@@ -230,7 +231,7 @@ def passed(points: Points, winds: FloatArray) -> tuple[IntArray, IntArray, Float
     segment = np.flatnonzero(points.branch[1:] == points.branch[:-1])
     left, right = points.pick(segment), points.pick(segment + 1)
     part = np.linspace(0.0, 1.0, PARTS + 1)
-    speed = interpolated(left, right, np.broadcast_to(part, (segment.size, part.size)))[..., -1]
+    speed = interpolated(left, right, np.broadcast_to(part, (segment.size, part.size)), LAST)[..., 0]
     above = speed[:, :, None] >= winds
     row, cell, wind = np.nonzero(above[:, 1:] != above[:, :-1])
     share = (cell + (winds[wind] - speed[row, cell]) / (speed[row, cell + 1] - speed[row, cell])) / PARTS

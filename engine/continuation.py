@@ -17,6 +17,7 @@ from engine.outcome import Outcome
 FOLLOWING = Options(tolerance=1e-4, iterations=8)
 LOCATING = Options(iterations=8)
 MOST_SECANTS = 30
+EVERY = slice(None)
 
 
 class Problem(Protocol):
@@ -182,11 +183,14 @@ def branches(
     return outcome
 
 
-def interpolated(left: Points, right: Points, share: FloatArray) -> FloatArray:
-    """Return Hermite's cubic through successive points of branches at shares (k, ...) of the way: (k, ..., n + 1)."""
+def interpolated(left: Points, right: Points, share: FloatArray, unknowns: slice = EVERY) -> FloatArray:
+    """Return Hermite's cubic through successive points of branches at shares (k, ...) of the way: (k, ..., n + 1).
+
+    Or some of the unknowns alone.
+    """
     length = np.linalg.norm((right.z - left.z) / left.scale, axis=-1, keepdims=True)
     after = length * right.tangent / np.linalg.norm(right.tangent / left.scale, axis=-1, keepdims=True)
-    ends = np.stack([left.z, right.z, length * left.tangent, after], axis=1)
+    ends = np.stack([part[:, unknowns] for part in (left.z, right.z, length * left.tangent, after)], axis=1)
     cube, square = share**3, share**2
     weights = [2.0 * cube - 3.0 * square + 1.0, 3.0 * square - 2.0 * cube, cube - 2.0 * square + share, cube - square]
     return np.asarray(np.einsum("k...e,kez->k...z", np.stack(weights, axis=-1), ends))

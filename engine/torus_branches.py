@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
 from engine.bifurcations import Bifurcations, Kind
-from engine.branches import Traces, at_winds
+from engine.branches import Traces, orbits_of, passed
 from engine.continuation import Points, Problem, Steps, branches, points_at
 from engine.floquet import floquet
 from engine.harmonic import Orbits, balance, pick, resized
@@ -213,9 +213,9 @@ def _nearest(traces: Sequence[Traces], found: Bifurcations, point: int) -> Orbit
     """Guess the cycle at a torus point from the branches of its model that pass its wind speed."""
     nearest, best = SAME_FREQUENCY, None
     for trace in traces:
-        branch, _, orbits = at_winds(trace, found.wind_speed[[point]])
+        own = trace.points.pick(np.flatnonzero(trace.member == found.member[point]))
+        orbits = orbits_of(passed(own, found.wind_speed[[point]])[2], trace.problem.model.mass.shape[-1])
         gap = np.abs(orbits.angular_frequency / found.angular_frequency[point] - 1.0)
-        gap[trace.problem.member[branch] != found.member[point]] = np.inf
         if gap.min(initial=np.inf) < nearest:
             nearest, best = gap.min(), pick(orbits, np.array([gap.argmin()]))
     return best
