@@ -36,13 +36,17 @@ class Chunk:
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How many lines of a batch are in which state, how much of the work is done, and when it began and ended."""
+    """How many lines of a batch are in which state, how much of the work is done, and when it began and ended.
+
+    reused are those of the successful that were stored before.
+    """
 
     accepted: int = 0
     running: int = 0
     successful: int = 0
     failed: int = 0
     dismissed: int = 0
+    reused: int = 0
     progress: float = 0.0
     started_at: datetime | None = None
     finished_at: datetime | None = None
@@ -77,12 +81,23 @@ def add_items(session: Session, items: Sequence[dict[str, Any]]) -> None:
         insert_rows(session, BatchItem, items)
 
 
-def accept(session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Chunk], rejected_lines: int) -> None:
-    """Make a batch visible whose lines are all stored, with its chunks waiting for workers."""
+def accept(
+    session: Session,
+    caller: Caller,
+    batch_id: UUID,
+    chunks: Sequence[Chunk],
+    rejected_lines: int,
+    *,
+    anew: bool = False,
+) -> None:
+    """Make a batch visible whose lines are all stored, with its chunks waiting for workers.
+
+    With `anew` they are computed even if their results are stored already.
+    """
     now = database_time(session)
     received = update(Batch).where(Batch.id == batch_id).values(received_at=now, rejected_lines=rejected_lines)
     session.execute(received)
-    _add_chunks(session, caller, batch_id, chunks, now)
+    _add_chunks(session, caller, batch_id, chunks, now, anew=anew)
     lines = sum(chunk.lines for chunk in chunks)
     audit.record(session, caller, AuditAction.BATCH_SUBMITTED, batch_id, f"{lines} lines", at=now)
 
@@ -116,8 +131,11 @@ def counts(session: Session, batch_ids: Sequence[UUID]) -> dict[UUID, Counts]:
     """Count the lines of batches by state, from their chunks."""
     lines, failed = func.sum(func.coalesce(Job.lines, 0)), func.sum(func.coalesce(Job.failed_lines, 0))
     done = func.sum(func.coalesce(Job.lines, 0) * Job.progress)
+    reused = func.sum(func.coalesce(Job.reused_lines, 0))
     moments = func.min(Job.started_at), func.max(Job.finished_at)
-    statement = select(Job.batch_id, Job.status, lines, failed, done, *moments).where(Job.batch_id.in_(batch_ids))
+    statement = select(Job.batch_id, Job.status, lines, failed, reused, done, *moments).where(
+        Job.batch_id.in_(batch_ids)
+    )
     grouped: dict[UUID | None, list[_Group]] = {batch_id: [] for batch_id in batch_ids}
     for found in session.execute(statement.group_by(Job.batch_id, Job.status)):
         grouped[found[0]].append(_Group(*found[1:]))
@@ -190,6 +208,7 @@ class _Group:
     status: JobStatus
     lines: int
     failed: int
+    reused: int
     done: float
     started_at: datetime | None
     finished_at: datetime | None
@@ -197,7 +216,7 @@ class _Group:
 
 def _counted(groups: Sequence[_Group]) -> Counts:
     by_status = {group.status: group for group in groups}
-    nothing = _Group(JobStatus.ACCEPTED, 0, 0, 0.0, None, None)
+    nothing = _Group(JobStatus.ACCEPTED, 0, 0, 0, 0.0, None, None)
     ended = [by_status.get(status, nothing) for status in (JobStatus.SUCCESSFUL, JobStatus.FAILED)]
     waiting, running, dismissed = (
         by_status.get(status, nothing) for status in (JobStatus.ACCEPTED, JobStatus.RUNNING, JobStatus.DISMISSED)
@@ -211,6 +230,7 @@ def _counted(groups: Sequence[_Group]) -> Counts:
         successful=sum(group.lines - group.failed for group in ended),
         failed=sum(group.failed for group in ended),
         dismissed=dismissed.lines,
+        reused=sum(group.reused for group in ended),
         progress=min(1.0, done / whole) if whole else 1.0,
         started_at=min((group.started_at for group in groups if group.started_at), default=None),
         finished_at=None if still_open else max((g.finished_at for g in groups if g.finished_at), default=None),
@@ -243,17 +263,19 @@ def _failed_numbers(session: Session, batch_id: UUID) -> list[int]:
     return list(session.scalars(statement.order_by(BatchItem.number)))
 
 
-def _add_chunks(session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Chunk], now: datetime) -> None:
+def _add_chunks(
+    session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Chunk], now: datetime, *, anew: bool = False
+) -> None:
     if not chunks:
         return
-    session.add_all(_as_job(caller, batch_id, chunk, now) for chunk in chunks)
+    session.add_all(_as_job(caller, batch_id, chunk, now, anew=anew) for chunk in chunks)
     session.flush()
     events = [{"job_id": c.id, "at": now, "kind": JobEventKind.ACCEPTED, "attempt": 0} for c in chunks]
     session.execute(insert(JobEvent), events)
 
 
-def _as_job(caller: Caller, batch_id: UUID, chunk: Chunk, now: datetime) -> Job:
-    document = {"batch_id": str(batch_id), "part": chunk.part}
+def _as_job(caller: Caller, batch_id: UUID, chunk: Chunk, now: datetime, *, anew: bool) -> Job:
+    document = {"batch_id": str(batch_id), "part": chunk.part, **({"anew": True} if anew else {})}
     return Job(
         id=chunk.id,
         owner=caller.owner,

@@ -48,6 +48,7 @@ class Claim:
     batch_id: UUID | None = None
     ids: Ids = field(default_factory=Ids)
     claimed_at: datetime | None = None
+    owner: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,7 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
             lease_expires_at=now + timedelta(seconds=lease_seconds),
             dispatched_at=func.coalesce(Job.dispatched_at, now),
         )
-        .returning(Job.attempt, Job.document, Job.batch_id, Job.request_id, Job.trace_parent)
+        .returning(Job.attempt, Job.document, Job.batch_id, Job.owner, Job.request_id, Job.trace_parent)
         .execution_options(synchronize_session=False)
     )
     taken = session.execute(statement).one_or_none()
@@ -82,7 +83,7 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
         return None
     record(session, job_id, JobEventKind.RUNNING, attempt=taken.attempt, detail=owner)
     ids = Ids(taken.request_id, taken.trace_parent, str(job_id), taken.attempt)
-    return Claim(job_id, taken.attempt, taken.document, taken.batch_id, ids, now)
+    return Claim(job_id, taken.attempt, taken.document, taken.batch_id, ids, now, taken.owner)
 
 
 def heartbeat(session: Session, held: Claim, lease_seconds: float, progress: float, step: str) -> Beat:
@@ -205,6 +206,7 @@ def _end(
 ) -> bool:
     if changes["status"] is not JobStatus.DISMISSED:
         changes["failed_lines"] = Job.lines - sum(point.failure is None for point in points)  # null but for a chunk
+        changes["reused_lines"] = sum(point.reused for point in points) if held.batch_id is not None else None
     now = database_time(session)
     over = {"finished_at": now, "lease_owner": None, "lease_expires_at": None, "step": ""}
     statement = update(Job).where(*_guard(held)).values(**over, **changes)

@@ -105,4 +105,5 @@ def _as_columns(point: "PointResult", compressor: zstandard.ZstdCompressor) -> d
         **{name: point.peaks.get(name) for name in PEAKS},
         "tables": None if failed else compressor.compress(point.tables_json),
         "orbits": None if failed else compressor.compress(point.orbits_json),
+        "input_hash": point.input_hash,
     }

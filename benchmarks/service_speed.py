@@ -218,7 +218,8 @@ def _body(documents: list[dict[str, Any]]) -> bytes:
 
 
 def _run_batch(client: httpx.Client, body: bytes) -> bytes:
-    answer = client.post("/v1/batches", content=body, headers={"Content-Type": "application/x-ndjson"})
+    headers = {"Content-Type": "application/x-ndjson", "Cache-Control": "no-cache"}
+    answer = client.post("/v1/batches", content=body, headers=headers)
     address = answer.raise_for_status().headers["location"]
     while client.get(address).raise_for_status().json()["status"] in {"accepted", "running"}:
         time.sleep(LOOK_SECONDS)

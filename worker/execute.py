@@ -1,10 +1,12 @@
 """One job from claim to end: runs the engine under a lease, and stores what came of it in one transaction."""
 
+import itertools
 import logging
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextvars import copy_context
+from dataclasses import replace
 from types import TracebackType
 from typing import Self
 from uuid import UUID
@@ -14,7 +16,7 @@ from pydantic import ValidationError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches, convert, correlation, leases, telemetry
+from app import batches, convert, correlation, leases, reuse, telemetry
 from app.convert import Advance, PointResult
 from app.db import make_engine, session_factory
 from app.leases import Beat, Claim, Failure
@@ -118,7 +120,17 @@ def _steps(session: Session, held: Claim) -> Iterator[Advance | PointResult]:
     """Return the computation of a job or a chunk, which has not begun yet."""
     if held.batch_id is None:
         return convert.run(held.document)
-    return convert.run_stack(*batches.lines_of_chunk(session, held.job_id, held.batch_id))
+    analysis, lines = batches.lines_of_chunk(session, held.job_id, held.batch_id)
+    hashes = reuse.hashes(held.owner, analysis, lines)
+    known = [] if held.document.get("anew") else reuse.stored(session, hashes, convert.ENGINE_VERSION)
+    known_numbers = {point.point for point in known}
+    unknown = [line for line in lines if line.number not in known_numbers]
+    return itertools.chain(known, _with_hashes(convert.run_stack(analysis, unknown), hashes))
+
+
+def _with_hashes(steps: Iterator[Advance | PointResult], hashes: Mapping[int, str]) -> Iterator[Advance | PointResult]:
+    for item in steps:
+        yield replace(item, input_hash=hashes[item.point]) if isinstance(item, PointResult) else item
 
 
 def _compute(

@@ -21,11 +21,15 @@ class BodyTooLarge(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Incoming:
-    """An analysis document, and the documents of the lines; a `BadInput` stands for a line that cannot be read."""
+    """An analysis document, and the documents of the lines; a `BadInput` stands for a line that cannot be read.
+
+    With `anew` the lines are computed even if their results are stored already.
+    """
 
     analysis: object
     lines: Iterator[object]
     webhook_url: object = None
+    anew: bool = False
 
 
 def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:

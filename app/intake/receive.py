@@ -86,7 +86,7 @@ def receive(
                 batches.add_items(session, block)
         _refuse_hopeless(draft)
         with sessions.begin() as session:
-            batches.accept(session, caller, batch_id, draft.chunks, draft.rejected)
+            batches.accept(session, caller, batch_id, draft.chunks, draft.rejected, anew=incoming.anew)
             on_accept(session, batch_id)
     except BaseException:
         with suppress(SQLAlchemyError), sessions.begin() as session:

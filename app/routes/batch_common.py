@@ -86,6 +86,7 @@ def line_counts(counts: Counts, rejected: int) -> dict[str, int]:
         "failed": counts.failed,
         "dismissed": counts.dismissed,
         "rejected": rejected,
+        "reused": counts.reused,
     }
 
 

@@ -33,6 +33,7 @@ _COUNTS = {
     "failed": 0,
     "dismissed": 0,
     "rejected": 0,
+    "reused": 0,
 }
 FAULT = {
     "number": 3,

@@ -2,14 +2,14 @@
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 from uuid import UUID
 
 import anyio
 from anyio import CapacityLimiter, from_thread, to_thread
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
 from starlette.requests import ClientDisconnect
@@ -22,7 +22,7 @@ from app.idempotency import Key
 from app.intake import BodyTooLarge, Incoming
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import BATCHES, accepted_batch
-from app.routes.common import CallerOf, SenderOf, Writers, vet_webhook
+from app.routes.common import CallerOf, MayReuse, SenderOf, Writers, vet_webhook
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, as_kept, held
 from app.schemas.batch import BatchDocument
 from app.settings import Settings
@@ -62,7 +62,12 @@ class _Posted:
     request: Request
     settings: Settings
     how: IntakeQuery
+    may_reuse: bool
     digest: "_Hash" = field(default_factory=hashlib.sha256)
+
+
+async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_reuse: MayReuse) -> _Posted:
+    return _Posted(request, request.app.state.settings, how, may_reuse)
 
 
 @router.post(
@@ -78,19 +83,18 @@ class _Posted:
     openapi_extra=batch_documentation.request_body(),
 )
 async def submit(
-    request: Request,
+    posted: Annotated[_Posted, Depends(_posted)],
     caller: CallerOf,
     key: KeyOf,
     writers: Writers,
     sender: SenderOf,
-    how: Annotated[IntakeQuery, Query()],
 ) -> Response:
     """Accept many lines under one analysis. Lines at fault are kept with their faults, the others run.
 
-    Each line may hold a `reference` beside its own fields; it is given back with the results, as is `asset_id`.
+    Each line may hold a `reference` beside its own fields; it is given back with the results, as is `asset_id`. A line
+    whose results are stored already is given those, unless `Cache-Control: no-cache` asks for all to be computed.
     """
-    posted = _Posted(request, request.app.state.settings, how)
-    made = await to_thread.run_sync(partial(_receive, writers, caller, key, posted), limiter=_limiter(request))
+    made = await to_thread.run_sync(partial(_receive, writers, caller, key, posted), limiter=_limiter(posted.request))
     await to_thread.run_sync(partial(sender.send, made.job_ids, chunk=True))
     return made.answer
 
@@ -115,7 +119,7 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
         if key is not None:
             idempotency.finish(session, key, _sum(posted), as_kept(answers[0]))
 
-    incoming = _incoming(posted)
+    incoming = replace(_incoming(posted), anew=not posted.may_reuse)
     webhook_url = _webhook_url(posted, incoming)
     receipt = intake.receive(writers, posted.settings, caller, incoming, on_accept, atomic=posted.how.atomic)
     return Made(answers[0], receipt.chunk_ids)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import Annotated, Any
 from uuid import UUID
 
-from fastapi import Depends, Request
+from fastapi import Depends, Header, Request
 from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session, sessionmaker
 from starlette.types import Receive, Scope, Send
@@ -140,6 +140,17 @@ def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
 
 def _no_job(job_id: UUID) -> ProblemError:
     return ProblemError(ProblemKind.NOT_FOUND, f"There is no job {job_id}.")
+
+
+async def _may_reuse(
+    cache_control: Annotated[
+        str, Header(description="`no-cache` computes even what is stored already", examples=["no-cache"])
+    ] = "",
+) -> bool:
+    return "no-cache" not in cache_control.lower()
+
+
+MayReuse = Annotated[bool, Depends(_may_reuse)]
 
 
 async def vet_webhook(settings: Settings, url: str) -> None:

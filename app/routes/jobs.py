@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 from uuid import UUID
 
 from anyio import to_thread
-from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
+from fastapi import APIRouter, Body, Depends, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
@@ -24,6 +24,7 @@ from app.routes.common import (
     CallerOf,
     Dispatcher,
     Inbox,
+    MayReuse,
     Readers,
     SettingsOf,
     Statuses,
@@ -92,14 +93,6 @@ class ListQuery(BaseModel):
         return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after)
 
 
-async def _may_reuse(
-    cache_control: Annotated[
-        str, Header(description="`no-cache` computes even what is stored already", examples=["no-cache"])
-    ] = "",
-) -> bool:
-    return "no-cache" not in cache_control.lower()
-
-
 async def _checked(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)], settings: SettingsOf
 ) -> schemas.JobRequest:
@@ -135,7 +128,7 @@ async def submit(
     key: KeyOf,
     inbox: Inbox,
     dispatcher: Dispatcher,
-    may_reuse: Annotated[bool, Depends(_may_reuse)],
+    may_reuse: MayReuse,
 ) -> Response:
     """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already.
 

@@ -52,6 +52,7 @@ class LineCounts(Answer):
     failed: Count = told("Without; see their failures in the results [1]", 0)
     dismissed: Count = told("Cancelled before they were worked on [1]", 0)
     rejected: Count = told("Never taken, since they are at fault; see errors [1]", 1)
+    reused: Count = told("Of the successful: stored before, and not computed again [1]", 0)
 
 
 class LineSummary(Answer):

@@ -14,8 +14,9 @@ from app.tables.base import Base, FailureKind, JobEventKind, JobStatus
 class Job(Base):
     """One request, or a chunk of a batch: the document, the state, and who works on it until when.
 
-    batch_id, lines and failed_lines are those of a chunk, and null for a job of its own. request_id and trace_parent
-    are those of the request that made it. reused_from is the job whose results it was given; that may be gone since.
+    batch_id, lines, failed_lines and reused_lines are those of a chunk, and null for a job of its own. request_id and
+    trace_parent are those of the request that made it. reused_from is the job whose results it was given; that may be
+    gone since.
     """
 
     __tablename__ = "jobs"
@@ -56,6 +57,7 @@ class Job(Base):
     request_id: Mapped[str | None] = mapped_column(String(correlation.LONGEST_REQUEST_ID))
     trace_parent: Mapped[str | None] = mapped_column(String(correlation.TRACE_PARENT_LENGTH))
     reused_from: Mapped[UUID | None]
+    reused_lines: Mapped[int | None]
 
     tags: Mapped[list["JobTag"]] = relationship(order_by="JobTag.key", lazy="selectin", passive_deletes=True)
     events: Mapped[list["JobEvent"]] = relationship(order_by="JobEvent.id", lazy="select", passive_deletes=True)

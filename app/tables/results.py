@@ -13,7 +13,7 @@ class PointRow(Base):
     """One point of a study, or one line of a chunk under its number; a job without a study has the one point 0.
 
     tables and orbits are JSON compressed by Zstandard (`app.results`), null for a point that failed. Lines of a batch
-    are ranked by what stands in an index with it.
+    are ranked by what stands in an index with it, and found again by input_hash (`app.reuse`), null but for lines.
     """
 
     __tablename__ = "results"
@@ -47,3 +47,4 @@ class PointRow(Base):
     batch_id: Mapped[UUID | None]
     largest_height_m: Mapped[float | None]
     largest_width_m: Mapped[float | None]
+    input_hash: Mapped[str | None] = mapped_column(String(64), index=True)

@@ -29,7 +29,7 @@ def add_batch(sessions: sessionmaker[Session]) -> list[UUID]:
             {"batch_id": batch_id, "number": c.part, "chunk_id": c.id, "document": request["line"]} for c in chunks
         ]
         batches.add_items(session, [{**item, "reference": None, "asset_id": None, "faults": None} for item in items])
-        batches.accept(session, LOCAL, batch_id, chunks, 0)
+        batches.accept(session, LOCAL, batch_id, chunks, 0, anew=True)
     return [chunk.id for chunk in chunks]
 
 
