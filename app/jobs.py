@@ -18,7 +18,7 @@ from app.auth import Caller
 from app.db import database_time
 from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
-_LABELS = frozenset({"name", "asset_id", "tags"})
+LABELS = frozenset({"name", "asset_id", "tags"})
 
 
 class CancelOutcome(StrEnum):
@@ -93,7 +93,7 @@ def input_hash(document: Mapping[str, Any]) -> str:
     ValueError
         If the document holds NaN or an infinity.
     """
-    line = {name: value for name, value in document.get("line", {}).items() if name not in _LABELS}
+    line = {name: value for name, value in document.get("line", {}).items() if name not in LABELS}
     asked = {**document, "line": line} if line else document
     return hashlib.sha256(canonical(asked).encode()).hexdigest()
 

@@ -4,10 +4,12 @@ They are copied rather than referred to, so that each job keeps its own when ano
 it is posted, the lines of a batch as a worker takes their chunk.
 """
 
+import hashlib
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 from uuid import UUID
 
+import orjson
 from sqlalchemy import Table, insert, literal, select
 from sqlalchemy.orm import Session
 
@@ -44,8 +46,15 @@ def answer(session: Session, job: Job, source: UUID, engine_version: str) -> Non
 
 def hashes(owner: str, analysis: Mapping[str, Any], lines: Sequence[NumberedLine]) -> dict[int, str]:
     """Return what each line of an owner is found by, by its number: what is asked of it, labels aside."""
-    asked = {"owner": owner, "analysis": analysis}
-    return {line.number: jobs.input_hash({**asked, "line": line.document}) for line in lines}
+    common = hashlib.sha256(orjson.dumps([owner, analysis], option=orjson.OPT_SORT_KEYS))
+
+    def of(line: NumberedLine) -> str:
+        asked = {name: value for name, value in line.document.items() if name not in jobs.LABELS}
+        whole = common.copy()
+        whole.update(orjson.dumps(asked, option=orjson.OPT_SORT_KEYS))
+        return whole.hexdigest()
+
+    return {line.number: of(line) for line in lines}
 
 
 def stored(session: Session, wanted: Mapping[int, str], engine_version: str) -> list[PointResult]:

@@ -74,7 +74,8 @@ def test_a_mixed_batch_runs_its_valid_lines_and_tells_of_the_others(client: http
     assert int(answer.headers["retry-after"]) >= 1
     assert (status["status"], status["progress"]) == ("accepted", 0.0)
     assert status["lines"] == {
-        "total": 3, "accepted": 2, "running": 0, "successful": 0, "failed": 0, "dismissed": 0, "rejected": 1, "reused": 0,
+        "total": 3, "accepted": 2, "running": 0, "successful": 0, "failed": 0, "dismissed": 0, "rejected": 1,
+        "reused": 0,
     }  # fmt: skip
     (fault,) = status["errors"]
     assert (fault["number"], fault["reference"], fault["pointer"]) == (2, "b", "/span/length_m")
