@@ -15,7 +15,7 @@ from sqlalchemy import ColumnElement, Select, and_, delete, func, insert, select
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
-from app import audit, correlation, tallies
+from app import audit, batch_counts, correlation, tallies
 from app.auth import Caller
 from app.convert import NumberedLine
 from app.db import database_time, insert_rows
@@ -32,39 +32,6 @@ class Chunk:
     id: UUID
     part: int
     lines: int
-
-
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """How many lines of a batch are in which state, how much of the work is done, and when it began and ended.
-
-    reused are those of the successful that were stored before.
-    """
-
-    accepted: int = 0
-    running: int = 0
-    successful: int = 0
-    failed: int = 0
-    dismissed: int = 0
-    reused: int = 0
-    progress: float = 0.0
-    started_at: datetime | None = None
-    finished_at: datetime | None = None
-
-    @property
-    def lines(self) -> int:
-        """Return how many lines there are apart from those that were rejected."""
-        return self.accepted + self.running + self.successful + self.failed + self.dismissed
-
-    @property
-    def status(self) -> JobStatus:
-        """Return the state of the whole: a batch that has ended is successful if any line is."""
-        if self.accepted + self.running:
-            begun = self.accepted < self.lines
-            return JobStatus.RUNNING if begun else JobStatus.ACCEPTED
-        if self.dismissed:
-            return JobStatus.DISMISSED
-        return JobStatus.SUCCESSFUL if self.successful else JobStatus.FAILED
 
 
 def begin(session: Session, caller: Caller, analysis: dict[str, Any]) -> UUID:
@@ -127,21 +94,6 @@ def page(session: Session, owner: str, after: tuple[datetime, UUID] | None, limi
     return list(session.scalars(statement.order_by(Batch.created_at.desc(), Batch.id.desc()).limit(limit)))
 
 
-def counts(session: Session, batch_ids: Sequence[UUID]) -> dict[UUID, Counts]:
-    """Count the lines of batches by state, from their chunks."""
-    lines, failed = func.sum(func.coalesce(Job.lines, 0)), func.sum(func.coalesce(Job.failed_lines, 0))
-    done = func.sum(func.coalesce(Job.lines, 0) * Job.progress)
-    reused = func.sum(func.coalesce(Job.reused_lines, 0))
-    moments = func.min(Job.started_at), func.max(Job.finished_at)
-    statement = select(Job.batch_id, Job.status, lines, failed, reused, done, *moments).where(
-        Job.batch_id.in_(batch_ids)
-    )
-    grouped: dict[UUID | None, list[_Group]] = {batch_id: [] for batch_id in batch_ids}
-    for found in session.execute(statement.group_by(Job.batch_id, Job.status)):
-        grouped[found[0]].append(_Group(*found[1:]))
-    return {batch_id: _counted(grouped[batch_id]) for batch_id in batch_ids}
-
-
 def outcome(session: Session, batch_id: UUID) -> str:
     """Return what the results of a batch that has ended depend on: its chunks, and how each of them ended."""
     columns = Job.id, Job.status, Job.engine_version, Job.finished_at, Job.lines, Job.failed_lines
@@ -153,7 +105,7 @@ def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
     """End what is queued at once and ask what is running to stop; remove a batch that has ended, with its results."""
     if _locked(session, caller.owner, batch_id) is None:
         return CancelOutcome.MISSING
-    before = counts(session, [batch_id])[batch_id]
+    before = batch_counts.counts(session, [batch_id])[batch_id]
     if not before.accepted + before.running:
         session.execute(delete(Job).where(Job.batch_id == batch_id))
         session.execute(delete(Batch).where(Batch.id == batch_id))
@@ -199,42 +151,6 @@ def lines_of_chunk(session: Session, job_id: UUID, batch_id: UUID) -> tuple[dict
     statement = select(BatchItem.number, BatchItem.document).where(BatchItem.chunk_id == job_id)
     rows = session.execute(statement.order_by(BatchItem.number))
     return analysis, [NumberedLine(number, document or {}) for number, document in rows]
-
-
-@dataclass(frozen=True, slots=True)
-class _Group:
-    """The chunks of one batch in one state."""
-
-    status: JobStatus
-    lines: int
-    failed: int
-    reused: int
-    done: float
-    started_at: datetime | None
-    finished_at: datetime | None
-
-
-def _counted(groups: Sequence[_Group]) -> Counts:
-    by_status = {group.status: group for group in groups}
-    nothing = _Group(JobStatus.ACCEPTED, 0, 0, 0, 0.0, None, None)
-    ended = [by_status.get(status, nothing) for status in (JobStatus.SUCCESSFUL, JobStatus.FAILED)]
-    waiting, running, dismissed = (
-        by_status.get(status, nothing) for status in (JobStatus.ACCEPTED, JobStatus.RUNNING, JobStatus.DISMISSED)
-    )
-    whole = sum(group.lines for group in groups)
-    done = sum(group.lines for group in (*ended, dismissed)) + running.done
-    still_open = waiting.lines + running.lines > 0
-    return Counts(
-        accepted=waiting.lines,
-        running=running.lines,
-        successful=sum(group.lines - group.failed for group in ended),
-        failed=sum(group.failed for group in ended),
-        dismissed=dismissed.lines,
-        reused=sum(group.reused for group in ended),
-        progress=min(1.0, done / whole) if whole else 1.0,
-        started_at=min((group.started_at for group in groups if group.started_at), default=None),
-        finished_at=None if still_open else max((g.finished_at for g in groups if g.finished_at), default=None),
-    )
 
 
 def _of(owner: str, batch_id: UUID) -> Select[Batch]:

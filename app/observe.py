@@ -8,8 +8,8 @@ from uuid import UUID
 from sqlalchemy import select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches
-from app.batches import Counts
+from app import batch_counts
+from app.batch_counts import Counts
 from app.tables import ENDED, Batch, Job, JobEvent, JobEventKind, JobStatus
 
 
@@ -71,7 +71,7 @@ def batches_seen(readers: sessionmaker[Session], before: Mapping[UUID, BatchSeen
     wanted = select(Batch.id, Batch.owner, Batch.rejected_lines)
     with readers() as session:
         rows = session.execute(wanted.where(Batch.id.in_(before), Batch.received_at.is_not(None))).all()
-        counts = batches.counts(session, [row.id for row in rows])
+        counts = batch_counts.counts(session, [row.id for row in rows])
     return {row.id: BatchSeen(row.owner, row.rejected_lines, counts[row.id]) for row in rows}
 
 

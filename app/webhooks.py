@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session
 from standardwebhooks import Webhook
 from uuid_utils.compat import uuid7
 
-from app import batches, tallies
+from app import batch_counts, tallies
 from app.db import database_time
 from app.settings import Settings, cursor_key
 from app.tables import ENDED, Batch, DeliveryState, Job, WebhookDelivery
@@ -180,7 +180,7 @@ def enlist(session: Session) -> int:
     whole = waiting.join(Batch, Batch.id == WebhookDelivery.batch_id).where(Batch.received_at.is_not(None))
     for delivery in session.scalars(whole.with_for_update(of=WebhookDelivery, skip_locked=True)).all():
         assert delivery.batch_id is not None
-        counts = batches.counts(session, [delivery.batch_id])[delivery.batch_id]
+        counts = batch_counts.counts(session, [delivery.batch_id])[delivery.batch_id]
         if counts.status in ENDED:
             lines = {"successful": counts.successful, "failed": counts.failed, "dismissed": counts.dismissed}
             href = f"/v1/batches/{delivery.batch_id}"

@@ -35,6 +35,7 @@ MEANING = {
     "service_overhead_ratio": "a batch through HTTP, queue, worker and database over the engine alone",
     "two_worker_speedup": "two workers over one on two cores, from the start of the first chunk to the end of the last",
     "two_worker_batch_speedup": "the same from the first byte of the batch to the last byte of its results",
+    "machine_loop_seconds": "`sum(range(10_000_000))` in Python [s]: what the machine is worth at the time of this run",
     "machine_two_core_speedup": "two processes of the engine alone over one: what this machine gives at most",
     "analyse_start_seconds": "`galloping analyse` from its start until it has read and checked a line [s]",
     "analyse_seconds": "`galloping analyse`, a line with both models at one wind speed, the whole process [s]",
@@ -88,6 +89,7 @@ def _sections(fleet: int, lines: int) -> Iterator[Section]:
         print("branch: left out, the development extra `bench` is not installed")
     yield lambda: engine_speed.fleet(fleet)
     yield engine_speed.hybrid_against_finite_element
+    yield cores.plain_python
     yield cores.command_line
     yield cores.two_processes
     yield lambda: service_speed.service(lines)

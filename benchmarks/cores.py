@@ -18,8 +18,14 @@ from benchmarks.engine_speed import STANDARD_JOB, analysed
 from benchmarks.lines import random_line
 from benchmarks.measure import median_seconds
 
+ADDITIONS = 10_000_000
 LINES = 512
 RUNS = 5
+
+
+def plain_python() -> Iterator[tuple[str, float]]:
+    """Yield the time of ten million additions in Python: what the machine of a run is worth, at the time of the run."""
+    yield "machine_loop_seconds", median_seconds(lambda: sum(range(ADDITIONS)), RUNS)
 
 
 def two_processes() -> Iterator[tuple[str, float]]:

@@ -201,6 +201,8 @@ def profile() -> list[tuple[str, float]]:
 def _place(path: str, function: str) -> str:
     if "/engine/" in path:
         return "engine/" + path.rsplit("/engine/", 1)[1]
+    if "engine._kernels" in function:
+        return f"compiled: {function.rsplit('.', 1)[1].rstrip('>')}"
     return f"numpy.linalg.{function}" if path.endswith("_linalg.py") else "Python and numpy besides"
 
 

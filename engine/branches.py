@@ -190,10 +190,9 @@ def traced_both_ways(problem: CycleProblem, start: FloatArray, limits: tuple[flo
 
     The problem has one entry a point.
     """
-    both = np.tile(np.arange(start.shape[0]), 2)
+    both, up = np.tile(np.arange(start.shape[0]), 2), np.repeat([1.0, -1.0], start.shape[0])
     problem, start = problem.repeated(both), start[both]
     along = np.zeros_like(start)
-    up = np.where(np.arange(both.size) < both.size // 2, 1.0, -1.0)
     along[:, -1] = up * problem.scale(start, np.arange(both.size))[:, -1]
     direction = tangents(problem, start, np.arange(both.size), along)
     # At a fold the branch has no direction over the parameter: nothing is followed from there.

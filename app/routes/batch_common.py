@@ -6,9 +6,9 @@ from uuid import UUID
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batch_results, batches
+from app import batch_counts, batch_results, batches
 from app.auth import Caller
-from app.batches import Counts
+from app.batch_counts import Counts
 from app.errors import ProblemError, ProblemKind
 from app.routes.common import PREFIX, RETRY_SECONDS
 from app.tables import ENDED, Batch
@@ -44,7 +44,7 @@ def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UU
     """
     with readers() as session:
         find_batch(session, caller, batch_id)
-        counts = batches.counts(session, [batch_id])[batch_id]
+        counts = batch_counts.counts(session, [batch_id])[batch_id]
         if counts.status in ENDED:
             return batches.outcome(session, batch_id)
     if partial:
@@ -99,7 +99,7 @@ def batch_document(session: Session, batch: Batch, counts: Counts) -> dict[str, 
 def accepted_batch(session: Session, caller: Caller, batch_id: UUID) -> JSONResponse:
     """Return the answer to who has sent a batch, or sent it again."""
     batch = find_batch(session, caller, batch_id)
-    document = batch_document(session, batch, batches.counts(session, [batch_id])[batch_id])
+    document = batch_document(session, batch, batch_counts.counts(session, [batch_id])[batch_id])
     return JSONResponse(document, 202, headers={"Location": batch_address(batch_id), "Retry-After": RETRY_SECONDS})
 
 

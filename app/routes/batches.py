@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Query, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
-from app import batches, convert, idempotency, intake, paging
+from app import batch_counts, batches, convert, idempotency, intake, paging
 from app.errors import ProblemKind, query_fault
 from app.jobs import CancelOutcome
 from app.routes import batch_documentation, documentation
@@ -58,7 +58,7 @@ def status(
     """
     with readers() as session:
         batch = find_batch(session, caller, batch_id)
-        counts = batches.counts(session, [batch_id])[batch_id]
+        counts = batch_counts.counts(session, [batch_id])[batch_id]
         headers = applied(wait) if counts.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
         return JSONResponse(batch_document(session, batch, counts), headers=headers)
 
@@ -84,7 +84,7 @@ def list_batches(
     with readers() as session:
         found = batches.page(session, caller.owner, after, limit + 1)
         shown = found[:limit]
-        counts = batches.counts(session, [batch.id for batch in shown])
+        counts = batch_counts.counts(session, [batch.id for batch in shown])
     following = None
     if len(found) > limit:
         place = paging.encode(key, (shown[-1].created_at, shown[-1].id))
@@ -141,7 +141,7 @@ def cancel(batch_id: UUID, caller: CallerOf, writers: Writers) -> Response:
         outcome = batches.cancel(session, caller, batch_id)
         if outcome is CancelOutcome.REMOVED:
             return Response(status_code=204)
-        document = batch_document(session, batch, batches.counts(session, [batch_id])[batch_id])
+        document = batch_document(session, batch, batch_counts.counts(session, [batch_id])[batch_id])
     if outcome is CancelOutcome.REQUESTED:
         return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
     return JSONResponse(document)

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Depends, Header
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy import func, select
 
-from app import batches
+from app import batch_counts
 from app.conditional import Bodiless
 from app.errors import ProblemKind
 from app.observe import BatchSeen, Happening
@@ -67,7 +67,7 @@ def _event_of_batch(batch_id: UUID, caller: CallerOf, readers: Readers, last_eve
     """Return the id of the last event that has arrived; 404 and 204 as for jobs."""
     with readers() as session:
         find_batch(session, caller, batch_id)
-        counts = batches.counts(session, [batch_id])[batch_id]
+        counts = batch_counts.counts(session, [batch_id])[batch_id]
     if counts.status in ENDED and last_event_id == _batch_event_id(counts):
         raise Bodiless(204)
     return last_event_id or ""
@@ -124,7 +124,7 @@ def _counted(batch: BatchSeen) -> ServerSentEvent:
     return ServerSentEvent(id=_batch_event_id(counts), event=counts.status.value, data=data)
 
 
-def _batch_event_id(counts: batches.Counts) -> str:
+def _batch_event_id(counts: batch_counts.Counts) -> str:
     """Return what two equal states of a batch have in common."""
     lines = counts.accepted, counts.running, counts.successful, counts.failed, counts.dismissed
     return "-".join(map(str, (*lines, f"{counts.progress:.6f}")))

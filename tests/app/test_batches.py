@@ -5,9 +5,10 @@ from sqlalchemy import func, select, text
 from sqlalchemy.orm import Session, sessionmaker
 from uuid_utils.compat import uuid7
 
-from app import batches, jobs, leases
+from app import batch_counts, batches, jobs, leases
 from app.auth import LOCAL
-from app.batches import Chunk, Counts
+from app.batch_counts import Counts
+from app.batches import Chunk
 from app.convert import NumberedLine
 from app.jobs import CancelOutcome, JobFilters
 from app.leases import Failure
@@ -62,7 +63,7 @@ def run(sessions: sessionmaker[Session], chunk_id: UUID, failing: frozenset[int]
 
 def count(sessions: sessionmaker[Session], batch_id: UUID) -> Counts:
     with sessions() as session:
-        return batches.counts(session, [batch_id])[batch_id]
+        return batch_counts.counts(session, [batch_id])[batch_id]
 
 
 def rows(sessions: sessionmaker[Session], table: type[Batch | BatchItem | Job]) -> int:

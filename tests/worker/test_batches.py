@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batch_results, batches, jobs
+from app import batch_counts, batch_results, batches, jobs
 from app.auth import LOCAL
 from app.examples import example
 from app.intake import Incoming, receive
@@ -35,9 +35,9 @@ def submit(sessions: sessionmaker[Session], settings: Settings, *, most_chunk_li
     return receipt.batch_id
 
 
-def counts(sessions: sessionmaker[Session], batch_id: UUID) -> batches.Counts:
+def counts(sessions: sessionmaker[Session], batch_id: UUID) -> batch_counts.Counts:
     with sessions() as session:
-        return batches.counts(session, [batch_id])[batch_id]
+        return batch_counts.counts(session, [batch_id])[batch_id]
 
 
 def test_killed_worker_loses_and_doubles_nothing(deployment: Settings, deployed: sessionmaker[Session]) -> None:
@@ -61,7 +61,7 @@ def test_killed_worker_loses_and_doubles_nothing(deployment: Settings, deployed:
     assert max(attempts) == (2 if found.running else 1)  # the kill may have come between two chunks
 
 
-def _in_the_middle(found: batches.Counts) -> bool:
+def _in_the_middle(found: batch_counts.Counts) -> bool:
     return found.successful > 0 and found.running > 0
 
 

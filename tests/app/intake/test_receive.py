@@ -7,7 +7,7 @@ import pytest
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches
+from app import batch_counts, batches
 from app.auth import LOCAL
 from app.convert import read_analysis
 from app.examples import example
@@ -66,7 +66,7 @@ def test_valid_lines_are_cut_into_chunks_and_others_keep_their_faults(
         [], ["/span/length_m"], [], ["/reference"], [""],
     ]  # fmt: skip
     with sessions() as session:
-        assert batches.counts(session, [receipt.batch_id])[receipt.batch_id].accepted == 3
+        assert batch_counts.counts(session, [receipt.batch_id])[receipt.batch_id].accepted == 3
         assert session.get_one(Batch, receipt.batch_id).rejected_lines == 4
         assert [session.get_one(Job, chunk).lines for chunk in receipt.chunk_ids] == [2, 1]
 
