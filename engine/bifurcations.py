@@ -155,6 +155,9 @@ def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) ->
     real = (np.abs(critical.imag) < ON_CIRCLE) & inside & (kind is Kind.TORUS)
     width = np.abs(speed[1] - speed[0])
     noise = width * error  # a multiplier moves by something of order 1 over a segment
+    # A zero that more harmonics move out of its segment is as far away as they move the segment's ends.
+    moved = np.max([np.abs(end.z[:, -1] - at) for end, at in zip(ends, speed, strict=True)], axis=0, initial=0.0)
+    moved = np.where(np.isfinite(moved), moved, speed[1])
     result = Bifurcations(
         member=member,
         branch=numbers[zero.points.branch],
@@ -163,7 +166,7 @@ def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) ->
         angular_frequency=orbits.angular_frequency,
         second=_second(problem.model, member, orbits, critical, kind),
         co_ordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
-        uncertainty=np.where(inside, zero.uncertainty + noise, width),
+        uncertainty=np.where(inside, zero.uncertainty + noise, width + moved),
     )
     return _pick(result, np.flatnonzero(~real))
 

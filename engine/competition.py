@@ -1,4 +1,4 @@
-"""Which cycle survives where several numbers of loops are unstable at once. Theory section 7.3, issue of several modes.
+"""Which cycle survives where several numbers of loops are unstable at once. Theory section 7.3.
 
 A cycle of one number of loops that is stable alone is balanced again in the model in which the others may move too; its
 Floquet multipliers there tell whether they grow out of small disturbances.

@@ -32,7 +32,7 @@ def of_kind(found: Bifurcations, kind: Kind) -> FloatArray:
     return found.wind_speed[[k is kind for k in found.kind]]
 
 
-# The ranges in which AUTO finds torus points on the two-loop branches (theory section 7, issue text).
+# The ranges in which AUTO finds torus points on the two-loop branches.
 @pytest.mark.parametrize("subconductors", [1, 2, 3])
 def test_two_loop_branches_with_light_damping_have_torus_points(subconductors: int) -> None:
     _, _, found = analysed(subconductors, LIGHT, 2)
