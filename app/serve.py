@@ -33,7 +33,7 @@ _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read 
 _METRICS_BYTES = 1 << 20  # far more than all routes and answers need
 _STOP_SECONDS = 10.0
 _LOOK_SECONDS = 0.5
-_START_SECONDS = 60  # a process that says nothing for so long is replaced; loading takes seconds on a busy machine
+_START_SECONDS = 30  # a process that says nothing for so long is replaced; loading takes seconds on a busy machine
 
 _logger = logging.getLogger(__name__)
 
