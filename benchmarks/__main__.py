@@ -4,23 +4,26 @@ import argparse
 import importlib.util
 import json
 import platform
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from benchmarks import cores, engine_speed, scaling, service_speed
 
 ROOT = Path(__file__).parents[1]
-Section = Callable[[], Iterator[tuple[str, float]]]
+LATEST = ROOT / "benchmarks" / "latest.json"
+SECTIONS = ("cycle", "branch", "fleet", "machine", "service")
 
 MEANING = {
     "cycle_ratio": "one limit cycle of the source's lines: direct integration over the engine, all in a stack",
-    "cycle_ratio_alone": "the same, each cycle in a call of its own",
+    "cycle_ratio_alone": "the same, each line at each wind speed in a call of its own",
+    "cycle_ratio_bare": "the same for explicit start, balance and multipliers alone, no branch followed",
     "cycle_error": "largest relative change of the dominant amplitude in 100 periods of direct integration",
     "cycle_direct_error": "largest relative difference of the settled direct integration, which its slow decay leaves",
     "cycle_direct_seconds": "direct integration of one cycle [s]: DOP853, rtol 1e-8, until 0.1 % over 50 cycles",
     "cycle_direct_cycles": "periods that it integrates, mean",
-    "cycle_stack_seconds": "the engine, a cycle of the stack [s]: explicit start, balance, Floquet multipliers",
-    "cycle_alone_seconds": "the engine, a cycle in a call of its own [s]",
+    "cycle_stack_seconds": "the engine [s]: all that it finds, branches and multipliers too, over the stable cycles",
+    "cycle_alone_seconds": "the same, each line at each wind speed in a call of its own [s]",
+    "cycle_bare_seconds": "explicit start, balance and multipliers alone, each in a call of its own [s]",
     "branch_ratio": "a branch: AUTO (mesh of 30 intervals) over the engine (41 winds), four branches in one stack",
     "branch_ratio_alone": "the same, each branch in a call of its own",
     "branch_auto_seconds": "AUTO's periodic branch from the Hopf point to 6 m/s [s]",
@@ -63,8 +66,9 @@ MEANING = {
 
 
 def main() -> None:
-    """Run the sections asked for and write what they found."""
+    """Run the sections asked for and write what they found; figures of the others stay as they were."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--sections", nargs="+", choices=SECTIONS, default=SECTIONS, help="measure these anew")
     parser.add_argument("--fleet", type=int, default=1000, help="largest number of lines of the fleet")
     parser.add_argument("--batch", type=int, default=10_000, help="lines of the batch sent through the service")
     parser.add_argument("--long", type=int, nargs="?", const=10_000, help="run the fleet alone, up to so many lines")
@@ -72,27 +76,33 @@ def main() -> None:
     if arguments.long:
         _write_long(arguments.long)
         return
-    figures: dict[str, float] = {}
-    for section in _sections(arguments.fleet, arguments.batch):
-        for name, value in section():
-            figures[name] = value
-            print(f"{name:28} {value:12.5g}  {MEANING.get(name, '')}", flush=True)
-    (ROOT / "benchmarks" / "latest.json").write_text(json.dumps(figures, indent=1) + "\n")
+    figures: dict[str, float] = json.loads(LATEST.read_text()) if LATEST.exists() else {}
+    for name in arguments.sections:
+        for figure, value in _section(name, arguments.fleet, arguments.batch):
+            figures[figure] = value
+            print(f"{figure:28} {value:12.5g}  {MEANING.get(figure, '')}", flush=True)
+    figures = {figure: figures[figure] for figure in MEANING if figure in figures}
+    LATEST.write_text(json.dumps(figures, indent=1) + "\n")
     _write_page(figures)
 
 
-def _sections(fleet: int, lines: int) -> Iterator[Section]:
-    yield engine_speed.one_cycle
-    if importlib.util.find_spec("xpplab"):
-        yield engine_speed.branch
-    else:
-        print("branch: left out, the development extra `bench` is not installed")
-    yield lambda: engine_speed.fleet(fleet)
-    yield engine_speed.hybrid_against_finite_element
-    yield cores.plain_python
-    yield cores.command_line
-    yield cores.two_processes
-    yield lambda: service_speed.service(lines)
+def _section(name: str, fleet: int, lines: int) -> Iterator[tuple[str, float]]:
+    match name:
+        case "cycle":
+            yield from engine_speed.one_cycle()
+        case "branch" if importlib.util.find_spec("xpplab"):
+            yield from engine_speed.branch()
+        case "branch":
+            print("branch: left out, the development extra `bench` is not installed")
+        case "fleet":
+            yield from engine_speed.fleet(fleet)
+            yield from engine_speed.hybrid_against_finite_element()
+        case "machine":
+            yield from cores.plain_python()
+            yield from cores.command_line()
+            yield from cores.two_processes()
+        case _:
+            yield from service_speed.service(lines)
 
 
 def _write_page(figures: dict[str, float]) -> None:
