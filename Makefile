@@ -22,7 +22,7 @@ demo: setup
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal tests
 
-# Kills and restarts for some ten minutes, prints what it measured; `make reliability` puts it on docs/reliability.md.
+# Kills and restarts for some seven minutes, prints what it measured; `make reliability` puts it on docs/reliability.md.
 test-faults: setup
 	$(BIN)/python -m pytest --timeout 840 tests/faults
 	$(BIN)/python -m tests.faults.report
