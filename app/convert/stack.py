@@ -20,7 +20,7 @@ STACK = 128  # lines side by side: fewer share too little of the work between th
 _LINE, _ANALYSIS = "/line", "/analysis"
 _NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
 
-# Seconds of one core for a line in a stack, fixed and per wind speed, measured by `benchmarks.line_costs`.
+# Seconds of one core for a line in a stack, fixed and per wind speed, estimated; `benchmarks.line_costs` measures them.
 _HYBRID_SECONDS = (0.001, 0.0002)
 _FINITE_ELEMENT_SECONDS = (0.035, 0.02)
 _FULL_MODES_SECONDS = 0.003
