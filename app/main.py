@@ -6,6 +6,7 @@ from functools import partial
 from typing import Any
 
 from fastapi import FastAPI
+from sqlalchemy import Engine
 from starlette.types import ASGIApp
 
 from app import errors, metrics
@@ -93,6 +94,20 @@ def create_app(settings: Settings | None = None) -> Service:
         redirect_slashes=False,
         responses={"default": documentation.ANY_PROBLEM},
     )
+    _equip(app, settings, database)
+    meter = Meter(settings)
+    app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
+    errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
+    app.add_middleware(HeadAsGet)
+    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance):
+        app.include_router(module.router)
+    for module in (events, deliveries, aerodynamics, reference, health):
+        app.include_router(module.router)
+    return app
+
+
+def _equip(app: Service, settings: Settings, database: Engine) -> None:
+    """Give the application what its routes share: connections, groups of requests, and the watches of streams."""
     app.state.settings = settings
     app.state.requests = metrics.requests()
     app.state.readers = session_factory(database, read_only=True)
@@ -102,14 +117,5 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.inbox = Groups("inbox", partial(committed_together, app.state.writers))
     app.state.dispatcher = Groups("dispatcher", app.state.sender.send_together)
     app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
-    meter = Meter(settings)
-    app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
     app.state.job_watch = Watch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
     app.state.batch_watch = Watch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)
-    errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
-    app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance):
-        app.include_router(module.router)
-    for module in (events, deliveries, aerodynamics, reference, health):
-        app.include_router(module.router)
-    return app
