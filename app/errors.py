@@ -61,6 +61,12 @@ class ProblemKind(Enum):
         "Too many requests",
         "The quota of the minute is used up; Retry-After says when to go on.",
     )
+    HEAD_TOO_LARGE = (
+        "head-too-large",
+        431,
+        "Head too large",
+        "The address and the header fields of the request are together too large, or the fields too many.",
+    )
     INTERNAL = ("internal", 500, "Internal error", "A defect of the service; the operator's log has the details.")
     UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it depends on; try again later.")
 

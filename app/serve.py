@@ -28,6 +28,9 @@ from app.settings import Settings, get_settings
 if TYPE_CHECKING:
     from app.main import Service
 
+HTTP = "app.protocol:BoundedHeads"
+"""What speaks HTTP on a connection, as uvicorn is told of it."""
+
 _MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
 _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded
 _METRICS_BYTES = 1 << 20  # far more than all routes and answers need
@@ -90,6 +93,7 @@ def api(settings: Settings, host: str, port: int) -> int:
     uvicorn.run(
         "app.serve:_application",
         factory=True,
+        http=HTTP,
         host=host,
         port=port,
         workers=settings.api_processes,

@@ -12,7 +12,7 @@ import httpx
 import uvicorn
 
 from app.main import create_app
-from app.serve import migrate
+from app.serve import HTTP, migrate
 from app.settings import Settings
 from tests.documents import short_request
 from tests.servers import wait_until
@@ -24,7 +24,7 @@ def running(settings: Settings) -> Iterator[httpx.Client]:
     """Serve the application with these settings on a migrated database, and give a client of it."""
     migrate(settings)
     server = uvicorn.Server(
-        uvicorn.Config(create_app(settings), log_config=None, ws="none", timeout_graceful_shutdown=5)
+        uvicorn.Config(create_app(settings), http=HTTP, log_config=None, ws="none", timeout_graceful_shutdown=5)
     )
     with socket.create_server(("127.0.0.1", 0)) as listener:
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)

@@ -72,6 +72,7 @@ def test_job_by_http_and_a_clean_end(settings: Settings, sessions: sessionmaker[
         wait_for(client, location, "successful")
         rows = client.get(f"{location}/results/limit-cycles").raise_for_status().json()
         assert rows
+        assert client.get("/health/live", headers={"X-A": "a" * 70_000}).status_code == 431
         start = time.monotonic()
         process.terminate()
         assert process.wait(20.0) == 0
