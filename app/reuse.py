@@ -1,16 +1,18 @@
 """What is stored already is not computed again: results of the same input and engine are copied for the same owner.
 
 They are copied rather than referred to, so that each job keeps its own when another is removed. A job is looked up as
-it is posted, the lines of a batch as a worker takes their chunk.
+it is posted, the lines of a batch as a worker takes their chunk. A line by itself is found by what is asked of it,
+whether it was a job or in a batch; a study or a search for places as a whole, by its job.
 """
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, cast
 from uuid import UUID
 
 import orjson
-from sqlalchemy import Table, insert, literal, select
+from sqlalchemy import ColumnElement, Table, insert, literal, select
 from sqlalchemy.orm import Session
 
 from app import jobs
@@ -18,49 +20,95 @@ from app.convert import NumberedLine, PointResult
 from app.results import PEAKS, STATIC, unpacked
 from app.tables import Job, JobEventKind, JobStatus, PointRow
 
+_LINE_ALONE = {"line", "analysis"}
 
-def find(session: Session, owner: str, document: Mapping[str, Any], engine_version: str) -> UUID | None:
-    """Return a successful job of the owner with the same input, labels aside, computed by this version of the engine.
 
-    Its row is locked until the end of the transaction, so that nobody removes what is to be copied.
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Results that are stored: those of a job, or those of one line of a batch under its number in a chunk."""
+
+    job_id: UUID
+    line_number: int | None = None
+
+
+def find(session: Session, owner: str, document: Mapping[str, Any], engine_version: str) -> Source | None:
+    """Return results of the owner for the same input, labels aside, computed by this version of the engine.
+
+    What is to be copied is locked until the end of the transaction, so that nobody removes it.
     """
+    line_hash = hash_of(owner, document)
+    with session.no_autoflush:  # jobs that are made together are written together
+        if line_hash is None:
+            return _found_whole(session, owner, document, engine_version)
+        # Whichever is found first: to ask for an order would lead the database from the index on the input to another.
+        statement = select(PointRow.job_id, PointRow.point, PointRow.batch_id).where(
+            PointRow.input_hash == line_hash, *_usable(engine_version)
+        )
+        row = session.execute(statement.limit(1).with_for_update(read=True, key_share=True)).one_or_none()
+    return Source(row.job_id, row.point if row.batch_id is not None else None) if row is not None else None
+
+
+def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engine_version: str) -> Source | None:
     same = Job.owner == owner, Job.input_hash == jobs.input_hash(document), Job.batch_id.is_(None)
     usable = Job.status == JobStatus.SUCCESSFUL, Job.engine_version == engine_version
     statement = select(Job.id).where(*same, *usable).order_by(Job.id).limit(1)
-    with session.no_autoflush:  # jobs that are made together are written together
-        return session.scalar(statement.with_for_update(read=True, key_share=True))
+    job_id = session.scalar(statement.with_for_update(read=True, key_share=True))
+    return Source(job_id) if job_id is not None else None
 
 
-def answer(session: Session, job: Job, source: UUID, engine_version: str) -> None:
-    """Give a new job the results of another, and end it."""
+def answer(session: Session, job: Job, source: Source, engine_version: str) -> None:
+    """Give a new job the results of another, or of a line, and end it."""
     job.status, job.progress, job.engine_version = JobStatus.SUCCESSFUL, 1.0, engine_version
     job.started_at = job.finished_at = job.created_at
-    job.reused_from = source
+    job.reused_from = source.job_id
     session.flush()
     table = cast(Table, PointRow.__table__)
-    others = [column for column in table.columns if column.name != "job_id"]
-    copied = select(literal(job.id, table.c.job_id.type), *others).where(table.c.job_id == source)
-    session.execute(insert(table).from_select(["job_id", *(column.name for column in others)], copied))
-    jobs.record(session, job.id, JobEventKind.SUCCESSFUL, detail=f"results of job {source}")
+    copied, said = [table.c.job_id == source.job_id], f"results of job {source.job_id}"
+    own: dict[str, ColumnElement[Any]] = {"job_id": literal(job.id, table.c.job_id.type)}
+    if source.line_number is not None:
+        copied.append(table.c.point == source.line_number)
+        said = f"results of line {source.line_number} of a batch, in its chunk {source.job_id}"
+        alone: dict[str, Any] = {"point": 0, "axes": {}, "batch_id": None}
+        own |= {name: literal(value, table.c[name].type) for name, value in alone.items()}
+    others = {column.name: column for column in table.columns}
+    columns = {**others, **own}
+    session.execute(insert(table).from_select(list(columns), select(*columns.values()).where(*copied)))
+    jobs.record(session, job.id, JobEventKind.SUCCESSFUL, detail=said)
+
+
+def hash_of(owner: str, document: Mapping[str, Any]) -> str | None:
+    """Return what the line of a request is found by; None if more is asked than the analysis of one line."""
+    if document.keys() != _LINE_ALONE:
+        return None
+    return _hashing(owner, document["analysis"])(document["line"])
 
 
 def hashes(owner: str, analysis: Mapping[str, Any], lines: Sequence[NumberedLine]) -> dict[int, str]:
     """Return what each line of an owner is found by, by its number: what is asked of it, labels aside."""
+    of = _hashing(owner, analysis)
+    return {line.number: of(line.document) for line in lines}
+
+
+def _hashing(owner: str, analysis: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], str]:
     common = hashlib.sha256(orjson.dumps([owner, analysis], option=orjson.OPT_SORT_KEYS))
 
-    def of(line: NumberedLine) -> str:
-        asked = {name: value for name, value in line.document.items() if name not in jobs.LABELS}
+    def of(line: Mapping[str, Any]) -> str:
+        asked = {name: value for name, value in line.items() if name not in jobs.LABELS}
         whole = common.copy()
         whole.update(orjson.dumps(asked, option=orjson.OPT_SORT_KEYS))
         return whole.hexdigest()
 
-    return {line.number: of(line) for line in lines}
+    return of
+
+
+def _usable(engine_version: str) -> tuple[ColumnElement[bool], ...]:
+    return PointRow.failure.is_(None), PointRow.engine_version == engine_version
 
 
 def stored(session: Session, wanted: Mapping[int, str], engine_version: str) -> list[PointResult]:
     """Return the results of those of these lines that this version of the engine has computed, under their numbers."""
-    usable = PointRow.failure.is_(None), PointRow.engine_version == engine_version
-    statement = select(PointRow).where(PointRow.input_hash.in_(set(wanted.values())), *usable)
+    same = PointRow.input_hash.in_(set(wanted.values()))
+    statement = select(PointRow).where(same, *_usable(engine_version))
     found = {row.input_hash: row for row in session.scalars(statement)}
     return [_as_result(found[value], number) for number, value in wanted.items() if value in found]
 

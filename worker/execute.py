@@ -119,7 +119,9 @@ class Pulse:
 def _steps(session: Session, held: Claim) -> Iterator[Advance | PointResult]:
     """Return the computation of a job or a chunk, which has not begun yet."""
     if held.batch_id is None:
-        return convert.run(held.document)
+        line_hash = reuse.hash_of(held.owner, held.document)
+        steps = convert.run(held.document)
+        return steps if line_hash is None else _with_hashes(steps, {0: line_hash})
     analysis, lines = batches.lines_of_chunk(session, held.job_id, held.batch_id)
     hashes = reuse.hashes(held.owner, analysis, lines)
     known = [] if held.document.get("anew") else reuse.stored(session, hashes, convert.ENGINE_VERSION)

@@ -73,7 +73,7 @@ class Advance:
 class PointResult:
     """Everything found at one point of a study, as plain values; failure is the sentence why there is nothing.
 
-    input_hash is that of a line of a batch, and reused tells whether the result was stored before.
+    input_hash is that of a line by itself or in a batch, and reused tells whether the result was stored before.
     tables_json is a JSON object that holds the rows of every table, orbits_json a JSON list: the texts are what is
     stored and sent, so that the hundreds of values of a line are turned over once.
     """

@@ -132,8 +132,8 @@ async def submit(
 ) -> Response:
     """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already.
 
-    If the owner has results of the same input by this version of the engine, the job has ended with them already, and
-    `reused_from` names theirs. `Cache-Control: no-cache` computes anew.
+    If the owner has results of the same input by this version of the engine, of a job or of a line in a batch, the job
+    has ended with them already, and `reused_from` names where they come from. `Cache-Control: no-cache` computes anew.
     """
     line = document.line
     kept = document.kept()

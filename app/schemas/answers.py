@@ -126,7 +126,7 @@ class JobDocument(Answer):
     failure: Failure | None = told("Why it failed; null if it did not", example_of(Failure))
     engine_version: str | None = told("Version of the computation; null before it", "0.1.0")
     reused_from: UUID | None = told(
-        "Job of the same input whose stored results these are; null if they were computed",
+        "Job, or chunk of a batch, whose stored results of the same input these are; null if they were computed",
         "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d80",
     )
     links: list[Link] = told("Where to go on", [example_of(Link)])

@@ -15,8 +15,8 @@ class Job(Base):
     """One request, or a chunk of a batch: the document, the state, and who works on it until when.
 
     batch_id, lines, failed_lines and reused_lines are those of a chunk, and null for a job of its own. request_id and
-    trace_parent are those of the request that made it. reused_from is the job whose results it was given; that may be
-    gone since.
+    trace_parent are those of the request that made it. reused_from is the job or chunk whose results it was given; that
+    may be gone since.
     """
 
     __tablename__ = "jobs"

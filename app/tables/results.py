@@ -13,7 +13,8 @@ class PointRow(Base):
     """One point of a study, or one line of a chunk under its number; a job without a study has the one point 0.
 
     tables and orbits are JSON compressed by Zstandard (`app.results`), null for a point that failed. Lines of a batch
-    are ranked by what stands in an index with it, and found again by input_hash (`app.reuse`), null but for lines.
+    are ranked by what stands in an index with it. What is found of a line is found again by input_hash (`app.reuse`);
+    it is null for points of a study.
     """
 
     __tablename__ = "results"

@@ -1,6 +1,7 @@
 """Jobs answered from what is stored, over HTTP on either database."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 from uuid import UUID
 
@@ -12,9 +13,13 @@ from app import jobs, leases, reuse
 from app.auth import LOCAL
 from app.convert import ENGINE_VERSION
 from app.leases import Failure
+from app.reuse import Source
+from app.schemas import JobRequest
 from app.settings import Settings
 from app.tables import FailureKind
 from tests.app import service
+from tests.app.lines import changed
+from tests.app.test_costs import counted
 from tests.documents import point_result, short_request
 
 
@@ -77,11 +82,38 @@ def test_nothing_of_another_owner_or_engine_is_reused(client: httpx.Client, sess
     with sessions.begin() as session:
         held = leases.claim(session, UUID(job["id"]), "test", 30.0)
         assert held is not None
-        leases.finish(session, held, [point_result()])  # of engine 9.9.9
+        found = replace(point_result(), input_hash=reuse.hash_of(LOCAL.owner, held.document))  # by engine 9.9.9
+        leases.finish(session, held, [found])
         assert reuse.find(session, LOCAL.owner, held.document, ENGINE_VERSION) is None
         assert reuse.find(session, "another", held.document, "9.9.9") is None
-        assert reuse.find(session, LOCAL.owner, held.document, "9.9.9") == held.job_id
+        assert reuse.find(session, LOCAL.owner, held.document, "9.9.9") == Source(held.job_id)
     assert submitted(client)["status"] == "accepted"
+
+
+STUDY = {**short_request(), "study": {"axes": [{"parameter": "span.horizontal_tension_n", "values": [29e3, 31e3]}]}}
+
+
+def test_a_study_is_answered_by_the_same_study_only(client: httpx.Client, settings: Settings) -> None:
+    first = service.finished(client, settings, STUDY)
+    again = submitted(client, STUDY)
+    assert (again["status"], again["reused_from"]) == ("successful", first[-36:])
+    results = [client.get(f"{address}/results").json() for address in (first, f"/v1/jobs/{again['id']}")]
+    assert results[0]["limit_cycles"] == results[1]["limit_cycles"] != []
+    for tension in (29e3, 31e3):  # a point of a study is a line by itself, too, but it is not found as one
+        alone = {**short_request(), "line": changed("span.horizontal_tension_n", tension, short_request()["line"])}
+        assert submitted(client, alone)["status"] == "accepted"
+
+
+@pytest.mark.parametrize("document", [short_request(), STUDY], ids=["line", "study"])
+def test_a_look_for_what_is_stored_is_one_statement(
+    client: httpx.Client, settings: Settings, sessions: sessionmaker[Session], document: dict[str, Any]
+) -> None:
+    kept = JobRequest.model_validate(document).kept()
+    for found in (False, True):
+        with sessions() as session, counted() as statements:
+            assert (reuse.find(session, LOCAL.owner, kept, ENGINE_VERSION) is not None) == found
+        assert len(statements) == 1
+        service.finished(client, settings, document)
 
 
 def test_labels_are_no_part_of_the_input() -> None:

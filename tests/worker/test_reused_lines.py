@@ -1,4 +1,4 @@
-"""Lines of batches whose results are stored already, through the API and a worker's execution, on either database."""
+"""Lines of batches whose results are stored already, and jobs that find them, by the API and a worker's execution."""
 
 import json
 from collections.abc import Iterator
@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import keys
 from app.auth import LOCAL, Scope
+from app.convert import ENGINE_VERSION
 from app.examples import example
 from app.settings import Settings
 from app.tables import PointRow
@@ -99,3 +100,72 @@ def test_reused_lines_outlive_the_batch_that_they_come_from(client: httpx.Client
     assert [line["status"] for line in told(client, second)] == ["successful"] * 4
     third = finished(client, settings, LINES)
     assert third["lines"]["reused"] == 4
+
+
+def single(line: dict[str, Any], **changes: Any) -> dict[str, Any]:
+    return {"line": {k: v for k, v in line.items() if k != "reference"}, "analysis": {**SHORT, **changes}}
+
+
+def test_a_job_is_answered_by_a_line_of_a_batch(client: httpx.Client, settings: Settings) -> None:
+    batch = finished(client, settings, LINES)
+    told_of_third = told(client, batch)[2]
+    labelled = {**single(LINES[2]), "line": {**single(LINES[2])["line"], "name": "other", "tags": {"a": "b"}}}
+    job = client.post("/v1/jobs", json=labelled).json()
+    (chunk,) = client.get("/v1/jobs", params={"batch_id": batch["id"]}).json()["jobs"]
+    assert (job["status"], job["attempt"], job["reused_from"]) == ("successful", 0, chunk["id"])
+    assert client.delete(f"/v1/batches/{batch['id']}").status_code == 204  # the copy stays
+    address = f"/v1/jobs/{job['id']}"
+    result = client.get(f"{address}/results").json()
+    for name in ("static", "den_hartog", "frequencies", "critical_wind_speeds", "limit_cycles", "bifurcations"):
+        assert result[name] == told_of_third[name] != [], name
+    assert next(iter(result["limit_cycles"][0])) == "model"  # no number of a line
+    assert result["input"]["line"]["name"] == "other"
+    orbit, second = (client.get(f"{address}/plots/orbit.svg?point={point}") for point in (0, 1))
+    assert (orbit.status_code, second.status_code) == (200, 404)
+    assert client.get(f"{address}/results/limit-cycles?format=csv").text.startswith("model,")
+
+
+def test_a_line_of_a_batch_is_answered_by_a_job(client: httpx.Client, settings: Settings) -> None:
+    address = service.finished(client, settings, single(LINES[1]))
+    expected = client.get(f"{address}/results").json()
+    batch = finished(client, settings, LINES)
+    assert (batch["lines"]["successful"], batch["lines"]["reused"]) == (4, 1)
+    found = told(client, batch)[1]
+    assert (found["number"], found["reference"]) == (2, "r1")
+    assert found["limit_cycles"] == expected["limit_cycles"] != []
+    ranked = client.get(f"/v1/batches/{batch['id']}/ranking").json()["lines"]
+    assert sorted(line["number"] for line in ranked) == [1, 2, 3, 4]
+
+
+def test_what_a_job_was_given_answers_others(client: httpx.Client, settings: Settings) -> None:
+    batch = finished(client, settings, LINES)
+    job = client.post("/v1/jobs", json=single(LINES[0])).json()
+    client.delete(f"/v1/batches/{batch['id']}")
+    assert client.post("/v1/jobs", json=single(LINES[0])).json()["reused_from"] == job["id"]
+    assert finished(client, settings, LINES)["lines"]["reused"] == 1
+
+
+def test_a_job_is_answered_by_nothing_else(
+    client: httpx.Client, settings: Settings, sessions: sessionmaker[Session]
+) -> None:
+    finished(client, settings, LINES)
+    anew = {"Cache-Control": "no-cache"}
+    study = {"study": {"axes": [{"parameter": "span.horizontal_tension_n", "values": [30000.0]}]}}
+    others = [single(LINES[0], loops=[2]), single(changed("span.length_m", 99.0, TWIN)), {**single(LINES[0]), **study}]
+    assert [client.post("/v1/jobs", json=other).json()["status"] for other in others] == ["accepted"] * 3
+    assert client.post("/v1/jobs", json=single(LINES[0]), headers=anew).json()["status"] == "accepted"
+    for change in ({"engine_version": "0.0.1"}, {"engine_version": ENGINE_VERSION, "failure": "no start converged"}):
+        with sessions.begin() as session:
+            session.execute(update(PointRow).values(**change))
+        assert client.post("/v1/jobs", json=single(LINES[0])).json()["status"] == "accepted"
+
+
+def test_a_job_of_another_owner_is_told_nothing_of_lines(
+    client: httpx.Client, settings: Settings, sessions: sessionmaker[Session]
+) -> None:
+    finished(client, settings, LINES)
+    with sessions.begin() as session:
+        _, key = keys.create(session, STRANGER.owner, tuple(Scope), None, None)
+    client.headers["Authorization"] = f"Bearer {key}"
+    wait_until(lambda: client.get("/v1/jobs").status_code == 200, what="the key")
+    assert client.post("/v1/jobs", json=single(LINES[0])).json()["status"] == "accepted"
