@@ -2,7 +2,8 @@
 
 The text of a key has 192 random bits behind a visible prefix and is shown once. What is kept is its SHA-256, and keys
 are looked up by that: a slow hash would protect a guessable password, not this, and nobody can steer towards a hash in
-order to learn from the time of the answer.
+order to learn from the time of the answer. Whether a key is good, over or unknown, the same is asked of the database;
+only that a known one was used, which is written at most every ten minutes, is more.
 """
 
 import hashlib
@@ -57,10 +58,10 @@ def digest_of(text: str) -> str:
 
 def present(session: Session, digest: str) -> tuple[Caller | None, bool]:
     """Return whose key this is, None if it is unknown, revoked or expired; and whether its use should be recorded."""
+    now = database_time(session)  # asked for before it is known whether it is needed
     key = session.scalars(select(ApiKey).where(ApiKey.digest == digest)).one_or_none()
     if key is None:
         return None, False
-    now = database_time(session)
     stale = key.used_at is None or key.used_at <= now - _USE_RECORDED_EVERY
     return (_caller(key) if _is_good(key, now) else None), stale
 

@@ -1,3 +1,4 @@
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 import pytest
@@ -7,7 +8,10 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import keys
 from app.auth import OWNER_PATTERN, Scope, is_loopback
 from app.keys import NotOneKey
+from app.settings import Settings
 from app.tables import ApiKey, AuditAction, AuditEvent
+from tests.app import service
+from tests.app.test_costs import counted
 
 
 def make(sessions: sessionmaker[Session], owner: str = "acme", expires_at: datetime | None = None) -> str:
@@ -46,6 +50,63 @@ def test_a_good_key_says_whose_it_is(sessions: sessionmaker[Session]) -> None:
         assert (caller.owner, caller.scopes) == ("acme", frozenset({Scope.READ, Scope.SUBMIT}))
         assert use_to_record
         assert keys.present(session, keys.digest_of(key + "0")) == (None, False)
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """Texts of keys by what they are."""
+
+    good: str
+    revoked: str
+    expired: str
+    unknown: str = "galloping_" + "0" * 48
+    none: str = "x"
+
+    @property
+    def near(self) -> str:
+        """Return the good key but for its last character."""
+        return self.good[:-1] + ("0" if self.good[-1] != "0" else "1")
+
+    def refused(self) -> list[str]:
+        """Return all that are not good."""
+        return [self.revoked, self.expired, self.unknown, self.none, self.near]
+
+
+def kinds(sessions: sessionmaker[Session]) -> Kinds:
+    """Make keys whose use was recorded just now."""
+    made = Kinds(make(sessions), make(sessions), make(sessions, expires_at=datetime.now(UTC) - timedelta(seconds=1)))
+    with sessions.begin() as session:
+        keys.revoke(session, made.revoked)
+        for key in (made.good, made.revoked, made.expired):
+            keys.record_use(session, keys.digest_of(key))
+    return made
+
+
+def test_a_key_is_looked_up_in_the_same_way_whatever_it_is(sessions: sessionmaker[Session]) -> None:
+    made = kinds(sessions)
+    asked: dict[str, list[str]] = {}
+    for key in (made.good, *made.refused()):
+        with sessions() as session, counted() as statements:
+            caller, use_to_record = keys.present(session, keys.digest_of(key))
+        asked[key] = statements
+        assert (caller is not None, use_to_record) == (key == made.good, False)
+    assert {tuple(statements) for statements in asked.values()} == {tuple(asked[made.good])}
+    assert sum("WHERE api_keys.digest = " in statement for statement in asked[made.good]) == 1
+
+
+def test_refusals_take_the_same_way_and_say_the_same(settings: Settings, sessions: sessionmaker[Session]) -> None:
+    made = kinds(sessions)
+    with service.running(settings) as client:
+        client.get("/v1/fields", headers={"Authorization": f"Bearer {made.good}"}).raise_for_status()
+        seen = set()
+        for key in [*made.refused(), *made.refused()]:
+            with counted() as statements:
+                answer = client.get("/v1/fields", headers={"Authorization": f"Bearer {key}"})
+            told = {name: value for name, value in answer.headers.items() if name not in {"date", "x-request-id"}}
+            seen.add((answer.status_code, answer.content, str(told), tuple(statements)))
+    ((status, _, _, statements_of_all),) = seen
+    assert status == 401
+    assert statements_of_all
 
 
 def test_use_is_recorded_now_and_then(sessions: sessionmaker[Session]) -> None:
