@@ -3,7 +3,6 @@
 import contextlib
 import ssl
 import threading
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -14,12 +13,12 @@ import trustme
 
 @dataclass
 class Receiver:
-    """Where it is, what it answers, and what has come."""
+    """Where it is, what it answers, and what has come; it answers nothing while `go_on` is cleared."""
 
     url: str
     status: int = 200
     location: str | None = None
-    hang_seconds: float = 0.0
+    go_on: threading.Event = field(default_factory=threading.Event)
     got: list[tuple[dict[str, str], bytes]] = field(default_factory=list)
 
 
@@ -27,6 +26,7 @@ class Receiver:
 def receiver(directory: Path) -> Iterator[tuple[Receiver, Path]]:
     """Run a receiver, and give it with the file of its authority."""
     authority, made = trustme.CA(), Receiver("")
+    made.go_on.set()
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     authority.issue_cert("localhost").configure_cert(context)
     file = directory / "authority.pem"
@@ -36,7 +36,7 @@ def receiver(directory: Path) -> Iterator[tuple[Receiver, Path]]:
         def do_POST(self) -> None:
             body = self.rfile.read(int(self.headers["content-length"]))
             made.got.append(({name.lower(): value for name, value in self.headers.items()}, body))
-            time.sleep(made.hang_seconds)
+            made.go_on.wait(60.0)
             self.send_response(made.status)
             if made.location is not None:
                 self.send_header("location", made.location)
@@ -60,5 +60,6 @@ def receiver(directory: Path) -> Iterator[tuple[Receiver, Path]]:
         try:
             yield made, file
         finally:
+            made.go_on.set()
             server.shutdown()
             thread.join()

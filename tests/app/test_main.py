@@ -113,3 +113,11 @@ def test_the_interactive_documentation_is_there(tmp_path: Path) -> None:
     with service.running(service.sqlite_settings(tmp_path)) as client:
         assert client.get("/docs").status_code == 200
         assert client.get("/openapi.json").json()["info"]["version"] == convert.ENGINE_VERSION
+
+
+def test_every_post_takes_an_idempotency_key(document: dict[str, Any]) -> None:
+    posts = {path: methods["post"] for path, methods in document["paths"].items() if "post" in methods}
+    assert len(posts) >= 6
+    for path, operation in posts.items():
+        assert "idempotency-key" in {parameter["name"].lower() for parameter in operation["parameters"]}, path
+        assert {"409", "422"} <= operation["responses"].keys(), path

@@ -7,6 +7,7 @@ from sqlalchemy import text
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import batches, leases, ranking
+from app.auth import LOCAL
 from app.paging import BadCursor
 from app.ranking import Order, Place
 from app.results import PEAKS
@@ -91,6 +92,13 @@ def test_a_resubmitted_line_is_ranked_by_its_last_result(sessions: sessionmaker[
     with sessions.begin() as session:
         assert leases.finish(session, held, [sound, point_result(2, failure="Bad.")])
     assert pages(sessions, batch_id, AMPLITUDE, 10) == [1]
+    with sessions.begin() as session:
+        (again,) = batches.resubmit(session, LOCAL, batch_id, 10)
+    assert pages(sessions, batch_id, AMPLITUDE, 10) == [1]
+    held = claim(sessions, again)
+    with sessions.begin() as session:
+        assert leases.finish(session, held, [replace(point_result(2), peaks={"largest_vertical_m": 2.0})])
+    assert pages(sessions, batch_id, AMPLITUDE, 10) == [2, 1]
 
 
 @pytest.mark.parametrize("other", ["batch", "order", "key", "text"])

@@ -21,6 +21,7 @@ class Scripted(BaseHTTPRequestHandler):
     """Answers with the next status of the script, and notes the key and the body of every request."""
 
     script: list[int]
+    retry_after: str
     seen: list[tuple[str, bytes]]
 
     def do_POST(self) -> None:
@@ -31,7 +32,7 @@ class Scripted(BaseHTTPRequestHandler):
             self.close_connection = True
             return
         self.send_response(status)
-        self.send_header("Retry-After", "0")
+        self.send_header("Retry-After", self.retry_after)
         self.send_header("Content-Type", "application/json")
         self.send_header("Content-Length", str(len(ACCEPTED)))
         self.end_headers()
@@ -42,9 +43,9 @@ class Scripted(BaseHTTPRequestHandler):
 
 
 @contextlib.contextmanager
-def scripted(*script: int) -> Iterator[tuple[str, list[tuple[str, bytes]]]]:
+def scripted(*script: int, retry_after: str = "0") -> Iterator[tuple[str, list[tuple[str, bytes]]]]:
     seen: list[tuple[str, bytes]] = []
-    handler = type("Handler", (Scripted,), {"script": list(script), "seen": seen})
+    handler = type("Handler", (Scripted,), {"script": list(script), "retry_after": retry_after, "seen": seen})
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         thread = threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True)
         thread.start()
@@ -90,6 +91,19 @@ def test_patience_has_an_end() -> None:
         with pytest.raises(ServiceError, match="503"):
             client.submit(example("c11-twin"))
         assert len(seen) > 1
+
+
+@pytest.mark.parametrize("status", [429, 502, 503, 504, 409])
+def test_another_try_waits_as_long_as_is_asked_for(monkeypatch: pytest.MonkeyPatch, status: int) -> None:
+    pauses: list[float] = []
+    monkeypatch.setattr("app.client.connection.time.sleep", pauses.append)
+    with scripted(status, 202, retry_after="7") as (address, _), Client(address) as client:
+        assert client.submit(example("c11-twin")).id
+    assert pauses == [7.0]
+    with scripted(status, 202, retry_after="7") as (address, seen), Client(address, patience_seconds=3.0) as client:
+        client.submit(example("c11-twin"))
+        assert len(seen) == 2
+    assert 0.0 < pauses[1] <= 3.0  # the last try comes at the end of patience
 
 
 def test_an_address_that_is_none_is_told_at_once() -> None:
