@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from sqlalchemy import Engine
 from starlette.types import ASGIApp
 
-from app import errors, metrics
+from app import errors, metrics, telemetry
 from app.access import Access
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
@@ -83,6 +83,7 @@ def create_app(settings: Settings | None = None) -> Service:
         app.state.sender.close()
         database.dispose()
         app.state.prober.dispose()
+        telemetry.finish()
 
     app = Service(
         title="Galloping of iced conductors",

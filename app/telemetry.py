@@ -1,5 +1,6 @@
 """Traces by OpenTelemetry, for those who ask for them: a span for each request, and under it one for its job."""
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -7,6 +8,8 @@ from opentelemetry import propagate, trace
 
 from app.correlation import Ids
 from app.settings import Settings
+
+_FLUSH_SECONDS = 2.0
 
 
 def configure(settings: Settings, process: str) -> None:
@@ -28,6 +31,15 @@ def configure(settings: Settings, process: str) -> None:
     provider = TracerProvider(resource=Resource.create({"service.name": f"galloping-{process}"}))
     provider.add_span_processor(BatchSpanProcessor(OTLPSpanExporter(), schedule_delay_millis=1000))
     trace.set_tracer_provider(provider)
+
+
+def finish(**_: object) -> None:
+    """Send the spans that wait still, as a process ends; a collector that is away is waited for shortly."""
+    flush = getattr(trace.get_tracer_provider(), "force_flush", None)
+    if flush is not None:  # the library's own time for this is not kept to
+        thread = threading.Thread(target=flush, name="last-spans", daemon=True)
+        thread.start()
+        thread.join(_FLUSH_SECONDS)
 
 
 @contextmanager

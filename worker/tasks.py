@@ -5,7 +5,7 @@ from functools import cache
 from uuid import UUID
 
 from celery import Celery
-from celery.signals import setup_logging
+from celery.signals import setup_logging, worker_process_shutdown
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import logs, telemetry
@@ -69,6 +69,7 @@ def _run_pool() -> None:
     logs.configure(settings)
     telemetry.configure(settings, "worker")
     setup_logging.connect(_leave_logs)
+    worker_process_shutdown.connect(telemetry.finish)
     application = worker_application(settings, os.environ[OWNER])
     quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat", "--hostname=galloping@%h"]
     queues = f"--queues={QUEUE_NAME},{CHUNK_QUEUE_NAME}"

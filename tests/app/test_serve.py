@@ -1,7 +1,13 @@
-"""What `tests/e2e/test_serve.py` and `tests/migrations` leave of app.serve: a worker that dies, streams at a stop."""
+"""What `tests/e2e/test_serve.py` and `tests/migrations` leave of app.serve: a worker that dies, requests at a stop."""
 
+import contextlib
+import json
 import os
 import signal
+import sqlite3
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
@@ -49,3 +55,39 @@ def test_streams_end_at_a_stop(tmp_path: Path, api_processes: int) -> None:
         assert process.wait(20.0) in {0, -signal.SIGTERM}
         assert seen == ["event: accepted"] * 2
         assert not any(line.startswith("event: ") for line in rest)
+
+
+@pytest.mark.parametrize("api_processes", [1, 2])
+def test_what_comes_in_at_a_stop_is_taken_in(tmp_path: Path, api_processes: int) -> None:
+    settings = Settings(data_dir=tmp_path, api_processes=api_processes, shutdown_seconds=120.0)
+    migrate(settings)
+    port, go_on = free_port(), threading.Event()
+    line = json.dumps(short_request()["line"]).encode() + b"\n"
+    headers = {"Content-Type": "application/x-ndjson", "Idempotency-Key": "order-17"}
+
+    def slowly() -> Iterator[bytes]:
+        yield json.dumps({"analysis": SHORT}).encode() + b"\n" + line
+        go_on.wait(60.0)
+        yield line
+
+    def is_held() -> bool:
+        with contextlib.closing(sqlite3.connect(tmp_path / "galloping.sqlite3")) as database:
+            return bool(database.execute("SELECT count(*) FROM idempotency_keys").fetchone() == (1,))
+
+    def are_stopping() -> bool:
+        return (tmp_path / "process.log").read_text().count('"Shutting down"') == api_processes
+
+    with (
+        running(settings, "-m", "app.serve", "127.0.0.1", str(port)) as process,
+        httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0) as client,
+        ThreadPoolExecutor(1) as pool,
+    ):
+        wait_until(lambda: is_ready(client), 60.0, "readiness")
+        posted = pool.submit(client.post, "/v1/batches", content=slowly(), headers=headers)
+        wait_until(is_held, what="the key being held")
+        process.terminate()
+        wait_until(are_stopping, what="the stop")
+        go_on.set()
+        answer = posted.result()
+        assert process.wait(20.0) in {0, -signal.SIGTERM}
+    assert (answer.status_code, answer.json()["lines"]["accepted"]) == (202, 2)
