@@ -15,7 +15,7 @@ import orjson
 from sqlalchemy import ColumnElement, Table, insert, literal, select
 from sqlalchemy.orm import Session
 
-from app import jobs
+from app import jobs, tallies
 from app.convert import NumberedLine, PointResult
 from app.results import PEAKS, STATIC, unpacked
 from app.tables import Job, JobEventKind, JobStatus, PointRow
@@ -74,6 +74,7 @@ def answer(session: Session, job: Job, source: Source, engine_version: str) -> N
     columns = {**others, **own}
     session.execute(insert(table).from_select(list(columns), select(*columns.values()).where(*copied)))
     jobs.record(session, job.id, JobEventKind.SUCCESSFUL, detail=said)
+    tallies.add_end(session, job.status, chunk=False)
 
 
 def hash_of(owner: str, document: Mapping[str, Any]) -> str | None:

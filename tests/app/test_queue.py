@@ -8,7 +8,7 @@ import pytest
 import redis
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.queue import QUEUE_NAME, TASK_NAME, BrokerUnavailable, dispatch, open_queue
+from app.queue import QUEUE_NAME, TASK_NAME, BrokerUnavailable, celery_application, dispatch, open_queue
 from app.settings import Settings
 from tests.documents import add_job, look
 from tests.servers import free_port
@@ -81,3 +81,10 @@ def test_database_that_fails_after_sending_leaves_the_job_to_the_sweeper(setting
     nowhere = settings.model_copy(update={"database_url": f"sqlite:///{tmp_path}/without-tables.sqlite3"})
     job_id = uuid4()
     assert not dispatch(nowhere, job_id)
+
+
+def test_a_message_comes_back_only_after_its_process_must_be_dead(settings: Settings, redis_address: str) -> None:
+    for hard_limit in (60.0, 7200.0):
+        limits = {"hard_time_limit_seconds": hard_limit, "soft_time_limit_seconds": 30.0}
+        options = celery_application(on_broker(settings.model_copy(update=limits), redis_address)).conf
+        assert options.broker_transport_options["visibility_timeout"] > hard_limit

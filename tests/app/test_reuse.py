@@ -9,7 +9,7 @@ import httpx
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import jobs, leases, reuse
+from app import jobs, leases, reuse, tallies, webhooks
 from app.auth import LOCAL
 from app.convert import ENGINE_VERSION
 from app.leases import Failure
@@ -56,6 +56,22 @@ def test_the_same_line_is_answered_from_what_is_stored(client: httpx.Client, set
     assert client.get(f"{address}/results/limit-cycles").json()["limit_cycles"]
     third = submitted(client)
     assert third["reused_from"] == again["id"]
+
+
+def test_an_end_from_what_is_stored_is_an_end_like_others(settings: Settings, sessions: sessionmaker[Session]) -> None:
+    with service.running(settings.model_copy(update={"webhook_private_networks": True})) as client:
+        service.finished(client, settings)
+        hook = {"webhook_url": "https://127.0.0.1/hook"}
+        address = f"/v1/jobs/{submitted(client, {**short_request(), **hook})['id']}"
+        with sessions.begin() as session:
+            assert webhooks.enlist(session) == 1
+            assert tallies.totals(session)["jobs", "successful"][0] == 2
+        (told,) = client.get(f"{address}/deliveries").json()["deliveries"]
+        assert told["state"] == "pending"
+        events = client.get(f"{address}/events").text.splitlines()
+        assert [line for line in events if line.startswith("event: ")] == ["event: accepted", "event: successful"]
+        waited = client.get(address, headers={"Prefer": "wait=20"}).json()
+        assert waited["status"] == "successful"
 
 
 def test_another_question_is_computed(client: httpx.Client, settings: Settings) -> None:
