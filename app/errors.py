@@ -161,6 +161,10 @@ def _require_json(request: Request) -> None:
     if media_type != "application/json":
         said = f"The body is {media_type[:100]!r}, not application/json."
         raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Post": "application/json"})
+    encoding = request.headers.get("content-encoding", "identity").strip().lower()
+    if encoding != "identity":
+        said = f"The content encoding {encoding[:100]!r} is taken for batches only."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Encoding": "identity"})
 
 
 def invalid_document(faults: Sequence[Fault]) -> ProblemError:

@@ -213,11 +213,11 @@ def test_a_bomb_within_a_bomb_is_not_opened(client: httpx.Client) -> None:
     refused(ndjson(client, b"", **{"Content-Encoding": "br"}), 415)
 
 
-@pytest.mark.parametrize("encoding", ["gzip", "identity"])
-def test_a_compressed_job_is_no_document(client: httpx.Client, encoding: str) -> None:
+@pytest.mark.parametrize(("encoding", "status"), [("gzip", 415), ("GZIP, gzip", 415), ("identity", 422)])
+def test_a_compressed_job_is_no_document(client: httpx.Client, encoding: str, status: int) -> None:
     body = gzip.compress(json.dumps(short_request()).encode())
     headers = {"Content-Type": "application/json", "Content-Encoding": encoding}
-    refused(client.post("/v1/jobs", content=body, headers=headers), 422)
+    refused(client.post("/v1/jobs", content=body, headers=headers), status)
 
 
 BAD_TEXTS = {
