@@ -32,9 +32,18 @@ def test_a_key_is_made_used_listed_and_revoked(
     assert key not in json.dumps(listed)
     assert galloping("keys", "revoke", listed["prefix"], *place).returncode == 0
     assert "revoked" in galloping("keys", "list", *place).stdout
+    assert galloping("keys", "create", "--owner", "b", "--scope", "read", *place).returncode == 0
+    (narrow,) = json.loads(galloping("keys", "list", "--owner", "b", "--json", *place).stdout)["keys"]
+    assert (narrow["owner"], narrow["scopes"], narrow["expires_at"]) == ("b", ["read"], None)
+    assert "--scope" in refused("keys", "create", "--owner", "b", "--scope", "all", *place)
     events = json.loads(galloping("audit", "--json", *place).stdout)["events"]
-    assert [event["action"] for event in events] == ["key_revoked", "job_submitted", "key_created"]
-    assert events[1]["key_id"] == listed["id"]
+    assert [event["action"] for event in events] == [
+        "key_created",
+        "key_revoked",
+        "job_submitted",
+        "key_created",
+    ]
+    assert events[2]["key_id"] == listed["id"]
 
 
 def test_what_cannot_be_done_with_keys_ends_with_2_and_a_sentence(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from uuid import UUID
 
 import httpx
 import pytest
+from sqlalchemy import event
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import jobs, leases, reuse, tallies, webhooks
@@ -135,3 +136,27 @@ def test_a_look_for_what_is_stored_is_one_statement(
 def test_labels_are_no_part_of_the_input() -> None:
     assert jobs.input_hash(labelled(name="a")) == jobs.input_hash(labelled(name="b", tags={"x": "y"}))
     assert jobs.input_hash(labelled(conductor={})) != jobs.input_hash(labelled())
+
+
+@pytest.mark.parametrize(("document", "index"), [(short_request(), "ix_results_input_hash"), (STUDY, "ix_jobs_owner_")])
+def test_a_look_for_what_is_stored_goes_along_an_index(
+    sessions: sessionmaker[Session], document: dict[str, Any], index: str
+) -> None:
+    asked: list[tuple[str, Any]] = []
+
+    def note(_: Any, __: Any, statement: str, parameters: Any, *___: Any) -> None:
+        asked.append((statement, parameters))
+
+    with sessions() as session:
+        connection = session.connection()
+        event.listen(connection, "before_cursor_execute", note)
+        reuse.find(session, LOCAL.owner, JobRequest.model_validate(document).kept(), ENGINE_VERSION)
+        ((statement, parameters),) = asked
+        if connection.dialect.name == "sqlite":
+            explain = "EXPLAIN QUERY PLAN"
+        else:
+            explain = "EXPLAIN"
+            connection.exec_driver_sql("SET LOCAL enable_seqscan = off")  # of a table without rows
+        plan = str(connection.exec_driver_sql(f"{explain} {statement}", parameters).all())
+    assert index in plan
+    assert "SCAN" not in plan.upper().replace("INDEX SCAN", "").replace("BITMAP HEAP SCAN", "")

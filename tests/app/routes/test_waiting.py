@@ -132,6 +132,19 @@ def test_progress_is_told_between(client: httpx.Client, sessions: sessionmaker[S
     assert event["event"] == "successful"
 
 
+def test_a_comment_shows_that_an_idle_connection_lives(
+    client: httpx.Client, sessions: sessionmaker[Session], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fastapi.routing._PING_INTERVAL", 0.1)  # else 15 s
+    job = service.submit(client)
+    with client.stream("GET", f"/v1/jobs/{job['id']}/events") as answer:
+        following = events(answer.iter_lines())
+        next(event for event in following if "comment" in event)
+        finish(sessions, claim(sessions, job["id"]))
+        *_, end = following
+    assert end["event"] == "successful"
+
+
 def test_who_comes_back_gets_what_was_missed(client: httpx.Client, sessions: sessionmaker[Session]) -> None:
     job = service.submit(client)
     address = f"/v1/jobs/{job['id']}"
