@@ -9,9 +9,9 @@ from app.convert import STACK
 from benchmarks.engine_speed import analysed
 from benchmarks.lines import random_line
 from benchmarks.measure import median_seconds
-from engine.spec import Analysis, Line, LoopCompetition, Model, StaticTwist
+from engine.spec import Analysis, Check, Line, LoopCompetition, Model, StaticTwist
 
-FEW, MANY = 2, 22  # wind speeds
+FEW, MANY = 3, 23  # wind speeds; direct integration starts at three of them
 HYBRID = Analysis(loops=(1, 2), models=(Model.HYBRID,))
 FREQUENCIES = replace(HYBRID, models=(Model.HYBRID, Model.FINITE_ELEMENT), finite_element_loops=())
 FINITE_ELEMENT = replace(FREQUENCIES, finite_element_loops=(1, 2, 3))
@@ -36,15 +36,21 @@ def costs() -> Iterator[tuple[str, float]]:
         "loop competition, for each number of loops and wind speed",
         ((_fitted(lines[: STACK // 8], competing)[1] - per_wind) / loops),
     )
+    checked, checked_per_wind = _fitted(lines[:4], replace(HYBRID, check=Check.DIRECT), 1)
+    yield "direct integration, for each number of loops", (checked - fixed) / loops
+    yield "and for each wind speed  ", (checked_per_wind - per_wind) / loops
+    all_checked, all_checked_per_wind = _fitted(lines[:1], replace(FINITE_ELEMENT, check=Check.DIRECT), 1)
+    yield "direct integration of the finite element model", all_checked - checked - whole
+    yield "and for each wind speed   ", all_checked_per_wind - checked_per_wind - whole_per_wind
 
 
-def _fitted(lines: Sequence[Line], analysis: Analysis) -> tuple[float, float]:
+def _fitted(lines: Sequence[Line], analysis: Analysis, runs: int = 3) -> tuple[float, float]:
     """Return what a line costs without wind speeds, and for each of them [s]."""
     seconds = []
     for count in (FEW, MANY):
         winds = tuple(np.linspace(4.0, 12.0, count).tolist())
         asked = replace(analysis, wind_speeds=winds)
-        seconds.append(median_seconds(lambda asked=asked: analysed(lines, asked), 3) / len(lines))  # type: ignore[misc]
+        seconds.append(median_seconds(lambda asked=asked: analysed(lines, asked), runs) / len(lines))  # type: ignore[misc]
     per_wind = (seconds[1] - seconds[0]) / (MANY - FEW)
     return seconds[0] - FEW * per_wind, per_wind
 

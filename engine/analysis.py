@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import FloatArray, merged
+from engine.arrays import FloatArray, IntArray, merged
 from engine.bifurcations import bifurcations
 from engine.competition import loop_competitions
 from engine.confidence import confidence
 from engine.cycles import Cycles, explicit_starts, find_cycles
+from engine.direct_starts import direct_starts
 from engine.effects import device_effects
 from engine.family import Starts
 from engine.fem import FIELDS
@@ -31,7 +32,7 @@ from engine.report import assembled
 from engine.result import LoopCompetitionRow, Progress, Result
 from engine.rows import Found, FrequencyTable, coupled_squares
 from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, check_compatible
-from engine.stability import critical_wind_speeds
+from engine.stability import Crossings, critical_wind_speeds
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +42,17 @@ class _Prepared:
     made: Discretization
     shapes: DirectionalShapes
     modes: FullModes | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Reduced:
+    """A stack of models before its motions are sought; the fields are those of Found."""
+
+    name: Model
+    model: ReducedModel
+    line: IntArray
+    loops: IntArray
+    crossings: Crossings
 
 
 def analyse(line: Line, analysis: Analysis) -> Generator[Progress, None, Result]:
@@ -133,21 +145,8 @@ def _hybrid(prepared: _Prepared, analysis: Analysis) -> Found:
     winds = _winds(analysis)
     starts = explicit_starts(published, winds, analysis.harmonics)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
-    cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
-    turning = bifurcations(cycles.traces, cycles.followed, model, crossings)
-    tori = quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic)
-    return Found(
-        name=Model.HYBRID,
-        model=model,
-        line=line,
-        loops=np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp),
-        crossings=crossings,
-        cycles=cycles,
-        confidence=confidence(model, cycles, analysis.check),
-        bifurcations=turning,
-        quasi_periodic=tori if analysis.check is Check.NONE else integrated(model, tori),
-        winds=winds,
-    )
+    directions = np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp)
+    return _found(_Reduced(Model.HYBRID, model, line, directions, crossings), winds, starts, analysis)
 
 
 def _finite_element(
@@ -158,21 +157,28 @@ def _finite_element(
     model = finite_element_model(prepared.made, modes, prepared.shapes, analysis)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
     yield Progress(0.5, "limit cycles of the finite element model")
-    winds = hybrid.winds
     starts = _lifted(prepared.made, modes, hybrid, model, analysis.harmonics)
-    cycles = find_cycles(model, crossings, winds, starts, analysis.harmonics)
-    turning = bifurcations(cycles.traces, cycles.followed, model, crossings)
+    line, loops = np.arange(len(prepared.made.lines)), np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2])
+    return _found(_Reduced(Model.FINITE_ELEMENT, model, line, loops, crossings), hybrid.winds, starts, analysis)
+
+
+def _found(reduced: _Reduced, winds: FloatArray, starts: Starts, analysis: Analysis) -> Found:
+    """Find all motions of a stack of models at the wind speeds, and hold them against direct integration if asked."""
+    model, direct = reduced.model, analysis.check is Check.DIRECT
+    arrived = direct_starts(model, winds, analysis.harmonics) if direct else None
+    cycles = find_cycles(model, reduced.crossings, winds, starts, analysis.harmonics, arrived)
+    turning = bifurcations(cycles.traces, cycles.followed, model, reduced.crossings)
     tori = quasi_periodic_motions(model, cycles, turning, winds, analysis.quasi_periodic)
     return Found(
-        name=Model.FINITE_ELEMENT,
+        name=reduced.name,
         model=model,
-        line=np.arange(len(prepared.made.lines)),
-        loops=np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
-        crossings=crossings,
+        line=reduced.line,
+        loops=reduced.loops,
+        crossings=reduced.crossings,
         cycles=cycles,
         confidence=confidence(model, cycles, analysis.check),
         bifurcations=turning,
-        quasi_periodic=tori if analysis.check is Check.NONE else integrated(model, tori),
+        quasi_periodic=integrated(model, tori) if direct else tori,
         winds=winds,
     )
 

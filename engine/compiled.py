@@ -10,7 +10,7 @@ from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution, solution
 
 try:
-    from engine._kernels import even_parts, linearization, monodromies, newton
+    from engine._kernels import even_parts, flows, linearization, monodromies, newton
 
     AVAILABLE = True
 except ImportError:
@@ -170,6 +170,32 @@ def even_part(
     places = (polynomials, statics, np.broadcast_to(member, angle.shape), angle)
     even_parts((polynomials.shape[0], angle.size), _contiguous(*places), (even, square))
     return even, square
+
+
+def integrated_block(
+    equations: tuple[FloatArray, ...], state: FloatArray, window: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Integrate the equations of motion for as many steps as the window has entries, as `engine.settling` would.
+
+    Parameters
+    ----------
+    equations : tuple of arrays
+        The fields of `engine.settling.Flow`.
+    state : (2 m, starts)
+    window : (steps,)
+
+    Returns
+    -------
+    (2 m, starts), (2 m, starts), (starts,)
+        The states at the end, the sums of their squares times the window, and the largest angle of attack [rad].
+    """
+    _, bend, forms, *_ = equations
+    points, m, _, starts = bend.shape
+    moved = np.array(state, order="C")
+    square, largest = np.empty(moved.shape), np.empty(starts)
+    size = (starts, window.size, m, points, forms.shape[1])
+    flows(size, _contiguous(*equations, window), (moved, square, largest))
+    return moved, square, np.sqrt(largest)
 
 
 def _shape(model: ReducedModel) -> tuple[int, int, int, int]:

@@ -62,7 +62,12 @@ def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics:
 
 
 def find_cycles(
-    model: ReducedModel, crossings: Crossings, wind_speeds: FloatArray, starts: Starts, harmonics: int
+    model: ReducedModel,
+    crossings: Crossings,
+    wind_speeds: FloatArray,
+    starts: Starts,
+    harmonics: int,
+    integrated: Starts | None = None,
 ) -> Cycles:
     """Find every cycle at the wind speeds that lies on a branch from a Hopf point or is reached from a start.
 
@@ -78,6 +83,8 @@ def find_cycles(
         In rising order [m/s].
     starts : Starts
     harmonics : int
+    integrated : Starts, optional
+        Where direct integration arrived; all of them are tried.
 
     Returns
     -------
@@ -94,6 +101,8 @@ def find_cycles(
     family.add(
         *solved_starts(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))), "energy_balance"
     )
+    if integrated is not None:
+        family.add(*solved_starts(model, integrated), "direct_integration")
     while (apart := family.apart()).size:
         member, _ = family.places(apart)
         trace = traced_from_cycles(model, member, family.orbits_of(apart), wind_speeds)

@@ -6,7 +6,9 @@ from typing import Literal
 from engine.outcome import Outcome, Stability
 from engine.spec import Model, Objective
 
-FoundBy = Literal["hopf_branch", "explicit", "energy_balance", "branch", "torus_point", "unstable_cycle"]
+FoundBy = Literal[
+    "hopf_branch", "explicit", "energy_balance", "direct_integration", "branch", "torus_point", "unstable_cycle"
+]
 Direction = Literal["vertical", "horizontal", "torsional"]
 
 

@@ -8,7 +8,9 @@ from app.schemas.fields import Answer, told
 
 Model = Literal["hybrid", "finite_element"]
 Outcome = Literal["converged", "no_convergence", "statically_unstable", "outside_fit", "limit_reached"]
-FoundBy = Literal["hopf_branch", "explicit", "energy_balance", "branch", "torus_point", "unstable_cycle"]
+FoundBy = Literal[
+    "hopf_branch", "explicit", "energy_balance", "direct_integration", "branch", "torus_point", "unstable_cycle"
+]
 Number = float | None
 
 
@@ -75,8 +77,8 @@ class LimitCycle(Row):
     horizontal_share: Number = told("Horizontal share of the mean kinetic energy; null at rest [1]", 0.0034)
     torsional_share: Number = told("Torsional share of the mean kinetic energy; null at rest [1]", 0.0039)
     found_by: FoundBy | None = told(
-        "How it was found: on the branch of a Hopf point, from the explicit formula or the balance of energy, on the "
-        "branch of such a one; if quasi-periodic from a torus point or beside an unstable cycle; null at rest",
+        "How it was found: on the branch of a Hopf point, from the explicit formula, the balance of energy or direct "
+        "integration, on the branch of such a one; if quasi-periodic from a torus point or beside an unstable cycle; null at rest",
         "hopf_branch",
     )
     harmonics: int | None = told(

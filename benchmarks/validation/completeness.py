@@ -11,13 +11,14 @@ from scipy.integrate import solve_ivp
 from benchmarks.engine_speed import analysed
 from benchmarks.lines import random_line
 from benchmarks.models import discretized, hybrid_models, plain_rate
-from benchmarks.settling import STEPS, Runs, advanced, flow
-from benchmarks.starts import LEVELS, LONGEST, LOOPS, MIXES, WINDS, Case, Ends, ends, spread
+from benchmarks.starts import LEVELS, LONGEST, LOOPS, MIXES, WINDS, Case, Ends, ends
 from benchmarks.validation.common import table
 from engine.arrays import FloatArray
+from engine.direct_starts import spread_starts
 from engine.hybrid import take
 from engine.outcome import Outcome
 from engine.result import LimitCycleRow, Orbit, Result
+from engine.settling import STEPS, Runs, advanced, flow
 from engine.spec import Analysis, Line, Model
 
 SEED, LINES = 20261122, 48
@@ -170,7 +171,7 @@ def integration_error(lines: Sequence[Line], seed: int) -> float:
     model, _ = hybrid_models(discretized(lines), LOOPS)
     member = np.flatnonzero(~model.statically_unstable)
     wind = np.full(member.size, WINDS[-1])
-    start = spread(model, member, wind, np.random.default_rng(seed))[:, -1 - MIXES]
+    start = spread_starts(model, member, wind, LEVELS, np.random.default_rng(seed))[:, -1 - MIXES]
     equations = flow(model, member, wind)
     state = start.T
     for _ in range(COMPARED * STEPS):
@@ -194,7 +195,7 @@ def section() -> Iterator[str]:
         f"{len(found.cases)} cases of the hybrid model. Each is integrated from {found.starts // len(found.cases)} "
         f"starts, vertical, horizontal, torsional and mixed, of random phases and four sizes, up to {LEVELS[-1]:g} rad "
         f"of torsion or turn of the wind, for at most {LONGEST} blocks of fifty of the shortest periods. The method "
-        f"(benchmarks/settling.py) is within {integration_error(lines[:COMPARED_LINES], SEED):.0e} of DOP853 after "
+        f"(engine/settling.py) is within {integration_error(lines[:COMPARED_LINES], SEED):.0e} of DOP853 after "
         f"{COMPARED} periods from starts of {LEVELS[-2]:g} rad. Two motions are one if their sizes by direction and "
         f"those of their velocities differ by less than {SAME:.0%}; the largest difference of an attractor from the "
         f"motion reported for it is {_worst(found):.2%}.\n"

@@ -89,6 +89,20 @@ typedef struct {
 /* Integrate the linearized equations over one period; return 0 if memory is short. Theory section 7.3. */
 int integrate_monodromies(const Model *stack, const Monodromies *wanted);
 
+/* Starts whose motions are integrated directly, laid out as engine.settling.Flow with the starts on the last axis:
+ * half (2 m, 2 m), bend (points, m, monomials of degree 2 and 3), forms (points, local, 2 m), angle (2 m) and step of each.
+ * One step is taken for every entry of window (steps), which weighs the squares that are summed up. state (2 m) is moved
+ * on; square (2 m) and largest, the largest square of the angle of attack, are of the states after each step. */
+typedef struct {
+    ptrdiff_t starts, steps;
+    int m, points, local;
+    const double *half, *bend, *forms, *step, *angle, *window;
+    double *state, *square, *largest;
+} Flows;
+
+/* Integrate all starts; return 0 if memory is short. */
+int integrate_flows(const Flows *flows);
+
 /* Where the explicit first harmonic is wanted: polynomials (members, 4, 7) and statics (members, 3) as in
  * engine.describing; member, angle (count); even, square (count, 2). */
 typedef struct {

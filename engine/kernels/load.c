@@ -1,5 +1,5 @@
 /* The load: cubic polynomials in linear forms of (q, q'/U), summed over points. engine/aerodynamics.py, theory section 5. */
-#include "kernels.h"
+#include "monomials.h"
 
 #include <string.h>
 
@@ -19,24 +19,6 @@ Model model_of(const Model *stack, ptrdiff_t member)
 size_t load_scratch(const Model *model)
 {
     return (size_t)model->local + 1 + (size_t)model->monomials;
-}
-
-/* Evaluate 1 and every monomial, x_i, then x_i x_j (i <= j), then x_i x_j x_k (i <= j <= k). */
-static inline void powers(int variables, const Lanes *x, Lanes *terms)
-{
-    Lanes *next = terms;
-    *next++ = (Lanes){0} + 1.0;
-    for (int i = 0; i < variables; i++)
-        *next++ = x[i];
-    for (int i = 0; i < variables; i++)
-        for (int j = i; j < variables; j++)
-            *next++ = x[i] * x[j];
-    for (int i = 0; i < variables; i++)
-        for (int j = i; j < variables; j++) {
-            const Lanes product = x[i] * x[j];
-            for (int k = j; k < variables; k++)
-                *next++ = product * x[k];
-        }
 }
 
 static inline Lanes polynomial(int count, const double *coefficients, const Lanes *terms)

@@ -182,11 +182,35 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, 1);
 }
 
+static PyObject *flows(PyObject *Py_UNUSED(self), PyObject *arguments)
+{
+    Buffers buffers = {.count = 0};
+    PyObject *half, *bend, *forms, *step, *angle, *window, *state, *square, *largest;
+    Flows wanted;
+    int done = 1;
+    if (!PyArg_ParseTuple(arguments, "(nniii)(OOOOOO)(OOO)", &wanted.starts, &wanted.steps, &wanted.m, &wanted.points,
+                          &wanted.local, &half, &bend, &forms, &step, &angle, &window, &state, &square, &largest))
+        return NULL;
+    const Py_ssize_t starts = wanted.starts, m = wanted.m, points = wanted.points, local = wanted.local;
+    const Py_ssize_t terms = local * (local + 1) / 2 + local * (local + 1) * (local + 2) / 6;
+    if ((wanted.half = REALS(half, 4 * m * m * starts)) && (wanted.bend = REALS(bend, points * m * terms * starts))
+        && (wanted.forms = REALS(forms, points * local * 2 * m * starts)) && (wanted.step = REALS(step, starts))
+        && (wanted.angle = REALS(angle, 2 * m * starts)) && (wanted.window = REALS(window, wanted.steps))
+        && (wanted.state = RESULT(state, 2 * m * starts)) && (wanted.square = RESULT(square, 2 * m * starts))
+        && (wanted.largest = RESULT(largest, starts))) {
+        Py_BEGIN_ALLOW_THREADS
+        done = integrate_flows(&wanted);
+        Py_END_ALLOW_THREADS
+    }
+    return finished(&buffers, done);
+}
+
 static PyMethodDef methods[] = {
     {"newton", newton, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
     {"linearization", linearization, METH_VARARGS, "Evaluate the harmonic balance of a stack of cycles with its slopes."},
     {"monodromies", monodromies, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
     {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},
+    {"flows", flows, METH_VARARGS, "Integrate the equations of motion of a stack of starts directly."},
     {NULL, NULL, 0, NULL},
 };
 

@@ -11,10 +11,13 @@ from engine import compiled
 from engine.arrays import FloatArray, IntArray
 from engine.cycles import Cycles, energy_starts, find_cycles
 from engine.describing import explicit_cycles
+from engine.direct_starts import spread_starts
 from engine.floquet import floquet, monodromy
 from engine.harmonic import Orbits, balance, linearized
 from engine.hybrid import ReducedModel, take
 from engine.newton import Options, Solution
+from engine.outcome import Outcome
+from engine.settling import Runs, settled
 from engine.spec import Analysis, Closure
 from engine.stability import critical_wind_speeds
 from tests.builders import hybrid, source_line
@@ -195,3 +198,32 @@ def test_the_engine_starts_without_them() -> None:
     )
     run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert int(run.stdout) == 3
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_block_of_direct_integration_is_that_of_the_numpy_form(name: str, both: pytest.MonkeyPatch) -> None:
+    model = perturbed(MODELS[name]())
+    member, wind = np.arange(COPIES) % 4, np.linspace(2.0, 4.0, COPIES)
+    start = spread_starts(model, member, wind, (0.05,), np.random.default_rng(1))[:, -1]
+
+    def settled_after_one_block() -> Runs:
+        return settled(model, member, wind, start, 1)
+
+    found = settled_after_one_block()
+    both.setattr(compiled, "AVAILABLE", False)
+    expected = settled_after_one_block()
+    assert (expected.blocks == 1).all()
+    for name_of_part in ("state", "size"):
+        mine, theirs = getattr(found, name_of_part), getattr(expected, name_of_part)
+        assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-9 * np.abs(theirs).max())
+    assert found.outcome.tolist() == expected.outcome.tolist()
+
+
+def test_direct_integration_that_diverges_is_noticed_by_both_forms(both: pytest.MonkeyPatch) -> None:
+    model, wind = hybrid(source_line(1), 1), np.array([9.0, 9.0])
+    member = np.zeros(2, dtype=np.intp)
+    start = np.array([[0.01], [80.0]]) * spread_starts(model, member, wind, (1.0,), np.random.default_rng(1))[:, -1]
+    for available in (True, False):
+        both.setattr(compiled, "AVAILABLE", available)
+        runs = settled(model, member, wind, start, 2)
+        assert runs.outcome.tolist() == [Outcome.LIMIT_REACHED, Outcome.NO_CONVERGENCE]

@@ -1,23 +1,23 @@
-"""Direct integration of hybrid models from many starts side by side, until every motion has settled.
+"""Direct integration of reduced models from many starts side by side, until every motion has settled.
 
 The linear part of the equations, that of the load included, is taken exactly by its matrix exponential; what is
 quadratic and cubic goes through the Runge-Kutta method of fourth order in the co-ordinates that turn with it (Lawson
 1967). A step has to resolve the bend of the load alone, so that weak damping is not drowned in errors of the method.
 """
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import expm
 
-from engine import polynomial
+from engine import compiled
 from engine.aerodynamics import force_gradient
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
 from engine.hybrid import ReducedModel
 from engine.outcome import Outcome
 
 STEPS = 24  # in the shortest natural period
-BLOCK = 1200  # steps between two looks at the motion
+BLOCK_PERIODS = 50  # shortest natural ones between two looks at the motion
 CHANGE = 2e-5  # of the motion's size in a block, below which it counts as settled
 REST = 1e-4  # of the size at the start, below which a motion counts as at rest
 FARTHEST = np.pi  # rad of angle of attack, beyond which a motion has diverged
@@ -45,49 +45,55 @@ class Runs:
 class Flow:
     """The equations of a stack of starts, with the starts on the last axis.
 
-    half: (2 m, 2 m, starts), the exponential of half a step of the linear part; bend: (m, monomials of degree 2 and 3,
-    starts), the rest of q''; local: components of (q, q') that the load depends on, each times scale (locals, starts);
-    step: (starts,) [s]; angle: (2 m, starts), the largest coefficients of the angle of attack along the span.
+    half: (2 m, 2 m, starts), the exponential of half a step of the linear part; bend: (points, m, monomials of degree 2
+    and 3, starts), the rest of q''; forms: (points, locals, 2 m, starts), the linear forms in (q, q') that it is a
+    polynomial of; step: (starts,) [s]; angle: (2 m, starts), the largest coefficients of the angle of attack along the
+    span.
     """
 
     half: FloatArray
     bend: FloatArray
-    local: IntArray
-    scale: FloatArray
+    forms: FloatArray
     step: FloatArray
     angle: FloatArray
 
     def pick(self, index: IntArray) -> "Flow":
         """Pick starts."""
-        parts = (self.half[..., index], self.bend[..., index], self.local, self.scale[:, index])
-        return Flow(*parts, self.step[index], self.angle[:, index])
+        return Flow(*(part[..., index] for part in self.parts))
+
+    @property
+    def parts(self) -> tuple[FloatArray, ...]:
+        """The fields one after another."""
+        return self.half, self.bend, self.forms, self.step, self.angle
 
 
 def flow(model: ReducedModel, member: IntArray, wind_speed: FloatArray, steps: int = STEPS) -> Flow:
-    """Set up the equations of members (starts,) of a stack of hybrid models at wind speeds (starts,)."""
-    m = model.mass.shape[-1]
+    """Set up the equations of members (starts,) of a stack of models at wind speeds (starts,)."""
+    from scipy.linalg import expm  # noqa: PLC0415 - only who asks for the integration waits for scipy
+
+    m, load = model.mass.shape[-1], model.load
     inverse = np.linalg.inv(model.mass)[member]
     speed = wind_speed[:, None, None]
-    slope = force_gradient(model.load, np.zeros((model.mass.shape[0], 1, 2 * m)))[member, 0]
+    slope = force_gradient(load, np.zeros((model.mass.shape[0], 1, 2 * m)))[member, 0]
     by_q = inverse @ (speed**2 * slope[..., :m] - model.stiffness[member])
     by_rate = inverse @ (speed * slope[..., m:] - model.damping[member])
     linear = np.zeros((member.size, 2 * m, 2 * m))
     linear[:, :m, m:] = np.eye(m)
     linear[:, m:] = np.concatenate([by_q, by_rate], axis=-1)
-    local = model.load.forms[0, 0].argmax(axis=-1)
-    bend = speed**2 * (inverse @ model.load.table[member, 0][..., local.size :])
+    bend = speed[..., None] ** 2 * (inverse[:, None] @ load.table[member][..., load.forms.shape[-2] :])
+    by_wind = np.repeat([np.ones(member.size), wind_speed], m, axis=0)
+    forms = np.moveaxis(load.forms[member], 0, -1) / by_wind
     fastest = np.sqrt(np.linalg.eigvals(np.linalg.solve(model.mass, model.stiffness)).real.max(axis=-1))
     step = 2.0 * np.pi / (fastest[member] * steps)
-    scale = np.where(local[:, None] < m, 1.0, 1.0 / wind_speed)
-    angle = np.abs(model.load.angle[member]).max(axis=1) / np.repeat([np.ones(member.size), wind_speed], m, axis=0).T
+    angle = np.abs(load.angle[member]).max(axis=1).T / by_wind
     half = expm(0.5 * step[:, None, None] * linear)
-    return Flow(np.moveaxis(half, 0, -1).copy(), np.moveaxis(bend, 0, -1).copy(), local, scale, step, angle.T.copy())
+    return Flow(np.moveaxis(half, 0, -1).copy(), np.moveaxis(bend, 0, -1).copy(), forms.copy(), step, angle.copy())
 
 
 def advanced(equations: Flow, state: FloatArray) -> FloatArray:
     """Return the states (2 m, starts) one step later."""
     step, half = equations.step, equations.half
-    m = equations.bend.shape[0]
+    m = equations.bend.shape[1]
 
     def turned(y: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("ijs,js->is", half, y))
@@ -106,28 +112,32 @@ def advanced(equations: Flow, state: FloatArray) -> FloatArray:
 
 def _bend(equations: Flow, state: FloatArray) -> FloatArray:
     """Return the quadratic and cubic part of q'': (m, starts)."""
-    x = state[equations.local] * equations.scale
-    variables = x.shape[0]
-    pairs = [(i, j) for i, j in (p for p in polynomial.monomials(variables) if len(p) == 2)]
-    square = {pair: x[pair[0]] * x[pair[1]] for pair in pairs}
-    cubes = (t for t in polynomial.monomials(variables) if len(t) == 3)
-    terms = np.stack([*square.values(), *(square[t[:2]] * x[t[2]] for t in cubes)])
-    return np.asarray(np.einsum("ots,ts->os", equations.bend, terms))
+    x = np.einsum("plks,ks->lps", equations.forms, state)
+    numbers = range(x.shape[0])
+    square = {pair: x[pair[0]] * x[pair[1]] for pair in itertools.combinations_with_replacement(numbers, 2)}
+    cubes = itertools.combinations_with_replacement(numbers, 3)
+    terms = np.stack([*square.values(), *(square[i, j] * x[k] for i, j, k in cubes)])
+    return np.asarray(np.einsum("pots,tps->os", equations.bend, terms))
 
 
 def settled(
-    model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, longest: int, steps: int = STEPS
+    model: ReducedModel,
+    member: IntArray,
+    wind_speed: FloatArray,
+    start: FloatArray,
+    longest: IntArray | int,
+    steps: int = STEPS,
 ) -> Runs:
     """Integrate starts until their motion changes no more.
 
     Parameters
     ----------
     model : ReducedModel
-        Hybrid, leading axis (members,).
+        Leading axis (members,).
     member, wind_speed : (starts,)
     start : (starts, 2 m)
         q and q'.
-    longest : int
+    longest : (starts,) or int
         Number of blocks after which a start is given up.
     steps : int
         In the shortest natural period.
@@ -144,10 +154,9 @@ def settled(
     state, size, before = start.T.copy(), np.full_like(start.T, np.inf), np.full_like(start.T, np.inf)
     blocks, at_rest = np.zeros(member.size, dtype=np.intp), np.zeros(member.size, dtype=np.bool_)
     outcome = np.full(member.size, Outcome.LIMIT_REACHED, dtype=np.object_)
-    active, first = np.arange(member.size), np.linalg.norm(weight * start.T, axis=0)
-    for _ in range(longest):
-        if active.size == 0:
-            break
+    first, last = np.linalg.norm(weight * start.T, axis=0), np.broadcast_to(longest, member.shape)
+    active = np.arange(member.size)
+    while active.size:
         state[:, active], now, angle = _block(equations, state[:, active], steps)
         before[:, active], size[:, active] = size[:, active], now
         blocks[active] += 1
@@ -156,7 +165,7 @@ def settled(
         done = rest | (change < CHANGE * whole)
         at_rest[active], outcome[active[done]] = rest, Outcome.CONVERGED
         outcome[active[far]] = Outcome.NO_CONVERGENCE
-        kept = np.flatnonzero(~done & ~far)
+        kept = np.flatnonzero(~done & ~far & (blocks[active] < last[active]))
         active, equations = active[kept], equations.pick(kept)
     return Runs(size.T, before.T, state.T, blocks, outcome, at_rest)
 
@@ -166,8 +175,11 @@ def _block(equations: Flow, state: FloatArray, steps: int) -> tuple[FloatArray, 
 
     The window falls off smoothly to both ends, so that the part of a period that does not fill the block counts little.
     """
-    count = BLOCK * steps // STEPS
+    count = BLOCK_PERIODS * steps
     window = 2.0 / count * np.sin(np.pi * np.arange(count) / count) ** 2
+    if compiled.AVAILABLE:
+        state, square, largest = compiled.integrated_block(equations.parts, state, window)
+        return state, np.sqrt(square), largest
     square, largest = np.zeros_like(state), np.zeros(state.shape[1])
     with np.errstate(over="ignore", invalid="ignore"):
         for share in window.tolist():
