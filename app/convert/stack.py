@@ -20,12 +20,14 @@ STACK = 128  # lines side by side: fewer share too little of the work between th
 _LINE, _ANALYSIS = "/line", "/analysis"
 _NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
 
-# Seconds of one core for a line in a stack, fixed and per wind speed, estimated; `benchmarks.line_costs` measures them.
-_HYBRID_SECONDS = (0.001, 0.0002)
-_FINITE_ELEMENT_SECONDS = (0.035, 0.02)
+# Seconds of one core for a line in a stack, fixed and per wind speed, rounded from figures of `benchmarks.line_costs`.
+_HYBRID_SECONDS = (0.003, 0.0003)  # for each number of loops
+_HYBRID_DIRECT_SECONDS = (0.6, 0.2)
+_FINITE_ELEMENT_SECONDS = (0.4, 0.01)
+_FINITE_ELEMENT_DIRECT_SECONDS = (45.0, 1.5)
 _FULL_MODES_SECONDS = 0.003
-_STATIC_TWIST_SECONDS = 0.015
-_COMPETITION_SECONDS = 0.002  # a cycle
+_STATIC_TWIST_SECONDS = 0.003
+_COMPETITION_SECONDS = 0.001  # a cycle
 
 _logger = logging.getLogger(__name__)
 
@@ -78,13 +80,16 @@ def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
 
 def seconds_a_line(analysis: schemas.Analysis) -> float:
     """Estimate what a line costs in a stack on one core [s], to cut a batch into messages of equal work."""
-    winds = len(analysis.speeds())
-    fixed, per_wind = _HYBRID_SECONDS
-    cost = len(analysis.loops) * (fixed + per_wind * winds)
+    winds, direct = len(analysis.speeds()), analysis.check == "direct"
+
+    def motions(*costs: tuple[float, float]) -> float:
+        return sum(fixed + per_wind * winds for fixed, per_wind in costs[: 1 + direct])
+
+    cost = len(analysis.loops) * motions(_HYBRID_SECONDS, _HYBRID_DIRECT_SECONDS)
     if "finite_element" in analysis.models:
         cost += _FULL_MODES_SECONDS
         if analysis.finite_element_loops:
-            cost += _FINITE_ELEMENT_SECONDS[0] + _FINITE_ELEMENT_SECONDS[1] * winds
+            cost += motions(_FINITE_ELEMENT_SECONDS, _FINITE_ELEMENT_DIRECT_SECONDS)
     if analysis.static_twist == "solved":
         cost += _STATIC_TWIST_SECONDS
     if analysis.loop_competition == "checked":

@@ -123,8 +123,8 @@ class Analysis(Document):
 
     check: Literal["none", "direct"] = Field(
         default="none",
-        description="Whether every stable motion is held against 50 periods of direct integration, and further cycles are "
-        "sought by integrating from large starts at up to three of the wind speeds",
+        description="Whether every stable motion is held against 50 periods of direct integration, and further cycles "
+        "are sought by integrating from large starts at up to three of the wind speeds",
         examples=["direct"],
     )
 

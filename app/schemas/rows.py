@@ -78,7 +78,8 @@ class LimitCycle(Row):
     torsional_share: Number = told("Torsional share of the mean kinetic energy; null at rest [1]", 0.0039)
     found_by: FoundBy | None = told(
         "How it was found: on the branch of a Hopf point, from the explicit formula, the balance of energy or direct "
-        "integration, on the branch of such a one; if quasi-periodic from a torus point or beside an unstable cycle; null at rest",
+        "integration, on the branch of such a one; if quasi-periodic from a torus point or beside an unstable cycle; "
+        "null at rest",
         "hopf_branch",
     )
     harmonics: int | None = told(

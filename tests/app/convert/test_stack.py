@@ -135,6 +135,8 @@ def test_estimated_cost_grows_with_what_is_asked() -> None:
         {"loops": [1, 2], "static_twist": "solved"},
         {"loops": [1, 2], "static_twist": "solved", "loop_competition": "checked"},
         {"loops": [1, 2], "static_twist": "solved", "loop_competition": "checked", "device_effect": "reported"},
+        {"loops": [1, 2], "models": ["hybrid"], "check": "direct"},
+        {"loops": [1, 2], "check": "direct"},
     ]
     costs = [seconds_a_line(read_analysis(document)) for document in asked]
     assert costs == sorted(set(costs))
