@@ -5,7 +5,7 @@ import logging
 import ssl
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 
 import anyio
@@ -37,6 +37,7 @@ def courier(sessions: sessionmaker[Session], settings: Settings) -> Iterator[Non
         yield
     finally:
         stopped.set()
+        rounds.wake()
         thread.join(2.0 * _LOOK_SECONDS)
 
 
@@ -69,9 +70,18 @@ class _Rounds:
     def __init__(self, sessions: sessionmaker[Session], settings: Settings) -> None:
         self._sessions, self._settings = sessions, settings
         self._under_way = Share(_AT_ONCE, _AN_OWNER, _A_RECEIVER)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._changed = asyncio.Event()
+
+    def wake(self) -> None:
+        """Look at once, from any thread."""
+        if self._loop is not None:
+            with suppress(RuntimeError):  # it has ended by itself
+                self._loop.call_soon_threadsafe(self._changed.set)
 
     async def run(self, stopped: threading.Event) -> None:
         """Look for what is due until it is stopped."""
+        self._loop = asyncio.get_running_loop()
         context = ssl.create_default_context(cafile=self._settings.webhook_ca_file)
         tasks: set[asyncio.Task[None]] = set()
         while not stopped.is_set():
@@ -83,9 +93,16 @@ class _Rounds:
                     task.add_done_callback(tasks.discard)
             except SQLAlchemyError as error:
                 _logger.warning("the database failed, webhooks wait: %s", error)
-            await asyncio.sleep(_LOOK_SECONDS)
+            await self._pause()
         for task in tasks:
             task.cancel()
+
+    async def _pause(self) -> None:
+        """Wait for the next look, or until something was sent: its owner and its receiver have room for another."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(_LOOK_SECONDS):
+                await self._changed.wait()
+        self._changed.clear()
 
     def _take(self) -> list[Message]:
         with self._sessions.begin() as session:
@@ -100,6 +117,7 @@ class _Rounds:
             _logger.warning("what came of a webhook is not noted, it is sent again: %s", error)
         finally:
             self._under_way.remove(message.owner, message.receiver)
+            self._changed.set()
 
     def _note(self, message: Message, attempt: Attempt) -> None:
         with self._sessions.begin() as session:

@@ -44,7 +44,7 @@ def post_jobs(address: str, numbers: range, pause_seconds: float) -> list[UUID]:
     accepted = []
     with Client(address, patience_seconds=PATIENCE_SECONDS) as service:
         for number in numbers:
-            accepted.append(service.submit(line(25_000.0 + number), ANALYSIS).id)
+            accepted.append(service.submit(line(31_000.0 + number), ANALYSIS).id)
             time.sleep(pause_seconds)
     return accepted
 

@@ -170,6 +170,22 @@ def test_a_receiver_that_hangs_holds_up_no_other(
             wait_for(client, address, "delivered")
 
 
+def test_a_receiver_gets_the_next_as_soon_as_it_has_taken_one(
+    client: httpx.Client,
+    open_settings: Settings,
+    sessions: sessionmaker[Session],
+    received: tuple[Receiver, Path],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("worker.courier._LOOK_SECONDS", 600.0)
+    count = 3 * MOST_TO_ONE_RECEIVER
+    ends = [ended(client, open_settings, received[0].url) for _ in range(count)]
+    with courier(sessions, open_settings):
+        for address in ends:
+            wait_for(client, address, "delivered")
+    assert len(received[0].got) == count
+
+
 def test_a_receiver_that_hangs_has_not_answered(
     client: httpx.Client,
     open_settings: Settings,
