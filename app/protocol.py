@@ -1,8 +1,9 @@
-"""HTTP as the server speaks it, with a bound on the head of a request: the server's own parser takes any.
+"""HTTP as the server speaks it, with bounds on the head of a request: the server itself takes any and waits for ever.
 
-Nothing of the application sees a head before it is whole, so only the connection can end one that is too large.
+Nothing of the application sees a head before it is whole, so only the connection can end one that is too large or slow.
 """
 
+import asyncio
 import logging
 from typing import Any
 
@@ -16,6 +17,7 @@ MOST_BYTES = 65_536
 MOST_FIELDS = 200
 """Fields of a head, those that follow a body in chunks included."""
 
+_HEAD_SECONDS = 30.0  # from the connection, or from the first byte of a further request, to the end of a head
 # As with bodies: a connection that is closed on a client who still sends is reset, and the answer with it.
 _LINGER_SECONDS = 2.0
 
@@ -27,9 +29,10 @@ class _HeadTooLarge(Exception):
 
 
 class BoundedHeads(HttpToolsProtocol):
-    """The server's protocol on one connection, which answers 431 to a head that is too large and ends.
+    """The server's protocol on one connection, which answers 431 to a head that is too large, and ends.
 
-    At most one reading of the socket (256 kB) more than `MOST_BYTES` is held of it.
+    At a head that is too slow it ends without an answer. No more than `MOST_BYTES` and one reading of the socket
+    (256 kB) are held of any.
     """
 
     def __init__(self, *given: Any, **named: Any) -> None:
@@ -39,6 +42,17 @@ class BoundedHeads(HttpToolsProtocol):
         self._bytes = 0
         self._fields = 0
         self._is_refused = False
+        self._deadline: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Wait for the first head."""
+        super().connection_made(transport)
+        self._await_head()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """End."""
+        self._end_wait()
+        super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
         """Take what has come, unless the connection only waits for its client to have read why it ends."""
@@ -52,7 +66,14 @@ class BoundedHeads(HttpToolsProtocol):
     def on_message_begin(self) -> None:
         """Begin to count."""
         self._bytes = self._fields = 0
+        if self._deadline is None:
+            self._await_head()
         super().on_message_begin()
+
+    def on_headers_complete(self) -> None:
+        """Hand the head over."""
+        self._end_wait()
+        super().on_headers_complete()
 
     def on_url(self, url: bytes) -> None:
         """Take a part of the address."""
@@ -86,6 +107,20 @@ class BoundedHeads(HttpToolsProtocol):
         self._fields += fields
         if self._is_too_large():
             raise _HeadTooLarge
+
+    def _await_head(self) -> None:
+        self._deadline = self.loop.call_later(_HEAD_SECONDS, self._give_up)
+
+    def _give_up(self) -> None:
+        if self.flow.read_paused:  # earlier requests are at work, and what is missing waits in the socket
+            self._await_head()
+        else:
+            self.transport.close()
+
+    def _end_wait(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
 
     def _is_too_large(self) -> bool:
         return self._bytes > MOST_BYTES or self._fields > MOST_FIELDS

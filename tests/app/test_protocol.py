@@ -1,8 +1,9 @@
-"""Heads of requests, written byte by byte: those within the bound are served, and others are not taken in."""
+"""Heads of requests, written byte by byte: those within the bounds are served, and others are not taken in."""
 
 import json
 import select
 import socket
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -126,3 +127,42 @@ def test_what_is_no_part_of_a_body_has_an_end_within_it_too(shared_client: httpx
         connection.sendall(CHUNKS + begin)
         assert endlessly(connection, b"a" * 65_536) < ENDLESS
     assert shared_client.get("/health/live").status_code == 200
+
+
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a head take half a second at most."""
+    monkeypatch.setattr("app.protocol._HEAD_SECONDS", 0.5)
+
+
+@pytest.mark.usefixtures("impatient")
+@pytest.mark.parametrize("before", [b"", head()], ids=["first", "second"])
+@pytest.mark.parametrize("begun", [b"", b"G", b"GET /health/live HTTP/1.1\r\nHost: a\r\nX-A: a"])
+def test_a_head_that_does_not_come_to_its_end_is_not_waited_for(
+    shared_client: httpx.Client, before: bytes, begun: bytes
+) -> None:
+    with connected(shared_client) as connection:
+        connection.sendall(before + begun)
+        assert statuses(rest(connection)) == ["200"] * bool(before)
+
+
+@pytest.mark.usefixtures("impatient")
+def test_a_head_is_not_lengthened_by_a_byte_now_and_then(shared_client: httpx.Client) -> None:
+    with connected(shared_client) as connection:
+        connection.sendall(b"GET /health/live HTTP/1.1\r\nX-A: ")
+        for _ in range(200):
+            if select.select([connection], [], [], 0.1)[0]:
+                break
+            connection.sendall(b"a")
+        assert rest(connection) == b""
+
+
+@pytest.mark.usefixtures("impatient")
+def test_only_heads_have_to_hurry(shared_client: httpx.Client) -> None:
+    post = head("Content-Type: application/json", "Content-Length: 2", target="/v1/jobs", method="POST")
+    with connected(shared_client) as connection:
+        for last in (head(), head("Connection: close")):
+            connection.sendall(post)
+            time.sleep(1.0)
+            connection.sendall(b"{}" + last)
+        assert statuses(rest(connection)) == ["422", "200", "422", "200"]
