@@ -7,10 +7,10 @@ from uuid import UUID
 
 import httpx
 import pytest
-from sqlalchemy import update
+from sqlalchemy import event, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import keys
+from app import keys, reuse
 from app.auth import LOCAL, Scope
 from app.convert import ENGINE_VERSION
 from app.examples import example
@@ -100,6 +100,20 @@ def test_reused_lines_outlive_the_batch_that_they_come_from(client: httpx.Client
     assert [line["status"] for line in told(client, second)] == ["successful"] * 4
     third = finished(client, settings, LINES)
     assert third["lines"]["reused"] == 4
+
+
+def test_of_many_copies_one_is_read(client: httpx.Client, settings: Settings, sessions: sessionmaker[Session]) -> None:
+    for _ in range(4):
+        batch = finished(client, settings, LINES)
+    assert batch["lines"]["reused"] == 4
+    read: list[object] = []
+    with sessions() as session:
+        hashes = {row.point: row.input_hash or "" for row in session.scalars(select(PointRow))}
+        session.expunge_all()
+        event.listen(session, "loaded_as_persistent", lambda _, row: read.append(row))
+        found = reuse.stored(session, hashes, ENGINE_VERSION)
+    assert sorted(point.point for point in found) == [1, 2, 3, 4]
+    assert len(read) == 4  # of 16
 
 
 def single(line: dict[str, Any], **changes: Any) -> dict[str, Any]:
