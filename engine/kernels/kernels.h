@@ -16,6 +16,13 @@ typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned
 #define WIDE
 #endif
 
+/* Part of a function with such versions: by itself it would have the instructions of any processor. */
+#ifdef __GNUC__
+#define WITHIN static inline __attribute__((always_inline))
+#else
+#define WITHIN static inline
+#endif
+
 /* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U), laid out as engine.hybrid.ReducedModel:
  * mass, damping, stiffness (m, m); forms (points, local, 2 m); table (points, m, monomials);
  * slopes (points, m, local, lower monomials). */

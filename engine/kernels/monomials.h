@@ -5,7 +5,7 @@
 #include "kernels.h"
 
 /* Evaluate 1 and every monomial, x_i, then x_i x_j (i <= j), then x_i x_j x_k (i <= j <= k). */
-static inline void powers(int variables, const Lanes *x, Lanes *terms)
+WITHIN void powers(int variables, const Lanes *x, Lanes *terms)
 {
     Lanes *next = terms;
     *next++ = (Lanes){0} + 1.0;

@@ -33,7 +33,7 @@ static void scattered(const Lanes *from, ptrdiff_t rows, ptrdiff_t starts, ptrdi
 }
 
 /* Evaluate the quadratic and cubic part of q'' (m) at a state (2 m). */
-static inline void bend_at(const Group *group, const Lanes *state, Lanes *result)
+WITHIN void bend_at(const Group *group, const Lanes *state, Lanes *result)
 {
     const int m = group->m, local = group->local, terms = group->terms;
     const Lanes *form = group->forms, *coefficient = group->bend;
@@ -46,14 +46,18 @@ static inline void bend_at(const Group *group, const Lanes *state, Lanes *result
             group->x[l] = sum;
         }
         powers(local, group->x, group->monomials);
-        for (int i = 0; i < m; i++)
+        const Lanes *bent = group->monomials + 1 + local;
+        for (int i = 0; i < m; i++) {
+            Lanes sum = result[i];
             for (int t = 0; t < terms; t++)
-                result[i] += *coefficient++ * group->monomials[1 + local + t];
+                sum += *coefficient++ * bent[t];
+            result[i] = sum;
+        }
     }
 }
 
 /* Let the linear part act for half a step. */
-static inline void turned(const Group *group, const Lanes *state, Lanes *result)
+WITHIN void turned(const Group *group, const Lanes *state, Lanes *result)
 {
     const Lanes *half = group->half;
     for (int i = 0; i < 2 * group->m; i++) {
@@ -65,7 +69,7 @@ static inline void turned(const Group *group, const Lanes *state, Lanes *result)
 }
 
 /* Add a share of a step of accelerations to the velocities of a state. */
-static inline void kicked(const Group *group, const Lanes *state, double share, const Lanes *by, Lanes *result)
+WITHIN void kicked(const Group *group, const Lanes *state, double share, const Lanes *by, Lanes *result)
 {
     const int m = group->m;
     for (int i = 0; i < m; i++) {
@@ -74,7 +78,7 @@ static inline void kicked(const Group *group, const Lanes *state, double share, 
     }
 }
 
-static inline void advanced(const Group *group)
+WITHIN void advanced(const Group *group)
 {
     Lanes *const *k = group->k;
     bend_at(group, group->state, k[0]);
