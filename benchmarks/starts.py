@@ -16,7 +16,7 @@ LOOPS = (1, 2)
 WINDS = (4.0, 6.0, 9.0, 12.0)
 LEVELS = (0.02, 0.1, 0.3, 0.8)  # of the largest start: rad of torsion, or of the turn of the wind by vertical motion
 MIXES = 4  # starts a level: one a direction and one of all three
-LONGEST = 150  # blocks of some fifty periods
+LONGEST = 600  # blocks of some fifty periods
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,7 +43,8 @@ class Bifurcations:
     """Bifurcations of a stack of models; every array is (k,).
 
     member: index of the model; branch: number of the connected family; kind: of Kind; wind_speed, uncertainty [m/s];
-    angular_frequency, second [rad/s], the second NaN but at a torus point; co_ordinate: the one that moves most.
+    angular_frequency, second [rad/s], the second NaN but at a torus point; co_ordinate: the one that moves most;
+    may_end_stability: False where the cycle is unstable on both sides for certain.
     """
 
     member: IntArray
@@ -54,6 +55,7 @@ class Bifurcations:
     second: FloatArray
     co_ordinate: IntArray
     uncertainty: FloatArray
+    may_end_stability: BoolArray
 
 
 Factors = Callable[[ComplexArray], ComplexArray]
@@ -110,11 +112,17 @@ def on_branches(trace: Traces, numbers: IntArray) -> Iterator[Bifurcations]:
     problem, points = trace.problem, trace.points
     judged = floquet(*problem.models(points.z, points.branch), trace.orbits)
     segment, turns = _segments(trace), points.tangent[:, -1]
-    fold = turns[segment] * turns[segment + 1] < 0.0
-    yield _located(trace, numbers, segment[fold], Kind.FOLD)
+    crosses = {Kind.FOLD: turns[segment] * turns[segment + 1] < 0.0}
     for kind in FACTORS:
-        crosses = _crosses(judged, segment, kind) & ~(fold & (kind is Kind.BRANCH_POINT))
-        yield _located(trace, numbers, segment[crosses], kind)
+        crosses[kind] = _crosses(judged, segment, kind)
+    crosses[Kind.BRANCH_POINT] &= ~crosses[Kind.FOLD]
+    growing = np.asarray((np.abs(judged.multipliers[:, 1:]) > 1.0).any(axis=-1))
+    # Between points that lose their stability in several steps it may exist without being seen.
+    several = np.sum(list(crosses.values()), axis=0) > 1
+    limit = np.asarray(several | ~(growing[segment] & growing[segment + 1]))
+    for kind, here in crosses.items():
+        if here.any():
+            yield _located(trace, numbers, segment[here], kind, limit[here])
 
 
 def _segments(trace: Traces) -> IntArray:
@@ -139,8 +147,11 @@ def _product(factors: ComplexArray) -> FloatArray:
         return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
 
 
-def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) -> Bifurcations:
-    """Locate the zero in each of these segments with more harmonics; where that fails the segment is what is known."""
+def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind, limit: BoolArray) -> Bifurcations:
+    """Locate the zero in each of these segments with more harmonics; where that fails the segment is what is known.
+
+    limit: (segments,), whether the cycles of each may be stable at one end.
+    """
     problem = trace.problem
     ends = [_finer(problem, trace.points.pick(segment + step)) for step in (0, 1)]
     zero = located(problem, ends[0], ends[1], lambda points: _test(problem, points, kind), ACCURACY)
@@ -167,6 +178,7 @@ def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind) ->
         second=_second(problem.model, member, orbits, critical, kind),
         co_ordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
         uncertainty=np.where(inside, zero.uncertainty + noise, width + moved),
+        may_end_stability=limit,
     )
     return _pick(result, np.flatnonzero(~real))
 
@@ -249,6 +261,7 @@ def _hopf(
         second=np.full(index.size, np.nan),
         co_ordinate=crossings.co_ordinate[index],
         uncertainty=crossing_error(model, member, speed),
+        may_end_stability=np.ones(index.size, dtype=np.bool_),
     )
 
 

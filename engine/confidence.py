@@ -67,19 +67,21 @@ def confidence(model: ReducedModel, cycles: Cycles, check: Check) -> Confidence:
 
 
 def _measured(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return residual, truncation and detuning of cycles with equally many harmonics: (3, cycles)."""
+    """Return residual, truncation and detuning of cycles with equally many harmonics: (3, cycles).
+
+    Changes are those of the amplitude that weighs most in M_ii |q_i|^2.
+    """
     rest, _ = linearized(model, member, orbits)
     elastic = np.abs(model.stiffness[member] @ orbits.coefficients).max(axis=(1, 2))
     longer, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
     # Within 0.1 % a close resonance bends: a linear step would not do.
     detuned, solution = balance(_detuned(model), member, orbits, COARSE)
-    change = _change(model, member, orbits, detuned)
+    before, by_harmonic, by_frequency = (half_peak_to_peak(o.coefficients) for o in (orbits, longer, detuned))
+    main = (before * np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]).argmax(axis=-1)
+    row = np.arange(member.size)
+    truncation, detuning = (after[row, main] / before[row, main] - 1.0 for after in (by_harmonic, by_frequency))
     return np.stack(
-        [
-            np.abs(rest).max(axis=-1) / elastic,
-            np.abs(_change(model, member, orbits, longer)),
-            np.where(solution.converged, change, np.nan),
-        ]
+        [np.abs(rest).max(axis=-1) / elastic, np.abs(truncation), np.where(solution.converged, detuning, np.nan)]
     )
 
 
@@ -100,11 +102,3 @@ def _detuned(model: ReducedModel) -> ReducedModel:
     """Raise the stiffness of the horizontal co-ordinates so that their frequencies rise by DETUNING."""
     factor = np.where(model.direction == HORIZONTAL, 1.0 + DETUNING, 1.0)
     return replace(model, stiffness=model.stiffness * factor[:, None] * factor)
-
-
-def _change(model: ReducedModel, member: IntArray, before: Orbits, after: Orbits) -> FloatArray:
-    """Return the relative change of the amplitude that weighs most in M_ii |q_i|^2: (cycles,)."""
-    old, new = half_peak_to_peak(before.coefficients), half_peak_to_peak(after.coefficients)
-    main = (old * np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]).argmax(axis=-1)
-    row = np.arange(member.size)
-    return np.asarray(new[row, main] / old[row, main] - 1.0)

@@ -192,6 +192,7 @@ def _hopf(trace: Traces, numbers: IntArray) -> Bifurcations:
         second=np.full(good.size, np.nan),
         co_ordinate=share.argmax(axis=-1) if good.size else good,
         uncertainty=np.full(good.size, HOPF * problem.width),
+        may_end_stability=np.ones(good.size, dtype=np.bool_),
     )
 
 

@@ -101,12 +101,7 @@ def quasi_periodic_motions(
     """
     known = _nothing(model)
     if winds.size and any(kind is Kind.TORUS for kind in found.kind):
-        births = born_at_torus_points(model, cycles.traces, found, COARSE)
-        if search is TorusSearch.LASTING:
-            needy = [member for member, _ in _without_stable(model, cycles, known, winds)]
-            wanted = np.isin(births.member, needy)
-            wanted[born_stable(model, births)] = True
-            births = births.pick(np.flatnonzero(wanted))
+        births = _births(model, cycles, found, winds, search)
         known = _from_torus_points(model, births, winds)
     places = _without_stable(model, cycles, known, winds)
     if places:
@@ -114,6 +109,19 @@ def quasi_periodic_motions(
     lost = sorted(_without_stable(model, cycles, known, winds)) if places else []
     sorted_motions = known.of(np.lexsort((known.wind, known.member)))
     return replace(sorted_motions, lost=np.array(lost, dtype=np.intp).reshape(-1, 2))
+
+
+def _births(model: ReducedModel, cycles: Cycles, found: Bifurcations, winds: FloatArray, search: TorusSearch) -> Births:
+    """Take the torus points from which branches are followed."""
+    every = np.ones(found.member.size, dtype=np.bool_)
+    if search is TorusSearch.EVERY:
+        return born_at_torus_points(model, cycles.traces, found, every, COARSE)
+    needy = [member for member, _ in _without_stable(model, cycles, _nothing(model), winds)]
+    needed = np.isin(found.member, needy)
+    births = born_at_torus_points(model, cycles.traces, found, needed | found.may_end_stability, COARSE)
+    wanted = np.isin(births.member, needy)
+    wanted[born_stable(model, births)] = True
+    return births.pick(np.flatnonzero(wanted))
 
 
 def integrated(model: ReducedModel, known: QuasiPeriodic) -> QuasiPeriodic:

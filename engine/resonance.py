@@ -4,9 +4,10 @@ The source: "an internal resonance occurs when the ratio of at least two of the 
 of two positive integers" (paper section 5.1).
 """
 
+from bisect import bisect
 from collections.abc import Iterator, Sequence
-from itertools import combinations
-from math import gcd, log
+from itertools import combinations, pairwise
+from math import gcd, sqrt
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from engine.result import FrequencyRow, InternalResonanceRow
 
 LARGEST_INTEGER = 3  # a cubic load excites no ratio of a higher order by itself
 _INTEGERS = range(1, LARGEST_INTEGER + 1)
-_RATIOS = {p / q: (p, q) for p in _INTEGERS for q in _INTEGERS if gcd(p, q) == 1}
+_RATIOS = sorted(((p, q) for p in _INTEGERS for q in _INTEGERS if gcd(p, q) == 1), key=lambda pair: pair[0] / pair[1])
+# Between neighbours the geometric mean divides: there both differ equally, relatively.
+_LIMITS = [sqrt(p * r / (q * s)) for (p, q), (r, s) in pairwise(_RATIOS)]
 
 
 def resonance_rows(frequencies: Sequence[FrequencyRow]) -> tuple[InternalResonanceRow, ...]:
@@ -52,7 +55,7 @@ def _pairs(row: FrequencyRow) -> Iterator[InternalResonanceRow]:
 
 def nearest_ratio(ratio: float) -> tuple[int, int]:
     """Return the p and q up to `LARGEST_INTEGER` whose ratio p/q differs least from a positive number, relatively."""
-    return _RATIOS[min(_RATIOS, key=lambda candidate: abs(log(ratio / candidate)))]
+    return _RATIOS[bisect(_LIMITS, ratio)]
 
 
 def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArray) -> FloatArray:

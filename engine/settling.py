@@ -18,7 +18,7 @@ from engine.outcome import Outcome
 
 STEPS = 24  # in the shortest natural period
 BLOCK_PERIODS = 50  # shortest natural ones between two looks at the motion
-CHANGE = 2e-5  # of the motion's size in a block, below which it counts as settled
+CHANGE = 4e-6  # of the motion's size in a block, below which it counts as settled
 REST = 1e-4  # of the size at the start, below which a motion counts as at rest
 FARTHEST = np.pi  # rad of angle of attack, beyond which a motion has diverged
 

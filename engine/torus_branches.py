@@ -79,8 +79,10 @@ class Births:
         return Births(self.member[index], self.family[index], self.tori.pick(index), self.direction[index])
 
 
-def born_at_torus_points(model: ReducedModel, traces: Sequence[Traces], found: Bifurcations, order: Order) -> Births:
-    """Take the cycles at all torus points, with the disturbance of the second frequency.
+def born_at_torus_points(
+    model: ReducedModel, traces: Sequence[Traces], found: Bifurcations, wanted: BoolArray, order: Order
+) -> Births:
+    """Take the cycles at torus points, with the disturbance of the second frequency.
 
     Parameters
     ----------
@@ -89,6 +91,8 @@ def born_at_torus_points(model: ReducedModel, traces: Sequence[Traces], found: B
     traces : sequence of Traces
         Of the branches on which the torus points lie.
     found : Bifurcations
+    wanted : (bifurcations,)
+        Which of them are taken; those that are no torus points are left out anyway.
     order : Order
 
     Returns
@@ -96,7 +100,7 @@ def born_at_torus_points(model: ReducedModel, traces: Sequence[Traces], found: B
     Births
         Without those whose cycle is not met again.
     """
-    located = np.isfinite(found.second) & (found.uncertainty < LOCATED * found.wind_speed)
+    located = wanted & np.isfinite(found.second) & (found.uncertainty < LOCATED * found.wind_speed)
     points = np.flatnonzero(located & np.array([kind is Kind.TORUS for kind in found.kind], dtype=np.bool_))
     guesses = [_nearest(traces, found, int(i)) for i in points]
     points = points[[guess is not None for guess in guesses]]

@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Callable, Iterator, Mapping
 
 from benchmarks.validation import (
+    bifurcations,
     completeness,
     critical_wind_speeds,
     device_placement,
@@ -33,6 +34,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "critical_wind_speeds": critical_wind_speeds.section,
     "limit_cycles": limit_cycles.section,
     "direct_integration": direct_integration.section,
+    "bifurcations": bifurcations.section,
     "completeness": completeness.section,
     "model_comparison": model_comparison.section,
     "quasi_periodic": quasi_periodic.section,

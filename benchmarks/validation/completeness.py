@@ -21,7 +21,7 @@ from engine.result import LimitCycleRow, Orbit, Result
 from engine.settling import STEPS, Runs, advanced, flow
 from engine.spec import Analysis, Line, Model
 
-SEED, LINES = 20261122, 48
+SEED, LINES = 20261122, 96
 COMPARED, COMPARED_LINES = 40, 8  # shortest periods, and lines, held against DOP853
 SAME = 0.01  # relative distance of two motions that count as one
 STRAIGHT = 0.9  # share of its last change by which a motion comes nearer to one that it is on its way to

@@ -37,7 +37,7 @@ def test_branch_from_an_exact_torus_point() -> None:
     crossings = critical_wind_speeds(model, 5.0)
     trace = traced_from_hopf(model, crossings, np.array([0]), 5, winds)
     found = bifurcations((trace,), ONE, model, crossings)
-    births = born_at_torus_points(model, (trace,), found, (3, 2))
+    births = born_at_torus_points(model, (trace,), found, np.ones(found.member.size, dtype=np.bool_), (3, 2))
     assert births.tori.wind_speed == pytest.approx([1.0], abs=1e-6)
     points = traced(model, births, winds)
     _, wind, guess = passed(points, winds)
@@ -69,7 +69,7 @@ def followed(model: ReducedModel, torus: Tori, periods: float) -> tuple[FloatArr
 
 def test_branch_joins_both_torus_points_of_the_single_conductor() -> None:
     model, cycles, found = analysed(1, LIGHT, 2)
-    births = born_at_torus_points(model, cycles.traces, found, (3, 2))
+    births = born_at_torus_points(model, cycles.traces, found, found.may_end_stability, (3, 2))
     assert sorted(births.tori.wind_speed) == pytest.approx([7.8004, 10.1183], abs=1e-3)
     winds = np.array([7.0, 9.0, 12.0])
     points = traced(model, births, winds)
