@@ -168,7 +168,7 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
     member, wind = family.places(everything)
     orbits = family.orbits_of(everything)
     orbits, judged, kept, harmonics = judged_orbits(model, member, orbits)
-    branch, followed = family.branches()
+    (branch, followed), found_by = family.branches(), family.found_by
     order = np.flatnonzero(kept)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]
     return Cycles(
@@ -180,7 +180,7 @@ def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]
         np.bincount(member[~kept], minlength=model.mass.shape[0]),
         traces,
         followed,
-        tuple(family.found_by[i] for i in order.tolist()),
+        tuple(found_by[i] for i in order.tolist()),
         harmonics[order],
     )
 

@@ -61,7 +61,7 @@ def assembled(
     results = []
     for i, line in enumerate(made.lines):
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
-        outside = sum(cycle.outcome.value == "outside_fit" for cycle in cycles)
+        outside = sum(cycle.outcome is Outcome.OUTSIDE_FIT for cycle in cycles)
         fit = [f"{outside} cycles leave the range of angles to which the coefficients were fitted."] if outside else []
         said = line_warnings(line) + _twist_warnings(made, i)
         natural = tuple(row for table in frequencies for row in table[i])
