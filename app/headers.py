@@ -7,8 +7,8 @@ _PICTURES_AND_PROBLEMS = (
     b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 _SWAGGER = (
-    b"default-src 'none'; connect-src 'self'; img-src 'self' data: https://fastapi.tiangolo.com; "
-    b"script-src 'unsafe-inline' https://cdn.jsdelivr.net; style-src 'unsafe-inline' https://cdn.jsdelivr.net; "
+    b"default-src 'none'; connect-src 'self'; img-src 'self' data:; "
+    b"script-src 'unsafe-inline' 'self'; style-src 'unsafe-inline' 'self'; "
     b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 _ALWAYS = (

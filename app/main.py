@@ -31,6 +31,7 @@ from app.routes import (
     deliveries,
     documentation,
     events,
+    explorer,
     health,
     jobs,
     reference,
@@ -90,6 +91,7 @@ def create_app(settings: Settings | None = None) -> Service:
         version=ENGINE_VERSION,
         description=_DESCRIPTION,
         lifespan=lifespan,
+        docs_url=None,
         redoc_url=None,
         telemetry={"tracing": settings.opentelemetry, "metrics": False, "logs": False, "operation_spans": False},
         redirect_slashes=False,
@@ -102,8 +104,9 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(HeadAsGet)
     for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)
-    for module in (events, deliveries, aerodynamics, reference, health):
+    for module in (events, deliveries, aerodynamics, reference, health, explorer):
         app.include_router(module.router)
+    app.mount(explorer.ASSETS, explorer.assets())
     return app
 
 

@@ -1,3 +1,4 @@
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -111,7 +112,19 @@ def test_every_field_has_a_description_and_an_example(document: dict[str, Any]) 
 
 def test_the_interactive_documentation_is_there(tmp_path: Path) -> None:
     with service.running(service.sqlite_settings(tmp_path)) as client:
-        assert client.get("/docs").status_code == 200
+        page = client.get("/docs")
+        assert page.status_code == 200
+        files = re.findall(r'(?:src|href)="([^"]*)"', page.text)
+        assert {name.rpartition("/")[2] for name in files} == {"swagger-ui-bundle.js", "swagger-ui.css", "data:,"}
+        for name in files:
+            if not name.startswith("data:"):
+                answer = client.get(name)
+                assert answer.status_code == 200, name
+                assert answer.headers["Content-Type"].startswith(("text/javascript", "text/css")), name
+                assert len(answer.content) > 100_000, name
+        assert "http" not in page.headers["Content-Security-Policy"], "a stranger's script may run"
+        assert client.get("/docs/assets/../conductors.csv").status_code == 404
+        assert client.get("/docs/assets/%2e%2e/%2e%2e/data/conductors.csv").status_code == 404
         assert client.get("/openapi.json").json()["info"]["version"] == convert.ENGINE_VERSION
 
 
