@@ -55,7 +55,7 @@ class Settings(BaseSettings):
     max_batch_lines: Count = Field(default=100_000, description="Most lines of a batch")
     batches_at_once: Count = Field(default=4, description="Batches that one process takes in at once; others wait")
     key_lease_seconds: Seconds = Field(default=15.0, description="A key whose batch's receiver died is free after that")
-    chunk_seconds: Seconds = Field(default=1.0, description="Estimated work that one message of a batch carries")
+    chunk_seconds: Seconds = Field(default=2.0, description="Estimated work that one message of a batch carries")
     most_chunk_lines: Count = Field(default=256, description="Most lines that one message of a batch carries")
 
     longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait that `Prefer: wait` is granted")

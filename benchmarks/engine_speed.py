@@ -1,6 +1,7 @@
 """The engine against what a user would pick instead, and against the LAPACK calls that it cannot avoid."""
 
 import cProfile
+import itertools
 import pstats
 import time
 from collections import Counter
@@ -12,7 +13,7 @@ from scipy.integrate import solve_ivp
 from app.convert import STACK
 from benchmarks.auto import Branch, continued_branch
 from benchmarks.lines import random_line, source_line
-from benchmarks.measure import median_seconds, numpy_forms, recorded_lapack
+from benchmarks.measure import median_ratio, median_seconds, numpy_forms, recorded_lapack, side_by_side
 from benchmarks.models import discretized, hybrid_models, plain_rate
 from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
@@ -70,26 +71,32 @@ def one_cycle() -> Iterator[tuple[str, float]]:
     members, winds = range(model.mass.shape[0]), SOURCE_WINDS
     cycles = found_cycles(model, published, winds)
     count = int((cycles.floquet.stability == "stable").sum())
-    together = median_seconds(lambda: found_cycles(model, published, winds)) / count
-    alone = median_seconds(
-        lambda: [
-            found_cycles(take(model, [i]), take(published, [i]), winds[j : j + 1]) for i in members for j in (0, 1)
-        ]
-    ) / (len(members) * winds.size)
-    begin = time.perf_counter()
-    settled = {(i, j): settled_amplitude(take(model, i), float(winds[j])) for i in members for j in range(winds.size)}
-    direct = (time.perf_counter() - begin) / len(settled)
+
+    def alone() -> None:
+        for i, j in itertools.product(members, range(winds.size)):
+            found_cycles(take(model, [i]), take(published, [i]), winds[j : j + 1])
+
+    def bare() -> None:
+        for i, j in itertools.product(members, range(winds.size)):
+            _bare(take(model, [i]), take(published, [i]), winds[j : j + 1])
+
+    settled: dict[tuple[int, int], tuple[FloatArray, int]] = {}
+    direct, engine = 0.0, []
+    for i, j in itertools.product(members, range(winds.size)):
+        begin = time.perf_counter()
+        settled[i, j] = settled_amplitude(take(model, i), float(winds[j]))
+        direct += (time.perf_counter() - begin) / (len(members) * winds.size)
+        # Between the integrations, so that the drift of the machine's speed is in both.
+        engine.append(side_by_side(lambda: found_cycles(model, published, winds), alone, bare, runs=1))
+    stacked, each, plain = (float(np.median(times)) for times in zip(*engine, strict=True))
     yield "cycle_direct_seconds", direct
     yield "cycle_direct_cycles", float(np.mean([n for _, n in settled.values()]))
-    yield "cycle_stack_seconds", together
-    yield "cycle_alone_seconds", alone
-    bare = median_seconds(
-        lambda: [_bare(take(model, [i]), take(published, [i]), winds[j : j + 1]) for i in members for j in (0, 1)]
-    ) / (len(members) * winds.size)
-    yield "cycle_bare_seconds", bare
-    yield "cycle_ratio", direct / together
-    yield "cycle_ratio_alone", direct / alone
-    yield "cycle_ratio_bare", direct / bare
+    yield "cycle_stack_seconds", stacked / count
+    yield "cycle_alone_seconds", each / len(settled)
+    yield "cycle_bare_seconds", plain / len(settled)
+    yield "cycle_ratio", direct * count / stacked
+    yield "cycle_ratio_alone", direct * len(settled) / each
+    yield "cycle_ratio_bare", direct * len(settled) / plain
     yield "cycle_direct_error", _largest_difference(cycles, settled)
     held = {(i, j): _held_amplitude(model, cycles, i, j) for i, j in settled}
     yield "cycle_error", _largest_difference(cycles, held)
@@ -130,19 +137,27 @@ def branch() -> Iterator[tuple[str, float]]:
     made = discretized([source_line(n) for n in (2, 3)])
     model, published = hybrid_models(made, (1, 2))
     winds, members = np.linspace(2.6, 6.0, 41), range(model.mass.shape[0])
-    runs = [[continued_branch(take(model, i), 2.0, 6.0) for _ in range(3)] for i in members]
-    auto = float(np.median([run.seconds for repeated in runs for run in repeated]))
-    single = [(take(model, [i]), take(published, [i])) for i in members]
-    alone = float(np.median([median_seconds(lambda a=a, b=b: found_cycles(a, b, winds)) for a, b in single]))  # type: ignore[misc]
-    together = median_seconds(lambda: found_cycles(model, published, winds)) / len(single)
-    yield "branch_auto_seconds", auto
-    yield "branch_auto_points", float(np.median([repeated[0].wind_speed.size for repeated in runs]))
-    yield "branch_ratio", auto / together
-    yield "branch_ratio_alone", auto / alone
+    lone = [(take(model, [i]), take(published, [i])) for i in members]
+    runs: list[Branch] = []
+
+    def every_alone() -> None:
+        for own, its_published in lone:
+            found_cycles(own, its_published, winds)
+
+    _, alone, together = side_by_side(
+        lambda: runs.extend(continued_branch(take(model, i), 2.0, 6.0) for i in members),
+        every_alone,
+        lambda: found_cycles(model, published, winds),
+    )
+    yield "branch_auto_seconds", float(np.median([run.seconds for run in runs]))
+    yield "branch_auto_points", float(np.median([run.wind_speed.size for run in runs]))
+    solved = [sum(run.seconds for run in runs[i : i + len(lone)]) for i in range(0, len(runs), len(lone))]
+    yield "branch_ratio", median_ratio(solved, together)
+    yield "branch_ratio_alone", median_ratio(solved, alone)
     with numpy_forms():
-        plain = [median_seconds(lambda a=a, b=b: found_cycles(a, b, winds), 3) for a, b in single]  # type: ignore[misc]
-    yield "branch_compiled_gain", float(np.median(plain)) / alone
-    yield "branch_difference", max(_difference(a, b, runs[i][0]) for i, (a, b) in enumerate(single))
+        plain = median_seconds(every_alone, 3)
+    yield "branch_compiled_gain", plain / float(np.median(alone))
+    yield "branch_difference", max(_difference(a, b, runs[i]) for i, (a, b) in enumerate(lone))
 
 
 def _difference(model: ReducedModel, published: ReducedModel, auto: Branch) -> float:

@@ -24,6 +24,20 @@ def median_seconds(task: Callable[[], object], runs: int = 5) -> float:
     return statistics.median(times)
 
 
+def side_by_side(*tasks: Callable[[], object], runs: int = 7) -> list[list[float]]:
+    """Return the wall times of each task [s], of rounds in which all run one after another.
+
+    The machine's speed drifts from one minute to the next: ratios are taken within a round.
+    """
+    rounds = [[median_seconds(task, 1) for task in tasks] for _ in range(runs)]
+    return [list(times) for times in zip(*rounds, strict=True)]
+
+
+def median_ratio(times: list[float], others: list[float]) -> float:
+    """Return the median over rounds of the ratio of two times."""
+    return statistics.median(a / b for a, b in zip(times, others, strict=True))
+
+
 @dataclass(slots=True)
 class Calls:
     """Every LAPACK call of a recorded run: its function and arguments."""
