@@ -1,6 +1,6 @@
 """Guesses of cycles by direct integration, for those that no branch and no formula leads to. Theory section 7.5.
 
-Each model is integrated from a few large starts at a few wind speeds until its motion has settled or for some hundred
+Each model is integrated from a few large starts at a few wind speeds until its motion has settled or for two thousand
 periods: Newton's method needs to begin near a cycle, not on it.
 """
 
@@ -11,7 +11,7 @@ from engine.family import Starts
 from engine.harmonic import Orbits, fourier
 from engine.hybrid import ReducedModel
 from engine.outcome import Outcome
-from engine.settling import BLOCK_PERIODS, advanced, flow, settled
+from engine.settling import BLOCK_PERIODS, advanced, flow, natural_rates, settled
 
 WINDS = 3  # the lowest, the highest and one between them
 LEVELS = (0.3, 0.8, 1.5)  # of the largest start: rad of torsion, or of the turn of the wind by vertical motion
@@ -19,6 +19,7 @@ HORIZONTAL = 2.0  # times the vertical amplitude: horizontal motion alone does n
 PERIODS = 2000  # of the slowest natural one, after which a motion is taken as it is
 STEPS = 8  # in the shortest natural period: the linear part is exact, and a guess need not be
 SAMPLED = 8  # slowest periods from which a cycle is read
+LARGEST_RATIO = 30.0  # of natural frequencies: stiffer models are integrated for fewer slow periods, work is bounded
 TOGETHER = 512  # starts side by side, which bounds the memory
 
 
@@ -104,19 +105,20 @@ def _arrived(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, harmonics: int
 ) -> tuple[IntArray, Orbits]:
     """Integrate starts and read a cycle from each that still moves: their indices, and the cycles."""
-    natural = np.sqrt(np.linalg.eigvals(np.linalg.solve(model.mass, model.stiffness)).real)
-    ratio = (natural.max(axis=-1) / natural.min(axis=-1))[member]
+    slowest, fastest = natural_rates(model, member)
+    ratio = np.minimum(fastest / slowest, LARGEST_RATIO)
     blocks = np.ceil(PERIODS * ratio / BLOCK_PERIODS).astype(np.intp)
     runs = settled(model, member, wind_speed, start, blocks, STEPS)
     kept = np.flatnonzero(~runs.at_rest & (runs.outcome != Outcome.NO_CONVERGENCE))
     equations = flow(model, member[kept], wind_speed[kept], STEPS)
     state, history = runs.state[kept].T, []
-    for _ in range(int(np.ceil(SAMPLED * STEPS * ratio[kept].max(initial=0.0)))):
-        state = advanced(equations, state)
-        history.append(state[: model.mass.shape[-1]])
     weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member[kept]]
-    series = np.stack(history, axis=-1) if history else np.zeros((weight.shape[1], 0, 1))
-    read = [_read(series[:, i], weight[i], float(equations.step[i]), harmonics) for i in range(kept.size)]
+    with np.errstate(over="ignore", invalid="ignore"):  # a motion may leave all bounds here, too: nothing recurs then
+        for _ in range(int(np.ceil(SAMPLED * STEPS * ratio[kept].max(initial=0.0)))):
+            state = advanced(equations, state)
+            history.append(state[: model.mass.shape[-1]])
+        series = np.stack(history, axis=-1) if history else np.zeros((weight.shape[1], 0, 1))
+        read = [_read(series[:, i], weight[i], float(equations.step[i]), harmonics) for i in range(kept.size)]
     moving = np.array([i for i, found in enumerate(read) if found is not None], dtype=np.intp)
     found = [item for item in read if item is not None]
     shape = (len(found), weight.shape[1], 2 * harmonics + 1)

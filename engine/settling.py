@@ -67,6 +67,16 @@ class Flow:
         return self.half, self.bend, self.forms, self.step, self.angle
 
 
+def natural_rates(model: ReducedModel, member: IntArray) -> FloatArray:
+    """Return the lowest and the highest natural angular frequency of members (starts,): (2, starts) [rad/s].
+
+    Others of the stack may be statically unstable.
+    """
+    known, own = np.unique(member, return_inverse=True)
+    square = np.linalg.eigvals(np.linalg.solve(model.mass[known], model.stiffness[known])).real
+    return np.asarray(np.sqrt(np.stack([square.min(axis=-1), square.max(axis=-1)]))[:, own])
+
+
 def flow(model: ReducedModel, member: IntArray, wind_speed: FloatArray, steps: int = STEPS) -> Flow:
     """Set up the equations of members (starts,) of a stack of models at wind speeds (starts,)."""
     from scipy.linalg import expm  # noqa: PLC0415 - only who asks for the integration waits for scipy
@@ -83,8 +93,7 @@ def flow(model: ReducedModel, member: IntArray, wind_speed: FloatArray, steps: i
     bend = speed[..., None] ** 2 * (inverse[:, None] @ load.table[member][..., load.forms.shape[-2] :])
     by_wind = np.repeat([np.ones(member.size), wind_speed], m, axis=0)
     forms = np.moveaxis(load.forms[member], 0, -1) / by_wind
-    fastest = np.sqrt(np.linalg.eigvals(np.linalg.solve(model.mass, model.stiffness)).real.max(axis=-1))
-    step = 2.0 * np.pi / (fastest[member] * steps)
+    step = 2.0 * np.pi / (natural_rates(model, member)[1] * steps)
     angle = np.abs(load.angle[member]).max(axis=1).T / by_wind
     half = expm(0.5 * step[:, None, None] * linear)
     return Flow(np.moveaxis(half, 0, -1).copy(), np.moveaxis(bend, 0, -1).copy(), forms.copy(), step, angle.copy())

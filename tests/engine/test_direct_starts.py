@@ -11,7 +11,7 @@ from engine.cycles import Cycles, find_cycles, judged_orbits, solved_starts
 from engine.direct_starts import WINDS, direct_starts
 from engine.family import Starts
 from engine.harmonic import Orbits, half_peak_to_peak, pick
-from engine.hybrid import ReducedModel
+from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability
 from engine.spec import Check, Model
 from engine.stability import critical_wind_speeds
@@ -52,6 +52,17 @@ def test_no_wind_speeds_and_no_stable_models_give_no_guesses() -> None:
     assert direct_starts(model, np.zeros(0), 5).member.size == 0
     unstable = replace(model, statically_unstable=np.ones(1, dtype=np.bool_))
     assert direct_starts(unstable, WIND, 5).member.size == 0
+
+
+def test_a_statically_unstable_model_of_the_stack_changes_nothing() -> None:
+    alone = hybrid(source_line(2))
+    pair = take(alone, np.zeros(2, dtype=np.intp))
+    stiffness = pair.stiffness.copy()
+    stiffness[0] *= -1.0
+    pair = replace(pair, stiffness=stiffness, statically_unstable=np.array([True, False]))
+    found, expected = (direct_starts(model, np.array([6.0]), 3) for model in (pair, alone))
+    assert set(found.member.tolist()) == {1}
+    assert found.orbits.coefficients == pytest.approx(expected.orbits.coefficients, abs=1e-9)
 
 
 def test_a_cycle_that_nothing_else_leads_to_is_found_and_followed(monkeypatch: pytest.MonkeyPatch) -> None:
