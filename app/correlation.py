@@ -60,6 +60,11 @@ def trace_parent() -> str | None:
     return _current.get().trace_parent
 
 
+def of_this_work() -> Ids:
+    """Return the ids that a job made here is to carry."""
+    return Ids(request_id(), trace_parent())
+
+
 @contextmanager
 def bound(ids: Ids) -> Iterator[None]:
     """Work under these ids, and afterwards under those of before."""

@@ -72,28 +72,34 @@ class Groups(Generic[Question, Answer]):
 
 
 def committed_together(
-    sessions: sessionmaker[Session], works: Sequence[Callable[[Session], Answer]]
-) -> list[Answer | Exception]:
-    """Do several pieces of work in one transaction; if one of them fails, each anew in a transaction of its own.
+    sessions: sessionmaker[Session],
+    work: Callable[[Session, Sequence[Question]], Sequence[Answer | Exception]],
+    questions: Sequence[Question],
+) -> Sequence[Answer | Exception]:
+    """Answer several questions in one transaction; if that fails, each anew in a transaction of its own.
 
-    So the others know nothing of one that fails. A piece of work may be called twice and must change nothing but the
-    database.
+    So the others know nothing of one that fails. The work may be done twice and must change nothing but the database.
     """
-    if len(works) > 1:
+    if len(questions) > 1:
         try:
             with sessions.begin() as session:
-                return [work(session) for work in works]
+                return work(session, questions)
         except Exception:  # whoever's fault it is is found below
             pass
-    return [_alone(sessions, work) for work in works]
+    return [_alone(sessions, work, question) for question in questions]
 
 
-def _alone(sessions: sessionmaker[Session], work: Callable[[Session], Answer]) -> Answer | Exception:
+def _alone(
+    sessions: sessionmaker[Session],
+    work: Callable[[Session, Sequence[Question]], Sequence[Answer | Exception]],
+    question: Question,
+) -> Answer | Exception:
     try:
         with sessions.begin() as session:
-            return work(session)
+            (answer,) = work(session, [question])
     except Exception as error:
         return error
+    return answer
 
 
 def _settle(future: "asyncio.Future[Answer]", answer: Answer | Exception) -> None:

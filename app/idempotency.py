@@ -6,7 +6,7 @@ for long, and one that comes back late finds its key with another. The caller co
 """
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 from typing import Any
@@ -54,15 +54,27 @@ def fingerprint(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
-def keep(session: Session, key: Key, request: str, answer: Answer) -> None:
-    """Keep the answer of a request with this fingerprint for as long as keys are kept.
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What is to be kept under a key: the fingerprint of the request, and its answer."""
 
-    Raises
-    ------
-    KeyTaken
-        If the key is in use; on PostgreSQL this waits for a transaction that is about to use it.
+    key: Key
+    request: str
+    answer: Answer
+
+
+def keep(session: Session, kept: Sequence[Kept]) -> set[UUID]:
+    """Keep answers for as long as keys are kept, and return the holders of the keys that were free.
+
+    A key that is in use stays as it is, and of two equal ones the first gets it. On PostgreSQL this waits for a
+    transaction that is about to use a key; the keys are taken in order, so that two such groups never wait for each
+    other.
     """
-    _take(session, key, KEPT, {"fingerprint": request, **_columns(answer)})
+    first = {(item.key.owner, item.key.value): item for item in reversed(kept)}
+    ordered = [first[place] for place in sorted(first)]
+    return _take(
+        session, KEPT, [(item.key, {"fingerprint": item.request, **_columns(item.answer)}) for item in ordered]
+    )
 
 
 def hold(session: Session, key: Key, lease: timedelta) -> None:
@@ -73,7 +85,9 @@ def hold(session: Session, key: Key, lease: timedelta) -> None:
     KeyTaken
         If the key is in use.
     """
-    _take(session, key, lease, {"fingerprint": None, "status": None, "headers": None, "body": None})
+    nothing = {"fingerprint": None, "status": None, "headers": None, "body": None}
+    if not _take(session, lease, [(key, nothing)]):
+        raise KeyTaken
 
 
 def renew(session: Session, key: Key, lease: timedelta) -> None:
@@ -120,17 +134,22 @@ def forget_expired(session: Session) -> None:
     session.execute(delete(IdempotencyKey).where(or_(over, IdempotencyKey.expires_at <= now - KEPT)))
 
 
-def _take(session: Session, key: Key, lasting: timedelta, values: Mapping[str, object]) -> None:
-    """Insert the row of a key, or put it in the place of one whose time is over, in one statement."""
+def _take(session: Session, lasting: timedelta, wanted: Sequence[tuple[Key, Mapping[str, object]]]) -> set[UUID]:
+    """Insert the rows of keys, or put them in the place of some whose time is over; return the holders of those taken.
+
+    That is one statement, however many there are.
+    """
     now = database_time(session)
-    changed = {"holder": key.holder, "expires_at": now + lasting, **values}
+    rows = [
+        {"owner": key.owner, "key": key.value, "holder": key.holder, "expires_at": now + lasting, **values}
+        for key, values in wanted
+    ]
     insert = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert
-    statement = insert(IdempotencyKey).values(owner=key.owner, key=key.value, **changed)
+    statement = insert(IdempotencyKey)
+    changed = {name: statement.excluded[name] for name in rows[0] if name not in {"owner", "key"}}
     over = IdempotencyKey.expires_at <= now
-    taken = statement.on_conflict_do_update(index_elements=["owner", "key"], set_=changed, where=over)
-    with session.no_autoflush:  # jobs that are made together are written together
-        if session.execute(taken.returning(IdempotencyKey.key)).first() is None:
-            raise KeyTaken
+    taking = statement.on_conflict_do_update(index_elements=["owner", "key"], set_=changed, where=over)
+    return set(session.scalars(taking.returning(IdempotencyKey.holder), rows))
 
 
 def _change(session: Session, key: Key, values: Mapping[str, object]) -> None:

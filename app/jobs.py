@@ -15,7 +15,8 @@ from uuid_utils.compat import uuid7
 
 from app import audit, correlation, tallies
 from app.auth import Caller
-from app.db import database_time
+from app.correlation import Ids
+from app.db import as_record, database_time, insert_rows
 from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
 LABELS = frozenset({"name", "asset_id", "tags"})
@@ -44,45 +45,62 @@ class JobFilters:
     created_after: datetime | None = None
 
 
-def create(
-    session: Session,
-    caller: Caller,
-    document: Mapping[str, Any],
-    *,
-    name: str | None = None,
-    asset_id: str | None = None,
-    tags: Mapping[str, str] | None = None,
-) -> Job:
-    """Add an accepted job that is not yet dispatched, with its tags and first event, for one commit by the caller.
+@dataclass(frozen=True, slots=True)
+class Submission:
+    """A job that is asked for: by whom, what is to be computed, under which labels, and the ids of the request."""
 
-    Nothing is written before the session is flushed, so that jobs made together are written together.
+    caller: Caller
+    document: Mapping[str, Any]
+    name: str | None = None
+    asset_id: str | None = None
+    tags: Mapping[str, str] = field(default_factory=dict)
+    ids: Ids = field(default_factory=correlation.of_this_work)
+
+
+def draft(asked: Submission, now: datetime) -> Job:
+    """Return an accepted job that is not yet dispatched, for `insert`; no session knows it.
 
     Raises
     ------
     ValueError
         If the document holds NaN or an infinity, which JSON cannot carry.
     """
-    job = Job(
+    return Job(
         id=uuid7(),
-        owner=caller.owner,
-        created_at=database_time(session),
+        owner=asked.caller.owner,
+        created_at=now,
         status=JobStatus.ACCEPTED,
         progress=0.0,
         step="",
         attempt=0,
         cancel_requested=False,
-        name=name,
-        asset_id=asset_id,
-        document=dict(document),
-        input_hash=input_hash(document),
-        request_id=correlation.request_id(),
-        trace_parent=correlation.trace_parent(),
-        tags=[JobTag(key=key, value=value) for key, value in sorted((tags or {}).items())],
+        name=asked.name,
+        asset_id=asked.asset_id,
+        document=dict(asked.document),
+        input_hash=input_hash(asked.document),
+        request_id=asked.ids.request_id,
+        trace_parent=asked.ids.trace_parent,
+        tags=[JobTag(key=key, value=value) for key, value in sorted(asked.tags.items())],
     )
-    session.add(job)
-    record(session, job.id, JobEventKind.ACCEPTED)
-    audit.record(session, caller, AuditAction.JOB_SUBMITTED, job.id, at=job.created_at)
-    return job
+
+
+def insert(session: Session, made: Sequence[tuple[Caller, Job]]) -> None:
+    """Write drafted jobs with their tags, their first event and the record of who made them: a statement a table.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If the database refuses a row, or fails.
+    """
+    insert_rows(session, Job, [as_record(job) for _, job in made])
+    tags = [{"job_id": job.id, "key": tag.key, "value": tag.value} for _, job in made for tag in job.tags]
+    insert_rows(session, JobTag, tags)
+    kind = JobEventKind.ACCEPTED
+    insert_rows(
+        session, JobEvent, [{"job_id": job.id, "at": job.created_at, "kind": kind, "attempt": 0} for _, job in made]
+    )
+    action = AuditAction.JOB_SUBMITTED
+    audit.record_all(session, [(caller, action, job.id, job.created_at) for caller, job in made])
 
 
 def input_hash(document: Mapping[str, Any]) -> str:

@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from sqlalchemy import Engine
 from starlette.types import ASGIApp
 
-from app import errors, metrics, telemetry
+from app import errors, metrics, submissions, telemetry
 from app.access import Access
 from app.convert import ENGINE_VERSION
 from app.db import make_engine, session_factory
@@ -118,7 +118,7 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
-    app.state.inbox = Groups("inbox", partial(committed_together, app.state.writers))
+    app.state.inbox = Groups("inbox", partial(committed_together, app.state.writers, submissions.accept))
     app.state.dispatcher = Groups("dispatcher", app.state.sender.send_together)
     app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
     app.state.job_watch = Watch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)

@@ -6,13 +6,13 @@ whether it was a job or in a batch; a study or a search for places as a whole, b
 """
 
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 from uuid import UUID
 
 import orjson
-from sqlalchemy import ColumnElement, Table, and_, func, insert, literal, select
+from sqlalchemy import ARRAY, ColumnElement, String, Table, and_, bindparam, exists, func, insert, literal, select
 from sqlalchemy.orm import Session
 
 from app import jobs, tallies
@@ -31,20 +31,38 @@ class Source:
     line_number: int | None = None
 
 
-def find(session: Session, owner: str, document: Mapping[str, Any], engine_version: str) -> Source | None:
-    """Return results of the owner for the same input, labels aside, computed by this version of the engine.
+def find(session: Session, asked: Sequence[tuple[str, Mapping[str, Any]]], engine_version: str) -> list[Source | None]:
+    """Return for each owner and document stored results of the same input, labels aside, by this engine version.
 
+    That is one statement for many lines, and one more for each that is found; studies and placements are one each.
     What is to be copied is locked until the end of the transaction, so that nobody removes it.
     """
-    line_hash = hash_of(owner, document)
-    with session.no_autoflush:  # jobs that are made together are written together
-        if line_hash is None:
-            return _found_whole(session, owner, document, engine_version)
-        # Whichever is found first: to ask for an order would lead the database from the index on the input to another.
-        statement = select(PointRow.job_id, PointRow.point, PointRow.batch_id).where(
-            PointRow.input_hash == line_hash, *_usable(engine_version)
-        )
-        row = session.execute(statement.limit(1).with_for_update(read=True, key_share=True)).one_or_none()
+    hashes = [hash_of(owner, document) for owner, document in asked]
+    wanted = {line_hash for line_hash in hashes if line_hash is not None}
+    known = _known(session, wanted, engine_version) if len(wanted) > 1 else wanted
+    lines = {line_hash: _found_line(session, line_hash, engine_version) for line_hash in known}
+    return [
+        _found_whole(session, owner, document, engine_version) if line_hash is None else lines.get(line_hash)
+        for line_hash, (owner, document) in zip(hashes, asked, strict=True)
+    ]
+
+
+def _known(session: Session, hashes: Collection[str], engine_version: str) -> Collection[str]:
+    """Return those of these hashes under which something is stored; SQLite, in this process, is asked one by one."""
+    if session.get_bind().dialect.name != "postgresql":
+        return hashes
+    listed = bindparam("hashes", list(hashes), type_=ARRAY(String))
+    each = func.unnest(listed).column_valued("asked")
+    there = exists().where(PointRow.input_hash == each, *_usable(engine_version))
+    return set(session.scalars(select(each).where(there)))
+
+
+def _found_line(session: Session, line_hash: str, engine_version: str) -> Source | None:
+    # Whichever is found first: to ask for an order would lead the database from the index on the input to another.
+    statement = select(PointRow.job_id, PointRow.point, PointRow.batch_id).where(
+        PointRow.input_hash == line_hash, *_usable(engine_version)
+    )
+    row = session.execute(statement.limit(1).with_for_update(read=True, key_share=True)).one_or_none()
     return Source(row.job_id, row.point if row.batch_id is not None else None) if row is not None else None
 
 
@@ -56,15 +74,18 @@ def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engi
     return Source(job_id) if job_id is not None else None
 
 
-def answer(session: Session, job: Job, source: Source, engine_version: str) -> None:
-    """Give a new job the results of another, or of a line, and end it."""
+def adopt(job: Job, source: Source, engine_version: str) -> None:
+    """Let a drafted job end with the results of another, or of a line; `copy` gives it those once it is inserted."""
     job.status, job.progress, job.engine_version = JobStatus.SUCCESSFUL, 1.0, engine_version
     job.started_at = job.finished_at = job.created_at
     job.reused_from = source.job_id
-    session.flush()
+
+
+def copy(session: Session, job_id: UUID, source: Source) -> None:
+    """Give a job that has adopted results their copy, and note its end."""
     table = cast(Table, PointRow.__table__)
     copied, said = [table.c.job_id == source.job_id], f"results of job {source.job_id}"
-    own: dict[str, ColumnElement[Any]] = {"job_id": literal(job.id, table.c.job_id.type)}
+    own: dict[str, ColumnElement[Any]] = {"job_id": literal(job_id, table.c.job_id.type)}
     if source.line_number is not None:
         copied.append(table.c.point == source.line_number)
         said = f"results of line {source.line_number} of a batch, in its chunk {source.job_id}"
@@ -73,8 +94,8 @@ def answer(session: Session, job: Job, source: Source, engine_version: str) -> N
     others = {column.name: column for column in table.columns}
     columns = {**others, **own}
     session.execute(insert(table).from_select(list(columns), select(*columns.values()).where(*copied)))
-    jobs.record(session, job.id, JobEventKind.SUCCESSFUL, detail=said)
-    tallies.add_end(session, job.status, chunk=False)
+    jobs.record(session, job_id, JobEventKind.SUCCESSFUL, detail=said)
+    tallies.add_end(session, JobStatus.SUCCESSFUL, chunk=False)
 
 
 def hash_of(owner: str, document: Mapping[str, Any]) -> str | None:

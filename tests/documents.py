@@ -11,7 +11,9 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import jobs
 from app.auth import LOCAL, Caller, Scope
 from app.convert import TABLES, PointResult
+from app.db import database_time
 from app.examples import example
+from app.jobs import Submission
 from app.settings import Settings
 from app.tables import Job, JobEvent, PointRow
 
@@ -65,10 +67,17 @@ def hasty_settings(directory: Path) -> Settings:
     )
 
 
+def create_job(session: Session, caller: Caller, document: dict[str, Any], **labels: Any) -> Job:
+    """Make a job that waits for a worker, for the caller of this to commit."""
+    job = jobs.draft(Submission(caller, document, **labels), database_time(session))
+    jobs.insert(session, [(caller, job)])
+    return job
+
+
 def add_job(sessions: sessionmaker[Session], document: dict[str, Any] | None = None) -> UUID:
     """Make a committed job and return its id."""
     with sessions.begin() as session:
-        return jobs.create(session, LOCAL, document or {"line": {}}).id
+        return create_job(session, LOCAL, document or {"line": {}}).id
 
 
 def look(sessions: sessionmaker[Session], job_id: UUID) -> Job:

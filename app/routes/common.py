@@ -17,9 +17,8 @@ from app.faults import Fault
 from app.groups import Groups
 from app.queue import Sender
 from app.settings import Settings
+from app.submissions import Order
 from app.tables import Job, JobStatus
-
-Change = Callable[[Session], Any]
 
 PREFIX = "/v1"
 RETRY_SECONDS = "1"
@@ -54,8 +53,8 @@ async def _caller(request: Request) -> Caller:
     return caller
 
 
-async def _inbox(request: Request) -> Groups[Change, Any]:
-    inbox: Groups[Change, Any] = request.app.state.inbox
+async def _inbox(request: Request) -> Groups[Order, Job]:
+    inbox: Groups[Order, Job] = request.app.state.inbox
     return inbox
 
 
@@ -73,7 +72,7 @@ SettingsOf = Annotated[Settings, Depends(_settings)]
 Readers = Annotated[sessionmaker[Session], Depends(_readers)]
 Writers = Annotated[sessionmaker[Session], Depends(_writers)]
 SenderOf = Annotated[Sender, Depends(_sender)]
-Inbox = Annotated[Groups[Change, Any], Depends(_inbox)]
+Inbox = Annotated[Groups[Order, Job], Depends(_inbox)]
 Dispatcher = Annotated[Groups[UUID, bool], Depends(_dispatcher)]
 Statuses = Annotated[Groups[UUID, Job | None], Depends(_statuses)]
 CallerOf = Annotated[Caller, Depends(_caller)]

@@ -1,6 +1,5 @@
 """Jobs: submitted, looked at, listed, cancelled."""
 
-from contextvars import copy_context
 from datetime import UTC, datetime
 from functools import partial
 from typing import Annotated
@@ -12,11 +11,11 @@ from fastapi import APIRouter, Body, Depends, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
-from sqlalchemy.orm import Session
 
-from app import convert, idempotency, jobs, paging, reuse, schemas, webhooks
+from app import convert, idempotency, jobs, paging, schemas
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
-from app.jobs import CancelOutcome, JobFilters
+from app.idempotency import KeyTaken
+from app.jobs import CancelOutcome, JobFilters, Submission
 from app.routes import documentation
 from app.routes.common import (
     PREFIX,
@@ -35,12 +34,13 @@ from app.routes.common import (
     job_document,
     vet_webhook,
 )
-from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once_together
+from app.routes.once import KEY_PROBLEMS, KeyOf, as_kept, first_answer
 from app.routes.waiting import APPLIED_HEADER, JobWatch, Wait, applied, wait_for_end
 from app.schemas.answers import JobDocument, JobPage
 from app.schemas.fields import Label
 from app.settings import cursor_key
-from app.tables import ENDED, JobStatus
+from app.submissions import Keyed, Order
+from app.tables import ENDED, Job, JobStatus
 
 router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
 
@@ -106,6 +106,19 @@ async def _checked(
     return document
 
 
+async def _ordered(
+    document: Annotated[schemas.JobRequest, Depends(_checked)], caller: CallerOf, key: KeyOf, may_reuse: MayReuse
+) -> Order:
+    line, kept = document.line, document.kept()
+
+    def fingerprint() -> str:
+        return idempotency.fingerprint(router.prefix, jobs.canonical(kept), document.webhook_url or "")
+
+    submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
+    keyed = Keyed(key, fingerprint, lambda job: as_kept(_accepted(job))) if key is not None else None
+    return Order(submission, document.webhook_url, may_reuse, keyed)
+
+
 @router.post(
     "",
     status_code=202,
@@ -123,40 +136,26 @@ async def _checked(
     },
 )
 async def submit(
-    document: Annotated[schemas.JobRequest, Depends(_checked)],
-    caller: CallerOf,
-    key: KeyOf,
-    inbox: Inbox,
-    dispatcher: Dispatcher,
-    may_reuse: MayReuse,
+    order: Annotated[Order, Depends(_ordered)], inbox: Inbox, dispatcher: Dispatcher, readers: Readers
 ) -> Response:
     """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already.
 
     If the owner has results of the same input by this version of the engine, of a job or of a line in a batch, the job
     has ended with them already, and `reused_from` names where they come from. `Cache-Control: no-cache` computes anew.
     """
-    line = document.line
-    kept = document.kept()
+    try:
+        job = await inbox.ask(order)
+    except KeyTaken:
+        assert order.keyed is not None
+        return await to_thread.run_sync(first_answer, readers, order.keyed.key, order.keyed.fingerprint)
+    if job.status is JobStatus.ACCEPTED:
+        dispatcher.put(job.id)
+    return _accepted(job)
 
-    def make(session: Session) -> Made:
-        source = reuse.find(session, caller.owner, kept, convert.ENGINE_VERSION) if may_reuse else None
-        job = jobs.create(session, caller, kept, name=line.name, asset_id=line.asset_id, tags=line.tags)
-        headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
-        if document.webhook_url is not None:
-            session.flush()
-            webhooks.register(session, caller.owner, document.webhook_url, job_id=job.id)
-        if source is not None:
-            reuse.answer(session, job, source, convert.ENGINE_VERSION)
-        return Made(JSONResponse(job_document(job), 202, headers), [job.id] if source is None else [])
 
-    def fingerprint() -> str:
-        return idempotency.fingerprint(router.prefix, jobs.canonical(kept), document.webhook_url or "")
-
-    context = copy_context()  # with the ids of this request
-    made = await once_together(inbox, key, fingerprint, lambda session: context.run(make, session))
-    for job_id in made.job_ids:
-        dispatcher.put(job_id)
-    return made.answer
+def _accepted(job: Job) -> JSONResponse:
+    headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
+    return JSONResponse(job_document(job), 202, headers)
 
 
 @router.get(

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from contextvars import copy_context
 from dataclasses import dataclass
 from datetime import timedelta
-from typing import Annotated, Any
+from typing import Annotated
 from uuid import UUID
 
 from fastapi import Depends, Header
@@ -17,9 +17,8 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import idempotency
 from app.errors import ProblemError, ProblemKind
-from app.groups import Groups
-from app.idempotency import Answer, Key, KeyTaken
-from app.routes.common import RETRY_SECONDS, CallerOf, Change
+from app.idempotency import Answer, Kept, Key, KeyTaken
+from app.routes.common import RETRY_SECONDS, CallerOf
 
 _RENEWALS_A_LEASE = 5
 _REPLAYED = "Idempotency-Replayed"
@@ -69,32 +68,13 @@ def once(
     """
     try:
         with writers.begin() as session:
-            return _keeping(key, fingerprint, make)(session)
+            made = make(session)
+            if key is not None and not idempotency.keep(session, [Kept(key, fingerprint(), as_kept(made.answer))]):
+                raise KeyTaken
+            return made
     except KeyTaken:
         assert key is not None
         return Made(first_answer(writers, key, fingerprint))
-
-
-async def once_together(
-    inbox: Groups[Change, Any],
-    key: Key | None,
-    fingerprint: Callable[[], str],
-    make: Callable[[Session], Made],
-) -> Made:
-    """Do as `once` does, in one transaction with what others ask at the same time.
-
-    Raises
-    ------
-    ProblemError
-        As from `once`.
-    """
-    try:
-        made: Made = await inbox.ask(_keeping(key, fingerprint, make))
-    except KeyTaken:
-        assert key is not None
-        found = await inbox.ask(lambda session: idempotency.find(session, key))
-        return Made(_replayed(found, fingerprint))
-    return made
 
 
 def held(
@@ -166,10 +146,6 @@ def first_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callabl
     """
     with sessions() as session:
         found = idempotency.find(session, key)
-    return _replayed(found, fingerprint)
-
-
-def _replayed(found: tuple[str, Answer] | None, fingerprint: Callable[[], str]) -> Response:
     if found is None:
         raise _in_flight()
     first, answer = found
@@ -183,18 +159,6 @@ def as_kept(answer: Response) -> Answer:
     """Return what is kept of an answer."""
     headers = {name: value for name, value in answer.headers.items() if name not in _OF_THE_BODY}
     return Answer(answer.status_code, headers, bytes(answer.body).decode())
-
-
-def _keeping(
-    key: Key | None, fingerprint: Callable[[], str], make: Callable[[Session], Made]
-) -> Callable[[Session], Made]:
-    def kept(session: Session) -> Made:
-        made = make(session)
-        if key is not None:
-            idempotency.keep(session, key, fingerprint(), as_kept(made.answer))
-        return made
-
-    return kept
 
 
 def _in_flight() -> ProblemError:

@@ -5,9 +5,10 @@ from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app import idempotency
-from app.idempotency import Answer, Key, KeyTaken, new_key
+from app.idempotency import Answer, Kept, Key, KeyTaken, new_key
 from app.settings import Settings
 from app.tables import IdempotencyKey
+from tests.app.test_costs import counted
 from worker.sweep import sweep
 
 HELD = timedelta(seconds=15)
@@ -24,7 +25,8 @@ def age(sessions: sessionmaker[Session], by: timedelta) -> None:
 
 def keep(sessions: sessionmaker[Session], key: Key, request: str, answer: Answer) -> None:
     with sessions.begin() as session:
-        idempotency.keep(session, key, request, answer)
+        if not idempotency.keep(session, [Kept(key, request, answer)]):
+            raise KeyTaken
 
 
 def found(sessions: sessionmaker[Session], key: Key) -> tuple[str, Answer] | None:
@@ -37,6 +39,17 @@ def test_the_first_answer_stays(sessions: sessionmaker[Session]) -> None:
     with pytest.raises(KeyTaken):
         keep(sessions, new_key("a", "k"), "g", OTHER)
     assert found(sessions, new_key("a", "k")) == ("f", ANSWER)
+
+
+def test_of_many_keys_those_that_are_free_are_taken_in_one_statement(sessions: sessionmaker[Session]) -> None:
+    keep(sessions, new_key("a", "used"), "f", ANSWER)
+    keys = [new_key("a", "used"), new_key("b", "z"), new_key("a", "z"), new_key("b", "z")]
+    with sessions.begin() as session, counted() as statements:
+        taken = idempotency.keep(session, [Kept(key, key.holder.hex, OTHER) for key in keys])
+    assert taken == {keys[1].holder, keys[2].holder}  # of two that are equal, the first
+    assert len([text for text in statements if text.startswith("INSERT")]) == 1
+    assert found(sessions, keys[0]) == ("f", ANSWER)
+    assert found(sessions, keys[3]) == (keys[1].holder.hex, OTHER)
 
 
 def test_keys_of_two_owners_are_two(sessions: sessionmaker[Session]) -> None:

@@ -9,7 +9,7 @@ from app import jobs, leases
 from app.auth import LOCAL
 from app.jobs import CancelOutcome, JobFilters
 from app.tables import Job, JobEvent, JobStatus, JobTag, PointRow
-from tests.documents import STRANGER, add_job, history, look, point_result
+from tests.documents import STRANGER, add_job, create_job, history, look, point_result
 
 DOCUMENT = {"line": {"b": 1.5, "a": "é"}, "analysis": {"loops": [1]}}
 
@@ -25,7 +25,7 @@ def cancel(sessions: sessionmaker[Session], job_id: UUID) -> CancelOutcome:
 
 def test_created_job_is_kept_whole(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
-        made = jobs.create(session, LOCAL, DOCUMENT, name="C11", asset_id="L1", tags={"region": "north", "ice": "D"})
+        made = create_job(session, LOCAL, DOCUMENT, name="C11", asset_id="L1", tags={"region": "north", "ice": "D"})
     with sessions() as session:
         job = jobs.get(session, LOCAL.owner, made.id)
         assert job is not None
@@ -39,7 +39,7 @@ def test_created_job_is_kept_whole(sessions: sessionmaker[Session]) -> None:
 
 def test_job_tags_and_event_are_one_transaction(sessions: sessionmaker[Session]) -> None:
     with pytest.raises(RuntimeError), sessions.begin() as session:
-        jobs.create(session, LOCAL, DOCUMENT, tags={"a": "b"})
+        create_job(session, LOCAL, DOCUMENT, tags={"a": "b"})
         raise RuntimeError
     with sessions() as session:
         counts = [session.scalar(select(func.count()).select_from(table)) for table in (Job, JobTag, JobEvent)]
@@ -75,9 +75,9 @@ def test_pages_hold_every_job_once_newest_first(sessions: sessionmaker[Session])
 
 def test_filters(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
-        north = jobs.create(session, LOCAL, DOCUMENT, asset_id="L1", tags={"region": "north", "ice": "C"})
+        north = create_job(session, LOCAL, DOCUMENT, asset_id="L1", tags={"region": "north", "ice": "C"})
     with sessions.begin() as session:
-        south = jobs.create(session, LOCAL, DOCUMENT, asset_id="L2", tags={"region": "south", "ice": "C"})
+        south = create_job(session, LOCAL, DOCUMENT, asset_id="L2", tags={"region": "south", "ice": "C"})
     cancel(sessions, south.id)
 
     def found(filters: JobFilters) -> list[UUID]:
@@ -114,7 +114,7 @@ def test_cancel_asks_a_running_job_once(sessions: sessionmaker[Session]) -> None
 
 def test_cancel_removes_a_finished_job_with_all_its_rows(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
-        job_id = jobs.create(session, LOCAL, DOCUMENT, tags={"a": "b"}).id
+        job_id = create_job(session, LOCAL, DOCUMENT, tags={"a": "b"}).id
         held = leases.claim(session, job_id, "here", 60.0)
         assert held is not None
         leases.finish(session, held, [point_result()])
@@ -130,7 +130,7 @@ def test_cancel_removes_a_finished_job_with_all_its_rows(sessions: sessionmaker[
 def test_jobs_of_another_owner_are_not_there(sessions: sessionmaker[Session]) -> None:
     job_id = add_job(sessions)
     with sessions.begin() as session:
-        theirs = jobs.create(session, STRANGER, DOCUMENT)
+        theirs = create_job(session, STRANGER, DOCUMENT)
     with sessions.begin() as session:
         assert jobs.get(session, STRANGER.owner, job_id) is None
         assert jobs.cancel(session, STRANGER, job_id) is CancelOutcome.MISSING

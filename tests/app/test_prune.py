@@ -5,7 +5,7 @@ import pytest
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import audit, jobs, leases, prune
+from app import audit, leases, prune
 from app.auth import LOCAL
 from app.prune import Pruned, Retention
 from app.tables import (
@@ -20,7 +20,7 @@ from app.tables import (
     PointRow,
 )
 from tests.app.test_batches import add_batch, claim, run
-from tests.documents import add_job, look, point_result
+from tests.documents import add_job, create_job, look, point_result
 
 KEPT = Retention(timedelta(days=30), timedelta(days=365))
 DAYS = timedelta(days=1)
@@ -34,7 +34,7 @@ def rows(sessions: sessionmaker[Session], table: type[Base]) -> int:
 def finished(sessions: sessionmaker[Session], days_ago: int) -> UUID:
     """Make a job with a tag and a result that ended so long ago."""
     with sessions.begin() as session:
-        job_id = jobs.create(session, LOCAL, {"line": {}}, tags={"a": "b"}).id
+        job_id = create_job(session, LOCAL, {"line": {}}, tags={"a": "b"}).id
     with sessions.begin() as session:
         held = leases.claim(session, job_id, "here", 60.0)
         assert held is not None

@@ -12,16 +12,16 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, MetaData, select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import idempotency, jobs, keys, leases, tallies, webhooks, workers
+from app import idempotency, keys, leases, tallies, webhooks, workers
 from app.auth import LOCAL, Scope
 from app.db import make_engine
-from app.idempotency import Answer, new_key
+from app.idempotency import Answer, Kept, new_key
 from app.leases import Failure
 from app.serve import alembic_config
 from app.settings import Settings
 from app.tables import Base, FailureKind
 from tests.app.test_batches import add_batch, claim, run
-from tests.documents import add_job, point_result
+from tests.documents import add_job, create_job, point_result
 
 Rows = dict[str, list[dict[str, Any]]]
 
@@ -43,10 +43,10 @@ def fill(sessions: sessionmaker[Session], settings: Settings) -> None:
         points = [point_result(0), point_result(1, failure="It overflowed.")]
         assert leases.finish(session, held[1], points)
         assert leases.fail(session, held[2], Failure(FailureKind.TIME_LIMIT, "too long"))
-        tagged = jobs.create(session, LOCAL, {"line": {}}, name="n", asset_id="a", tags={"b": "c"})
+        tagged = create_job(session, LOCAL, {"line": {}}, name="n", asset_id="a", tags={"b": "c"})
         webhooks.register(session, LOCAL.owner, "https://a.example/hook", job_id=tagged.id)
         keys.create(session, "acme", tuple(Scope), "SCADA", None)
-        idempotency.keep(session, new_key("acme", "k"), "f", Answer(202, {"a": "b"}, "{}"))
+        idempotency.keep(session, [Kept(new_key("acme", "k"), "f", Answer(202, {"a": "b"}, "{}"))])
         workers.report(session, settings, "here")
     batch_id, (first, second, _open) = add_batch(sessions, 2, 2, 1, rejected=1)
     run(sessions, first)
