@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from sqlite3 import Connection as SQLiteConnection
 from typing import Any, cast
@@ -20,7 +21,6 @@ from sqlalchemy import (
     create_engine,
     event,
     insert,
-    inspect,
     make_url,
     select,
 )
@@ -113,18 +113,18 @@ def insert_rows(session: Session, kind: type[Base], records: Sequence[Mapping[st
     if session.get_bind().dialect.name != "postgresql":
         session.execute(insert(table), records)
         return
-    names = list(records[0])
+    names = tuple(records[0])
     as_json = {column.name for column in table.columns if isinstance(column.type, JSON)}
-    copied = SQL("COPY {} ({}) FROM STDIN").format(Identifier(table.name), SQL(", ").join(map(Identifier, names)))
     cursor: Any = session.connection().connection.cursor()
-    with _as_sqlalchemy_errors(), cursor, cursor.copy(copied) as copy:
+    with _as_sqlalchemy_errors(), cursor, cursor.copy(_copying(table.name, names)) as copy:
         for record in records:
             copy.write_row([_json_text(record[n]) if n in as_json else record[n] for n in names])
 
 
-def as_record(row: Base) -> dict[str, Any]:
-    """Return the columns of an object that no session knows yet, for `insert_rows`."""
-    return {attribute.key: getattr(row, attribute.key) for attribute in inspect(type(row)).column_attrs}
+@cache
+def _copying(table: str, names: tuple[str, ...]) -> bytes:
+    columns = SQL(", ").join(map(Identifier, names))
+    return SQL("COPY {} ({}) FROM STDIN").format(Identifier(table), columns).as_bytes()
 
 
 def _json_text(value: object) -> str | None:

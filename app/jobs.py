@@ -3,10 +3,10 @@
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from datetime import datetime
 from enum import StrEnum
-from typing import Any
+from typing import Any, NamedTuple
 from uuid import UUID
 
 from sqlalchemy import ColumnElement, Select, delete, select, tuple_
@@ -16,8 +16,8 @@ from uuid_utils.compat import uuid7
 from app import audit, correlation, tallies
 from app.auth import Caller
 from app.correlation import Ids
-from app.db import as_record, database_time, insert_rows
-from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
+from app.db import database_time, insert_rows
+from app.tables import AuditAction, BatchItem, FailureKind, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
 LABELS = frozenset({"name", "asset_id", "tags"})
 
@@ -57,43 +57,75 @@ class Submission:
     ids: Ids = field(default_factory=correlation.of_this_work)
 
 
-def draft(asked: Submission, now: datetime) -> Job:
-    """Return an accepted job that is not yet dispatched, for `insert`; no session knows it.
+class Tag(NamedTuple):
+    """A label of a job."""
+
+    key: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A job that waits for a worker, before it is stored; the names are those of `Job`."""
+
+    id: UUID
+    owner: str
+    created_at: datetime
+    name: str | None
+    asset_id: str | None
+    document: Mapping[str, Any]
+    input_hash: str
+    request_id: str | None
+    trace_parent: str | None
+    status: JobStatus = JobStatus.ACCEPTED
+    progress: float = 0.0
+    step: str = ""
+    attempt: int = 0
+    cancel_requested: bool = False
+    started_at: datetime | None = None
+    finished_at: datetime | None = None
+    failure_kind: FailureKind | None = None
+    failure_detail: str | None = None
+    engine_version: str | None = None
+    reused_from: UUID | None = None
+    tags: Sequence[Tag] = ()
+
+
+_COLUMNS = tuple(field.name for field in fields(Draft) if field.name != "tags")
+
+
+def draft(asked: Submission, now: datetime) -> Draft:
+    """Return the job of a submission.
 
     Raises
     ------
     ValueError
         If the document holds NaN or an infinity, which JSON cannot carry.
     """
-    return Job(
+    return Draft(
         id=uuid7(),
         owner=asked.caller.owner,
         created_at=now,
-        status=JobStatus.ACCEPTED,
-        progress=0.0,
-        step="",
-        attempt=0,
-        cancel_requested=False,
         name=asked.name,
         asset_id=asked.asset_id,
-        document=dict(asked.document),
+        document=asked.document,
         input_hash=input_hash(asked.document),
         request_id=asked.ids.request_id,
         trace_parent=asked.ids.trace_parent,
-        tags=[JobTag(key=key, value=value) for key, value in sorted(asked.tags.items())],
+        tags=[Tag(*tag) for tag in sorted(asked.tags.items())],
     )
 
 
-def insert(session: Session, made: Sequence[tuple[Caller, Job]]) -> None:
-    """Write drafted jobs with their tags, their first event and the record of who made them: a statement a table.
+def insert(session: Session, made: Sequence[tuple[Caller, Draft]]) -> None:
+    """Store jobs with their tags, their first event and the record of who made them: a statement a table.
 
     Raises
     ------
     sqlalchemy.exc.SQLAlchemyError
         If the database refuses a row, or fails.
     """
-    insert_rows(session, Job, [as_record(job) for _, job in made])
-    tags = [{"job_id": job.id, "key": tag.key, "value": tag.value} for _, job in made for tag in job.tags]
+    insert_rows(session, Job, [{name: getattr(job, name) for name in _COLUMNS} for _, job in made])
+    tags = [{"job_id": job.id, **tag._asdict()} for _, job in made for tag in job.tags]
     insert_rows(session, JobTag, tags)
     kind = JobEventKind.ACCEPTED
     insert_rows(

@@ -41,7 +41,7 @@ class Queue:
 
     def send(self, job_id: UUID, *, chunk: bool = False) -> None:
         """Hand over a message with the id of a job; chunks of batches wait in a queue of their own."""
-        _send(self.application, job_id, chunk=chunk, connection=self.connection)
+        _send(self.application, job_id, _queue_name(chunk), connection=self.connection)
 
     def is_empty(self, *, chunk: bool = False) -> bool:
         """Tell whether no message of jobs, or of chunks, waits for a worker."""
@@ -114,8 +114,9 @@ class Sender:
         """Send committed jobs, or chunks, as `dispatch` does: in one exchange with a broker that can take many."""
         try:
             with self.application.producer_or_acquire() as producer, producer.batch():
+                queue = self.application.amqp.queues[_queue_name(chunk)].bind(producer.channel)  # once for all
                 for job_id in job_ids:
-                    _send(self.application, job_id, chunk=chunk, producer=producer)
+                    _send(self.application, job_id, queue, producer=producer)
             self._mark(job_ids)
         except (*_BROKER_FAULTS, SQLAlchemyError) as error:
             _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids), error)
@@ -136,9 +137,9 @@ class Sender:
                 leases.mark_dispatched(session, job_ids)
 
 
-def _send(application: Celery, job_id: UUID, *, chunk: bool, **by: Any) -> None:
-    """Send a message by a connection or a producer that are given, or by one of the application's own."""
-    application.send_task(TASK_NAME, args=[str(job_id)], queue=_queue_name(chunk), retry=False, **by)
+def _send(application: Celery, job_id: UUID, queue: Any, **by: Any) -> None:
+    """Send a message by a connection or a producer to a queue, by its name or as a channel has declared it."""
+    application.send_task(TASK_NAME, args=[str(job_id)], queue=queue, retry=False, **by)
 
 
 def _dispatch_once(settings: Settings, job_ids: Sequence[UUID], *, chunk: bool) -> bool:

@@ -7,7 +7,7 @@ whether it was a job or in a batch; a study or a search for places as a whole, b
 
 import hashlib
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 from uuid import UUID
 
@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 
 from app import jobs, tallies
 from app.convert import NumberedLine, PointResult
+from app.jobs import Draft
 from app.results import PEAKS, STATIC, unpacked
 from app.tables import Job, JobEventKind, JobStatus, PointRow
 
@@ -74,11 +75,17 @@ def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engi
     return Source(job_id) if job_id is not None else None
 
 
-def adopt(job: Job, source: Source, engine_version: str) -> None:
-    """Let a drafted job end with the results of another, or of a line; `copy` gives it those once it is inserted."""
-    job.status, job.progress, job.engine_version = JobStatus.SUCCESSFUL, 1.0, engine_version
-    job.started_at = job.finished_at = job.created_at
-    job.reused_from = source.job_id
+def adopt(job: Draft, source: Source, engine_version: str) -> Draft:
+    """Return a job that ends with the results of another, or of a line; `copy` gives it those once it is stored."""
+    return replace(
+        job,
+        status=JobStatus.SUCCESSFUL,
+        progress=1.0,
+        started_at=job.created_at,
+        finished_at=job.created_at,
+        engine_version=engine_version,
+        reused_from=source.job_id,
+    )
 
 
 def copy(session: Session, job_id: UUID, source: Source) -> None:

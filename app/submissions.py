@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 
 from sqlalchemy.orm import Session
 
@@ -9,9 +10,8 @@ from app import idempotency, jobs, reuse, webhooks
 from app.convert import ENGINE_VERSION
 from app.db import database_time
 from app.idempotency import Answer, Kept, Key, KeyTaken
-from app.jobs import Submission
+from app.jobs import Draft, Submission
 from app.reuse import Source
-from app.tables import Job
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class Keyed:
 
     key: Key
     fingerprint: Callable[[], str]
-    answer: Callable[[Job], Answer]
+    answer: Callable[[Draft], Answer]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +36,11 @@ class Order:
 @dataclass(frozen=True, slots=True)
 class _Drafted:
     order: Order
-    job: Job
+    job: Draft
     source: Source | None
 
 
-def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
+def accept(session: Session, orders: Sequence[Order]) -> list[Draft | KeyTaken]:
     """Make the jobs of orders: those of the same input as stored results end with these, the others wait for a worker.
 
     An order whose key is in use gets that in the place of a job, and nothing is made for it. However many orders there
@@ -70,14 +70,12 @@ def _drafts(session: Session, orders: Sequence[Order]) -> list[_Drafted]:
     now = database_time(session)
     asked = [(order.submission.caller.owner, order.submission.document) for order in orders if order.may_reuse]
     sources = iter(reuse.find(session, asked, ENGINE_VERSION))
-    drafted = [
-        _Drafted(order, jobs.draft(order.submission, now), next(sources) if order.may_reuse else None)
-        for order in orders
-    ]
-    for item in drafted:
-        if item.source is not None:
-            reuse.adopt(item.job, item.source, ENGINE_VERSION)
-    return drafted
+    return [_drafted(order, now, next(sources) if order.may_reuse else None) for order in orders]
+
+
+def _drafted(order: Order, now: datetime, source: Source | None) -> _Drafted:
+    job = jobs.draft(order.submission, now)
+    return _Drafted(order, job if source is None else reuse.adopt(job, source, ENGINE_VERSION), source)
 
 
 def _take_keys(session: Session, drafted: Sequence[_Drafted]) -> set[object]:

@@ -13,7 +13,7 @@ from app.auth import LOCAL, Caller, Scope
 from app.convert import TABLES, PointResult
 from app.db import database_time
 from app.examples import example
-from app.jobs import Submission
+from app.jobs import Draft, Submission
 from app.settings import Settings
 from app.tables import Job, JobEvent, PointRow
 
@@ -67,7 +67,7 @@ def hasty_settings(directory: Path) -> Settings:
     )
 
 
-def create_job(session: Session, caller: Caller, document: dict[str, Any], **labels: Any) -> Job:
+def create_job(session: Session, caller: Caller, document: dict[str, Any], **labels: Any) -> Draft:
     """Make a job that waits for a worker, for the caller of this to commit."""
     job = jobs.draft(Submission(caller, document, **labels), database_time(session))
     jobs.insert(session, [(caller, job)])

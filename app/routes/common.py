@@ -15,9 +15,9 @@ from app.auth import Caller
 from app.errors import ProblemError, ProblemKind, invalid_document
 from app.faults import Fault
 from app.groups import Groups
+from app.jobs import Draft
 from app.queue import Sender
 from app.settings import Settings
-from app.submissions import Order
 from app.tables import Job, JobStatus
 
 PREFIX = "/v1"
@@ -53,28 +53,10 @@ async def _caller(request: Request) -> Caller:
     return caller
 
 
-async def _inbox(request: Request) -> Groups[Order, Job]:
-    inbox: Groups[Order, Job] = request.app.state.inbox
-    return inbox
-
-
-async def _dispatcher(request: Request) -> Groups[UUID, bool]:
-    dispatcher: Groups[UUID, bool] = request.app.state.dispatcher
-    return dispatcher
-
-
-async def _statuses(request: Request) -> Groups[UUID, Job | None]:
-    statuses: Groups[UUID, Job | None] = request.app.state.statuses
-    return statuses
-
-
 SettingsOf = Annotated[Settings, Depends(_settings)]
 Readers = Annotated[sessionmaker[Session], Depends(_readers)]
 Writers = Annotated[sessionmaker[Session], Depends(_writers)]
 SenderOf = Annotated[Sender, Depends(_sender)]
-Inbox = Annotated[Groups[Order, Job], Depends(_inbox)]
-Dispatcher = Annotated[Groups[UUID, bool], Depends(_dispatcher)]
-Statuses = Annotated[Groups[UUID, Job | None], Depends(_statuses)]
 CallerOf = Annotated[Caller, Depends(_caller)]
 
 
@@ -171,12 +153,12 @@ def job_address(job_id: UUID) -> str:
     return f"{PREFIX}/jobs/{job_id}"
 
 
-def failure_of(job: Job) -> dict[str, Any] | None:
+def failure_of(job: Job | Draft) -> dict[str, Any] | None:
     """Return kind and sentence of a job's failure, None if it has not failed."""
     return {"kind": job.failure_kind.value, "detail": job.failure_detail} if job.failure_kind else None
 
 
-def job_document(job: Job) -> dict[str, Any]:
+def job_document(job: Job | Draft) -> dict[str, Any]:
     """Return the status document of a job."""
     return {
         "id": str(job.id),
@@ -198,7 +180,7 @@ def job_document(job: Job) -> dict[str, Any]:
     }
 
 
-def _links(job: Job) -> list[dict[str, str]]:
+def _links(job: Job | Draft) -> list[dict[str, str]]:
     address = job_address(job.id)
     links = [{"rel": "self", "href": address}]
     if job.status in {JobStatus.SUCCESSFUL, JobStatus.FAILED}:

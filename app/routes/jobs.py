@@ -15,18 +15,15 @@ from pydantic_core import PydanticCustomError
 from app import convert, idempotency, jobs, paging, schemas
 from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
 from app.idempotency import KeyTaken
-from app.jobs import CancelOutcome, JobFilters, Submission
+from app.jobs import CancelOutcome, Draft, JobFilters, Submission
 from app.routes import documentation
 from app.routes.common import (
     PREFIX,
     RETRY_SECONDS,
     CallerOf,
-    Dispatcher,
-    Inbox,
     MayReuse,
     Readers,
     SettingsOf,
-    Statuses,
     Writers,
     find_job,
     find_status,
@@ -35,12 +32,12 @@ from app.routes.common import (
     vet_webhook,
 )
 from app.routes.once import KEY_PROBLEMS, KeyOf, as_kept, first_answer
-from app.routes.waiting import APPLIED_HEADER, JobWatch, Wait, applied, wait_for_end
+from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.schemas.answers import JobDocument, JobPage
 from app.schemas.fields import Label
 from app.settings import cursor_key
 from app.submissions import Keyed, Order
-from app.tables import ENDED, Job, JobStatus
+from app.tables import ENDED, JobStatus
 
 router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
 
@@ -93,30 +90,31 @@ class ListQuery(BaseModel):
         return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after)
 
 
-async def _checked(
-    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)], settings: SettingsOf
-) -> schemas.JobRequest:
+async def _ordered(
+    request: Request,
+    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
+    key: KeyOf,
+    may_reuse: MayReuse,
+) -> Order:
+    await _check(request, document)
+    line, kept = document.line, document.kept()
+
+    def fingerprint() -> str:
+        return idempotency.fingerprint(router.prefix, jobs.canonical(kept), document.webhook_url or "")
+
+    submission = Submission(request.state.caller, kept, line.name, line.asset_id, line.tags)
+    keyed = Keyed(key, fingerprint, lambda job: as_kept(_accepted(job))) if key is not None else None
+    return Order(submission, document.webhook_url, may_reuse, keyed)
+
+
+async def _check(request: Request, document: schemas.JobRequest) -> None:
     # Every point of a study is looked at, which may take a while; a line alone takes less than the way to a thread.
     check = partial(convert.request_faults, document)
     faults = check() if document.study is None else await to_thread.run_sync(check)
     if faults:
         raise invalid_document(faults)
     if document.webhook_url is not None:
-        await vet_webhook(settings, document.webhook_url)
-    return document
-
-
-async def _ordered(
-    document: Annotated[schemas.JobRequest, Depends(_checked)], caller: CallerOf, key: KeyOf, may_reuse: MayReuse
-) -> Order:
-    line, kept = document.line, document.kept()
-
-    def fingerprint() -> str:
-        return idempotency.fingerprint(router.prefix, jobs.canonical(kept), document.webhook_url or "")
-
-    submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
-    keyed = Keyed(key, fingerprint, lambda job: as_kept(_accepted(job))) if key is not None else None
-    return Order(submission, document.webhook_url, may_reuse, keyed)
+        await vet_webhook(request.app.state.settings, document.webhook_url)
 
 
 @router.post(
@@ -135,25 +133,25 @@ async def _ordered(
         ),
     },
 )
-async def submit(
-    order: Annotated[Order, Depends(_ordered)], inbox: Inbox, dispatcher: Dispatcher, readers: Readers
-) -> Response:
+async def submit(request: Request, order: Annotated[Order, Depends(_ordered)]) -> Response:
     """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already.
 
     If the owner has results of the same input by this version of the engine, of a job or of a line in a batch, the job
     has ended with them already, and `reused_from` names where they come from. `Cache-Control: no-cache` computes anew.
     """
+    # Every dependency costs as much as the check of the line, so what is shared is taken from where it is.
+    shared = request.app.state
     try:
-        job = await inbox.ask(order)
+        job: Draft = await shared.inbox.ask(order)
     except KeyTaken:
         assert order.keyed is not None
-        return await to_thread.run_sync(first_answer, readers, order.keyed.key, order.keyed.fingerprint)
+        return await to_thread.run_sync(first_answer, shared.readers, order.keyed.key, order.keyed.fingerprint)
     if job.status is JobStatus.ACCEPTED:
-        dispatcher.put(job.id)
+        shared.dispatcher.put(job.id)
     return _accepted(job)
 
 
-def _accepted(job: Job) -> JSONResponse:
+def _accepted(job: Draft) -> JSONResponse:
     headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
     return JSONResponse(job_document(job), 202, headers)
 
@@ -169,11 +167,12 @@ def _accepted(job: Job) -> JSONResponse:
         **_COMMON,
     },
 )
-async def status(job_id: UUID, caller: CallerOf, statuses: Statuses, watch: JobWatch, wait: Wait) -> JSONResponse:
+async def status(request: Request, job_id: UUID, wait: Wait) -> JSONResponse:
     """Tell how far a job is, at once or, with `Prefer: wait=N`, at its end."""
+    statuses, caller = request.app.state.statuses, request.state.caller
     job = await find_status(statuses, caller, job_id)
     if wait and job.status not in ENDED:
-        await wait_for_end(watch, caller, job_id, wait)
+        await wait_for_end(request.app.state.job_watch, caller, job_id, wait)
         job = await find_status(statuses, caller, job_id)
     headers = applied(wait) if job.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
     return JSONResponse(job_document(job), headers=headers)

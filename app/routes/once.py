@@ -10,7 +10,7 @@ from datetime import timedelta
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import Depends, Header
+from fastapi import Depends, Header, Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import idempotency
 from app.errors import ProblemError, ProblemKind
 from app.idempotency import Answer, Kept, Key, KeyTaken
-from app.routes.common import RETRY_SECONDS, CallerOf
+from app.routes.common import RETRY_SECONDS
 
 _RENEWALS_A_LEASE = 5
 _REPLAYED = "Idempotency-Replayed"
@@ -29,7 +29,7 @@ _logger = logging.getLogger(__name__)
 
 
 async def _key(
-    caller: CallerOf,
+    request: Request,
     idempotency_key: Annotated[
         str | None,
         Header(
@@ -42,7 +42,7 @@ async def _key(
         ),
     ] = None,
 ) -> Key | None:
-    return idempotency.new_key(caller.owner, idempotency_key) if idempotency_key is not None else None
+    return idempotency.new_key(request.state.caller.owner, idempotency_key) if idempotency_key is not None else None
 
 
 KeyOf = Annotated[Key | None, Depends(_key)]

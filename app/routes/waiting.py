@@ -10,7 +10,6 @@ from fastapi import Depends, Header, Request
 
 from app.auth import Caller
 from app.observe import BatchSeen, JobSeen
-from app.routes.common import SettingsOf
 from app.watch import Watch
 
 _WAIT = re.compile(r'(?:^|,)\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=[,;]|$)', re.IGNORECASE)
@@ -35,14 +34,13 @@ async def _batch_watch(request: Request) -> Watch[UUID, BatchSeen]:
 
 async def _wait(
     request: Request,
-    settings: SettingsOf,
     prefer: Annotated[  # read below from all headers of the name, of which there may be several
         str | None,
         Header(description="`wait=N` answers at the end, or after N seconds if it has not come by then"),
     ] = None,
 ) -> int | None:
     found = _WAIT.search(", ".join(request.headers.getlist("prefer")))
-    return min(int(found[1]), int(settings.longest_wait_seconds)) if found else None
+    return min(int(found[1]), int(request.app.state.settings.longest_wait_seconds)) if found else None
 
 
 JobWatch = Annotated[Watch[UUID, JobSeen], Depends(_job_watch)]

@@ -18,11 +18,10 @@ from app.convert import PointResult
 from app.examples import example
 from app.groups import committed_together
 from app.intake import Incoming, Receipt, receive
-from app.jobs import Submission
+from app.jobs import Draft, Submission
 from app.schemas import JobRequest
 from app.settings import Settings
 from app.submissions import Order
-from app.tables import Job
 from tests.app.lines import SHORT, changed
 from tests.documents import create_job, point_result, short_request
 
@@ -55,7 +54,7 @@ def test_posts_that_come_together_are_as_few_statements_as_one(
         orders = [Order(Submission(LOCAL, document, tags={"a": "b", "c": "d"})) for document in documents]
         with counted() as statements:
             made = committed_together(sessions, submissions.accept, orders)
-        assert len({job.id for job in made if isinstance(job, Job)}) == posts
+        assert len({job.id for job in made if isinstance(job, Draft)}) == posts
         looks = [text for text in statements if not text.startswith("INSERT")]
         written = [text.split()[2] for text in statements if text.startswith("INSERT")]
         assert len(looks) == (2 if on_server else posts)

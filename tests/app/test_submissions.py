@@ -7,7 +7,7 @@ from app import idempotency, submissions, webhooks
 from app.auth import LOCAL
 from app.groups import committed_together
 from app.idempotency import Answer, KeyTaken, new_key
-from app.jobs import Submission
+from app.jobs import Draft, Submission
 from app.submissions import Keyed, Order
 from app.tables import AuditEvent, IdempotencyKey, Job, JobEvent
 from tests.documents import STRANGER, history, short_request
@@ -33,7 +33,7 @@ def count(sessions: sessionmaker[Session], table: type[Any]) -> int:
 def test_of_equal_keys_in_a_group_the_first_gets_a_job(sessions: sessionmaker[Session]) -> None:
     asked = [keyed("k", "first"), keyed("other"), keyed("k", "second")]
     first, other, second = accepted(sessions, *(order(keyed=item) for item in asked))
-    assert isinstance(first, Job) and isinstance(other, Job) and isinstance(second, KeyTaken)
+    assert isinstance(first, Draft) and isinstance(other, Draft) and isinstance(second, KeyTaken)
     assert (count(sessions, Job), count(sessions, JobEvent), count(sessions, AuditEvent)) == (2, 2, 2)
     with sessions() as session:
         assert idempotency.find(session, asked[2].key) == ("first", Answer(202, {}, str(first.id)))
@@ -44,7 +44,7 @@ def test_a_key_that_is_in_use_costs_the_others_of_its_group_nothing(sessions: se
     with sessions() as session:
         kept = idempotency.find(session, new_key(LOCAL.owner, "k"))
     before, again, after = accepted(sessions, order(), order(keyed=keyed("k")), order(keyed=keyed("new")))
-    assert isinstance(before, Job) and isinstance(again, KeyTaken) and isinstance(after, Job)
+    assert isinstance(before, Draft) and isinstance(again, KeyTaken) and isinstance(after, Draft)
     assert count(sessions, Job) == 3
     assert count(sessions, IdempotencyKey) == 2
     with sessions() as session:
@@ -55,7 +55,7 @@ def test_a_key_that_is_in_use_costs_the_others_of_its_group_nothing(sessions: se
 def test_a_document_that_cannot_be_kept_is_refused_alone(sessions: sessionmaker[Session]) -> None:
     hopeless = {"line": {"a": float("nan")}}
     first, refused, last = accepted(sessions, order(), order(hopeless, keyed=keyed("k")), order())
-    assert isinstance(first, Job) and isinstance(refused, ValueError) and isinstance(last, Job)
+    assert isinstance(first, Draft) and isinstance(refused, ValueError) and isinstance(last, Draft)
     assert count(sessions, Job) == 2
     assert count(sessions, IdempotencyKey) == 0
 
