@@ -33,6 +33,7 @@ from engine.spec import Analysis, Line
 from tests.servers import free_port, postgres_server, redis_server
 
 POSTS = 1000
+POST_RUNS = 9
 POSTS_PER_S = 100.0
 READS = 5000
 RUNS = 3
@@ -235,13 +236,11 @@ def _wait(condition: Callable[[], bool], seconds: float) -> None:
 
 
 def _posts(running: Running) -> Iterator[tuple[str, float]]:
-    body = json.dumps({"line": example("c11-twin")}).encode()
-    fields = f"Host: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
-    head = f"POST /v1/jobs HTTP/1.1\r\n{fields}"
-    request: Request = lambda _: head.encode() + body  # noqa: E731 - as short as what it stands for
+    posts = [_post(29e3 + number / 10.0) for number in range(POSTS)]
+    request: Request = lambda number: posts[number % POSTS]  # noqa: E731 - as short as what it stands for
     closed_loop(running.port, request, 2, b"202")
     spent, latencies, rates = seconds_by_role(), [], []
-    for _ in range(RUNS):
+    for _ in range(POST_RUNS):
         begin = time.perf_counter()
         times = closed_loop(running.port, request, POSTS // CLIENTS, b"202")
         rates.append(POSTS / (time.perf_counter() - begin))
@@ -252,7 +251,15 @@ def _posts(running: Running) -> Iterator[tuple[str, float]]:
     steady = [open_loop(running.port, request, POSTS, POSTS_PER_S, b"202") for _ in range(RUNS)]
     yield "post_open_p99_ms", statistics.median(map(_p99_ms, steady))
     for role, name in (("app.serve", "api"), ("postgres", "database"), ("redis", "broker")):
-        yield f"post_{name}_ms", 1e3 * spent[role] / (RUNS * POSTS)
+        yield f"post_{name}_ms", 1e3 * spent[role] / (POST_RUNS * POSTS)
+
+
+def _post(tension: float) -> bytes:
+    """Return a whole request; no two have the same line."""
+    line = example("c11-twin")
+    body = json.dumps({"line": line | {"span": line["span"] | {"horizontal_tension_n": tension}}}).encode()
+    fields = f"Host: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    return f"POST /v1/jobs HTTP/1.1\r\n{fields}".encode() + body
 
 
 def _p99_ms(times: list[float]) -> float:
