@@ -5,6 +5,7 @@ again: of fifty clients that come at once, often all fifty, while the other proc
 """
 
 import asyncio
+import logging
 import socket
 from collections.abc import Callable
 from typing import Any
@@ -16,6 +17,8 @@ _PAUSE_SECONDS = 0.002  # long enough for an idle process to wake up, too short 
 _EXHAUSTED_SECONDS = 1.0
 
 Factory = Callable[[], asyncio.Protocol]
+
+_logger = logging.getLogger(__name__)
 
 
 class SharingLoop(uvloop.Loop):
@@ -66,7 +69,8 @@ class Listener:
         except (BlockingIOError, InterruptedError, ConnectionAbortedError):
             if taken:
                 self._rest(_PAUSE_SECONDS)
-        except OSError:  # no file descriptors are left: who waits is taken when some are
+        except OSError as error:  # no file descriptors are left: who waits is taken when some are
+            _logger.error("no connection can be taken for a while: %s", error)  # noqa: TRY400 - it says enough
             self._rest(_EXHAUSTED_SECONDS)
 
     def _begin(self, connection: socket.socket) -> None:
