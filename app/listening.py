@@ -22,7 +22,7 @@ _logger = logging.getLogger(__name__)
 
 
 class SharingLoop(uvloop.Loop):
-    """The event loop of a server, which takes connections from a socket that it is given one by one, with pauses."""
+    """The event loop of a server, which takes a few connections at a time from a socket that it is given."""
 
     async def create_server(self, protocol_factory: Any, *given: Any, sock: Any = None, **named: Any) -> Any:
         """Serve on a socket that others share, else as any loop does."""
@@ -34,7 +34,7 @@ class SharingLoop(uvloop.Loop):
 
 
 class Listener:
-    """Takes a connection, then leaves the next to the other processes for a moment.
+    """Takes a few connections, then leaves the next ones to the other processes for a moment.
 
     A process that is busy looks later than one that is not, and so gets fewer.
     """
@@ -70,7 +70,7 @@ class Listener:
             if taken:
                 self._rest(_PAUSE_SECONDS)
         except OSError as error:  # no file descriptors are left: who waits is taken when some are
-            _logger.error("no connection can be taken for a while: %s", error)  # noqa: TRY400 - it says enough
+            _logger.error("no connection can be taken for a while: %s", error)
             self._rest(_EXHAUSTED_SECONDS)
 
     def _begin(self, connection: socket.socket) -> None:
