@@ -1,12 +1,14 @@
 """The Celery side of a worker: one thin task, and the process that runs the pool (`python -m worker.tasks`)."""
 
+import gc
 import os
 from functools import cache
+from importlib import import_module
 from uuid import UUID
 
 from celery import Celery
-from celery.signals import setup_logging, worker_process_shutdown
-from sqlalchemy.orm import Session, sessionmaker
+from celery.signals import setup_logging, worker_process_init, worker_process_shutdown
+from sqlalchemy.orm import Session, configure_mappers, sessionmaker
 
 from app import logs, telemetry
 from app.db import make_engine, session_factory
@@ -63,12 +65,30 @@ def _leave_logs(**_: object) -> None:
     """Keep Celery from configuring the logs: it does so unless someone listens to its signal."""
 
 
+def load() -> None:
+    """Load what every job needs before the fork: once for all processes, so that one that replaces another is ready."""
+    for name in ("engine.analysis", "engine.clearance"):
+        import_module(name)
+    configure_mappers()
+
+
+def freeze(**_: object) -> None:
+    """Take what is loaded out of the collector's sight: it lives as long as the process, and looking through it recurs.
+
+    The engine makes no cycles, so that what is made after this is mostly gone before anything is collected.
+    """
+    gc.collect()
+    gc.freeze()
+
+
 def _run_pool() -> None:
     end_with_parent()
     settings = get_settings()
     logs.configure(settings)
     telemetry.configure(settings, "worker")
     setup_logging.connect(_leave_logs)
+    load()
+    worker_process_init.connect(freeze)
     worker_process_shutdown.connect(telemetry.finish)
     application = worker_application(settings, os.environ[OWNER])
     quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat", "--hostname=galloping@%h"]

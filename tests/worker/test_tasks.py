@@ -1,0 +1,58 @@
+"""What a pool loads before it forks, and what its processes do with it."""
+
+import os
+import subprocess
+import sys
+
+from app.processes import ONE_BLAS_THREAD
+
+
+def printed(script: str) -> str:
+    """Run a script in a process of its own, since what is frozen and loaded stays, and return what it says."""
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, **ONE_BLAS_THREAD})
+    return done.stdout.strip()
+
+
+def test_a_job_finds_everything_loaded() -> None:
+    script = """
+import sys
+from app import convert
+from app.examples import example
+from worker.tasks import load
+load()
+before = set(sys.modules)
+analysis = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [8.0]}
+list(convert.run_stack(analysis, [convert.NumberedLine(1, example("c11-twin"))]))
+print({name for name in set(sys.modules) - before if name.split(".")[0] in ("engine", "scipy", "app")})
+"""
+    assert printed(script) == "set()"
+
+
+def test_what_is_loaded_is_not_looked_through_again() -> None:
+    script = """
+import gc
+from worker.tasks import freeze, load
+load()
+before = len(gc.get_objects())
+freeze()
+print(before > 50_000, len(gc.get_objects()) < 1_000, gc.isenabled())
+"""
+    assert printed(script) == "True True True"
+
+
+def test_every_process_of_a_pool_freezes_what_it_has() -> None:
+    script = """
+import gc, os
+from celery.signals import worker_process_init
+from worker import tasks
+class Pool:
+    def worker_main(self, _):
+        assert gc.get_freeze_count() == 0
+        worker_process_init.send(None)
+tasks.worker_application = lambda *_: Pool()
+os.environ[tasks.OWNER] = "here"
+tasks._run_pool()
+print(gc.get_freeze_count() > 50_000)
+"""
+    assert printed(script) == "True"
