@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.db import database_time, insert_rows, make_engine, session_factory
 from app.serve import migrate
 from app.settings import Settings
-from app.tables import BatchItem, Job
+from app.tables import BatchItem, Job, PointRow
 from tests.documents import add_job, look
 
 
@@ -67,6 +67,36 @@ def test_sqlite_keeps_a_log_and_enforces_foreign_keys(tmp_path: Path) -> None:
         assert connection.scalar(text("PRAGMA journal_mode")) == "wal"
         assert connection.scalar(text("PRAGMA foreign_keys")) == 1
     engine.dispose()
+
+
+def test_rows_inserted_together_are_read_as_they_were(sessions: sessionmaker[Session]) -> None:
+    job_id = add_job(sessions)
+    common = {"job_id": job_id, "engine_version": "9.9.9", "warnings": ["\u00fcber", 'a "b"\\\n']}
+    full = {"sag_m": 0.1 + 0.2, "den_hartog_unstable": True, "tables": bytes(range(256)), "failure": "tab\tand\n \\N"}
+    empty = dict.fromkeys(full)
+    rows = [
+        {**common, "point": 2**31 - 1, "axes": {"a.b": [1, None, 5e-324]}, **full},
+        {**common, "point": 0, "axes": {}, **empty},
+    ]
+    with sessions.begin() as session:
+        insert_rows(session, PointRow, rows)
+    with sessions() as session:
+        found = session.scalars(select(PointRow).order_by(PointRow.point.desc())).all()
+    assert [{name: getattr(row, name) for name in rows[0]} for row in found] == rows
+
+
+def test_rows_that_the_database_cannot_hold_are_refused_as_it_refuses_others(
+    sessions: sessionmaker[Session], settings: Settings
+) -> None:
+    row = {"batch_id": uuid4(), "number": 1, "document": {}, "chunk_id": uuid4(), "reference": None, "faults": None}
+    wrong = [{**row, "document": None}]  # an item has a document or faults
+    if not settings.database_url.startswith("sqlite"):
+        wrong += [{**row, "reference": "a\0b"}, {**row, "number": 2**40}]
+    for record in wrong:
+        with pytest.raises(DBAPIError), sessions.begin() as session:
+            insert_rows(session, BatchItem, [record])
+    with sessions() as session:
+        assert session.scalars(select(BatchItem)).all() == []
 
 
 @pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)

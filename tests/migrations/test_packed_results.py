@@ -7,7 +7,7 @@ from uuid import UUID, uuid4
 
 import pytest
 from alembic import command
-from sqlalchemy import Connection, Engine, MetaData, select
+from sqlalchemy import Connection, Engine, MetaData, select, text
 
 from app import convert, results
 from app.db import make_engine, session_factory
@@ -122,3 +122,22 @@ def test_many_points_are_taken_page_by_page(settings: Settings, engine: Engine) 
         packed = connection.execute(select(table.c.failure, table.c.tables)).all()
     assert len(packed) == 220
     assert all((found is None) == (failure is not None) for failure, found in packed)
+
+
+def test_postgres_stores_what_is_packed_as_it_is(settings: Settings, engine: Engine) -> None:
+    migrate(settings)
+    if engine.dialect.name == "postgresql":
+        assert storage(engine) == {"tables": "e", "orbits": "e"}
+        with engine.begin() as connection:
+            command.downgrade(alembic_config(connection), "0014")
+        assert storage(engine) == {"tables": "x", "orbits": "x"}
+
+
+def storage(engine: Engine) -> dict[str, str]:
+    """Return how the packed columns are stored: e as they are, x compressed if that helps."""
+    statement = """
+        SELECT attname, attstorage::text AS attstorage FROM pg_attribute
+        WHERE attrelid = 'results'::regclass AND attname IN ('tables', 'orbits')
+    """
+    with engine.connect() as connection:
+        return {row.attname: row.attstorage for row in connection.execute(text(statement))}
