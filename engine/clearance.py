@@ -153,8 +153,8 @@ def subconductor_paths(series: FloatArray, positions: FloatArray, samples: int =
     ----------
     series : (..., 3, 2 H + 1)
         Fourier coefficients of V, W [m] and Theta [rad] where the motion is observed.
-    positions : (n, 2)
-        y_i, z_i of the sub-conductors [m].
+    positions : (..., n, 2)
+        y_i, z_i of the sub-conductors [m], the same of all motions or each one's own.
     samples : int
         Phases of the period; the outermost points of a path are then missed by less than 5 / samples^2 of its size.
 
@@ -166,7 +166,7 @@ def subconductor_paths(series: FloatArray, positions: FloatArray, samples: int =
     tau = 2.0 * np.pi * np.arange(samples) / samples
     motion = series @ fourier(tau, series.shape[-1] // 2).T
     v, w, theta = (motion[..., i, None, :] for i in range(3))
-    y, z = positions[:, 0, None], positions[:, 1, None]
+    y, z = positions[..., 0, None], positions[..., 1, None]
     return np.stack([y + v - z * theta, z + w + y * theta], axis=-1)
 
 

@@ -1,28 +1,48 @@
-"""The figures by which the lines of a batch are ranked, out of everything that was found for a line."""
+"""The figures by which the lines of a batch are ranked, out of everything that was found for each."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from engine import spec
 from engine.outcome import Outcome, Stability
 from engine.result import LimitCycleRow, Orbit, Result
 
+if TYPE_CHECKING:
+    from engine.arrays import FloatArray
+
 _PHASES = 120  # amplitudes to 0.04 %
+_ORBITS_AT_ONCE = 512  # of four sub-conductors they have 4 MB of points
+
+_Motion = tuple[LimitCycleRow, Orbit | None]
+_Room = tuple[float, float]
 
 
-def peaks(line: spec.Line, result: Result) -> dict[str, float | None]:
-    """Return the lowest critical wind speed, and the largest motion that lasts at the wind speeds asked for.
+def peaks(lines: Sequence[spec.Line], results: Sequence[Result]) -> list[dict[str, float | None]]:
+    """Return the lowest critical wind speed of each line, and its largest motion that lasts at the winds asked for.
 
     Height and width [m] are of all that the sub-conductors reach where the motion is observed. None where nothing is
     known: no crossing up to the limit, or no motion whose stability was decided. A line that is unstable without wind
     has the critical wind speed 0.
     """
-    lasting = [(i, row) for i, row in enumerate(result.limit_cycles) if row.stability is Stability.STABLE]
+    lasting = [_lasting(result) for result in results]
+    moving = [place for place, motions in enumerate(lasting) if motions]
+    rooms = dict(zip(moving, _rooms([(lines[i], lasting[i]) for i in moving]), strict=True))
+    return [_figures(result, lasting[i], rooms.get(i)) for i, result in enumerate(results)]
+
+
+def _lasting(result: Result) -> list[_Motion]:
+    """Return the stable motions, with their orbits where these are known."""
+    orbits = {orbit.cycle: orbit for orbit in result.orbits}
+    cycles = enumerate(result.limit_cycles)
+    stable = [(i, row) for i, row in cycles if row.stability is Stability.STABLE]
+    return [(row, orbits.get(i) if row.kind == "periodic" else None) for i, row in stable]
+
+
+def _figures(result: Result, lasting: Sequence[_Motion], room: _Room | None) -> dict[str, float | None]:
     winds = [row.wind_speed_m_per_s for row in result.critical_wind_speeds]
     winds += [0.0 for row in result.frequencies if row.outcome is Outcome.STATICALLY_UNSTABLE]
-    amplitudes = [row.vertical_m for _, row in lasting if row.vertical_m is not None]
-    orbits = {orbit.cycle: orbit for orbit in result.orbits}
-    known = [(row, orbits[i] if row.kind == "periodic" and i in orbits else None) for i, row in lasting]
-    height, width = _extents(line, known) if lasting else (None, None)
+    amplitudes = [row.vertical_m for row, _ in lasting if row.vertical_m is not None]
+    height, width = room or (None, None)
     return {
         "lowest_critical_wind_speed_m_per_s": min(winds, default=None),
         "largest_vertical_m": max(amplitudes, default=None),
@@ -31,27 +51,57 @@ def peaks(line: spec.Line, result: Result) -> dict[str, float | None]:
     }
 
 
-def _extents(line: spec.Line, motions: Sequence[tuple[LimitCycleRow, Orbit | None]]) -> tuple[float, float]:
-    """Return height and width of the largest motions: exact from orbits, from above where there are amplitudes only."""
+def _rooms(moving: Sequence[tuple[spec.Line, Sequence[_Motion]]]) -> list[_Room]:
+    """Return height and width of each line's largest motions, of which it has some, all lines side by side.
+
+    They are exact from orbits, and from above where there are amplitudes only.
+    """
     import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
 
-    from engine.clearance import extents, subconductor_paths  # noqa: PLC0415
+    if not moving:
+        return []
+    positions = np.array(_equally_many([line.bundle.positions for line, _ in moving]))
+    lengths = [len(motions) for _, motions in moving]
+    motions = [motion for _, of_line in moving for motion in of_line]
+    owner = np.repeat(np.arange(len(moving)), lengths)
+    found = np.ptp(positions, axis=1)
+    most, least = _bounds(motions, np.abs(positions).max(axis=1)[owner, ::-1])
+    most += found[owner]
+    np.maximum.at(found, owner, np.where([[orbit is None] for _, orbit in motions], most, 0.0))
+    # Orbits that cannot reach as far as another one of their line does anyway need not be followed.
+    surely = np.maximum.reduceat(least, np.cumsum(lengths) - lengths)
+    far = np.flatnonzero((most >= surely[owner]).any(axis=-1)).tolist()
+    reaching = [(place, orbit) for place in far if (orbit := motions[place][1]) is not None]
+    for first in range(0, len(reaching), _ORBITS_AT_ONCE):
+        places, orbits = zip(*reaching[first : first + _ORBITS_AT_ONCE], strict=True)
+        here = owner[list(places)]
+        np.maximum.at(found, here, _reached(orbits, positions[here]))
+    return [(height, width) for height, width in found.tolist()]
 
-    positions = np.array(line.bundle.positions)
-    rest, arms = np.ptp(positions, axis=0), np.abs(positions).max(axis=0)[::-1]
+
+def _equally_many(bundles: Sequence[tuple[tuple[float, float], ...]]) -> list[tuple[tuple[float, float], ...]]:
+    """Repeat a sub-conductor of the smaller bundles, which takes no more room than it does alone."""
+    most = max(map(len, bundles))
+    return [positions + positions[:1] * (most - len(positions)) for positions in bundles]
+
+
+def _bounds(motions: Sequence[_Motion], arms: "FloatArray") -> "tuple[FloatArray, FloatArray]":
+    """Return what height and width (motions, 2) of a motion lie between, the bundle's own above left out [m]."""
+    import numpy as np  # noqa: PLC0415 - as above
+
     moved = np.array([(row.vertical_m or 0.0, row.horizontal_m or 0.0) for row, _ in motions])
     mean = [0.0 if orbit is None else abs(orbit.torsional[0]) for _, orbit in motions]
-    turned = np.array([(row.torsional_rad or 0.0) for row, _ in motions]) + mean
-    most, least = (2.0 * (moved + sign * turned[:, None] * arms) for sign in (1.0, -1.0))
-    most += rest
-    # Orbits that cannot reach as far as another one does anyway need not be followed.
-    far = (most >= least.max(axis=0)).any(axis=-1)
-    orbits = [orbit for (_, orbit), reaching in zip(motions, far, strict=True) if orbit is not None and reaching]
-    found = [rest, *(bound for bound, (_, orbit) in zip(most, motions, strict=True) if orbit is None)]
-    if orbits:
-        series = np.zeros((len(orbits), 3, max(len(orbit.vertical) for orbit in orbits)))
-        for place, orbit in zip(series, orbits, strict=True):
-            place[:, : len(orbit.vertical)] = orbit.vertical, orbit.horizontal, orbit.torsional
-        found += list(extents(subconductor_paths(series, positions, _PHASES)))
-    height, width = np.max(found, axis=0).tolist()
-    return height, width
+    turned = (np.array([(row.torsional_rad or 0.0) for row, _ in motions]) + mean)[:, None] * arms
+    return 2.0 * (moved + turned), 2.0 * (moved - turned)
+
+
+def _reached(orbits: Sequence[Orbit], positions: "FloatArray") -> "FloatArray":
+    """Return height and width (orbits, 2) of all that the sub-conductors at positions (orbits, n, 2) reach [m]."""
+    import numpy as np  # noqa: PLC0415 - as above
+
+    from engine.clearance import extents, subconductor_paths  # noqa: PLC0415 - as above
+
+    series = np.zeros((len(orbits), 3, max(len(orbit.vertical) for orbit in orbits)))
+    for place, orbit in zip(series, orbits, strict=True):
+        place[:, : len(orbit.vertical)] = orbit.vertical, orbit.horizontal, orbit.torsional
+    return extents(subconductor_paths(series, positions, _PHASES))

@@ -1,7 +1,7 @@
 """A validated request -> the engine -> plain rows, one point of the study after another."""
 
 import math
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from itertools import islice
@@ -161,7 +161,8 @@ class _Solved:
 
     def told(self) -> PointResult:
         """Return everything as plain values."""
-        return point_result(self.line, self.result, self.number, self.values)
+        (point,) = point_results([(self.number, self.values)], [self.line], [self.result])
+        return point
 
 
 def _followed(request: schemas.JobRequest, held: list[_Solved]) -> Iterator[PointResult]:
@@ -252,20 +253,23 @@ def specification_of_point(document: Mapping[str, object], point: int) -> tuple[
     raise LookupError(point)
 
 
-def point_result(line: spec.Line, result: Result, number: int, values: dict[str, Any]) -> PointResult:
-    """Return the engine's result of one point as plain values; what is not finite becomes null."""
-    return PointResult(
-        point=number,
-        axes=values,
-        static=_finite(asdict(result.static)),
-        den_hartog=_finite(asdict(result.den_hartog)),
-        peaks=_finite(peaks(line, result)),
-        tables_json=_json({name: getattr(result, name) for name in TABLES}),
-        orbits_json=_json(result.orbits),
-        warnings=list(result.warnings),
-        engine_version=result.engine_version,
-        failure=None,
-    )
+def point_results(
+    points: Iterable[tuple[int, dict[str, Any]]], lines: Sequence[spec.Line], results: Sequence[Result]
+) -> Iterator[PointResult]:
+    """Yield the engine's results of points, given by number and values, as plain values; what is not finite is null."""
+    for (number, values), result, figures in zip(points, results, peaks(lines, results), strict=True):
+        yield PointResult(
+            point=number,
+            axes=values,
+            static=_finite(asdict(result.static)),
+            den_hartog=_finite(asdict(result.den_hartog)),
+            peaks=_finite(figures),
+            tables_json=_json({name: getattr(result, name) for name in TABLES}),
+            orbits_json=_json(result.orbits),
+            warnings=list(result.warnings),
+            engine_version=result.engine_version,
+            failure=None,
+        )
 
 
 def failed_point(error: Exception, number: int, values: dict[str, Any]) -> PointResult:

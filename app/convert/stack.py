@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from app import schemas
 from app.convert.assemble import SoundParts, gather
 from app.convert.check import request_faults, with_further_faults
-from app.convert.run import Advance, PointResult, failed_point, point_result
+from app.convert.run import Advance, PointResult, failed_point, point_results
 from app.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.outcome import InvalidSpec
@@ -173,8 +173,8 @@ def _stack_results(stack: Sequence[_Made]) -> Iterator[PointResult]:
             return
         yield failed_point(_for_owner(error), stack[0][0], _axes(stack[0][0]))
         return
-    for (number, line, _), result in zip(stack, results, strict=True):
-        yield point_result(line, result, number, _axes(number))
+    points = [(number, _axes(number)) for number, _, _ in stack]
+    yield from point_results(points, [line for _, line, _ in stack], results)
 
 
 def _for_owner(error: Exception) -> Exception:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from app import convert
-from app.convert import PointResult
+from app.convert import PointResult, peaks
 from app.examples import example
 from tests.app.lines import changed
 
@@ -64,3 +64,27 @@ def test_a_line_that_is_unstable_without_wind_has_the_critical_wind_speed_0() ->
     assert point.peaks["lowest_critical_wind_speed_m_per_s"] == 0.0
     assert point.peaks["largest_vertical_m"] is None
     assert point.peaks["largest_height_m"] is None
+
+
+def test_lines_side_by_side_have_the_peaks_that_each_has_alone() -> None:
+    """Bundles of one, two and four sub-conductors, and a line of which nothing is known."""
+    unknown = changed("span.length_m", 400.0, example("c11-single"))
+    others = example("c11-single"), example("c11-quad"), changed("span.horizontal_tension_n", 38000.0, TWIN)
+    lines = [TWIN, unknown, *others]
+    analysis = {"loops": [1, 2], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 6.0]}
+    numbered = [convert.NumberedLine(number, line) for number, line in enumerate(lines)]
+    points = [item for item in convert.run_stack(analysis, numbered) if isinstance(item, PointResult)]
+    assert [point.point for point in points] == list(range(len(lines)))
+    for line, point in zip(lines, points, strict=True):
+        alone = found(line, [4.0, 6.0], [1, 2]).peaks
+        for name, value in alone.items():
+            assert point.peaks[name] == (None if value is None else pytest.approx(value, rel=1e-6, abs=1e-12))
+    widths = [point.peaks["largest_width_m"] for point in points]
+    assert widths[1] is None
+    assert len(set(widths)) == len(widths)
+
+
+def test_many_orbits_are_followed_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    together = found(TWIN, [4.0, 6.0], [1, 2]).peaks
+    monkeypatch.setattr(peaks, "_ORBITS_AT_ONCE", 1)
+    assert found(TWIN, [4.0, 6.0], [1, 2]).peaks == together
