@@ -39,12 +39,12 @@ def rows(session: Session, batch_id: UUID, table: BatchTable) -> Iterator[dict[s
                 yield {**labels, **row}
 
 
-def documents(session: Session, batch_id: UUID) -> Iterator[str]:
-    """Yield one JSON object a line with everything that was found of it, or why there is nothing."""
+def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
+    """Yield one JSON object a line, with its end, that has everything found of it, or why there is nothing."""
     for item in _lines(session, batch_id, unpacking=True):
         # The packed tables are a JSON object already: it is joined to the other members as it stands.
         head = orjson.dumps({**_labels(item), **_state(item), **_point(item)})
-        yield (head[:-1] + b"," + unpacked(item.tables if _is_solved(item) else None)[1:]).decode()
+        yield b"%b,%b\n" % (head[:-1], unpacked(item.tables if _is_solved(item) else None)[1:])
 
 
 def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterator[dict[str, Any]]:

@@ -1,5 +1,6 @@
 """Results in SQL: one row a point, stored with the end of a job, unpacked into the flat rows of the contract."""
 
+import threading
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 from uuid import UUID
@@ -20,6 +21,7 @@ STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal
 PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100
+_OWN = threading.local()
 _LEVEL = 1  # higher levels take longer and save nothing on rows of numbers
 
 
@@ -39,7 +41,15 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"],
 
 def unpacked(packed: bytes | None) -> bytes:
     """Return the JSON text of a packed column; that of tables without rows for a point that failed."""
-    return NO_TABLES if packed is None else zstandard.decompress(packed)
+    return NO_TABLES if packed is None else _unpacker().decompress(packed)
+
+
+def _unpacker() -> zstandard.ZstdDecompressor:
+    """Return the unpacker of this thread: to make one for each text takes as long as to unpack it."""
+    if not hasattr(_OWN, "unpacker"):
+        _OWN.unpacker = zstandard.ZstdDecompressor()
+    unpacker: zstandard.ZstdDecompressor = _OWN.unpacker
+    return unpacker
 
 
 def tables_of(packed: bytes | None) -> dict[Table, list[dict[str, Any]]]:

@@ -76,7 +76,7 @@ def results(
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
         if form == "ndjson" and asked.table is None:
-            return export.in_blocks(text + "\n" for text in batch_results.documents(session, batch_id))
+            return export.in_blocks(batch_results.documents(session, batch_id))
         rows = batch_results.rows(session, batch_id, name)
         if form == "parquet":
             from app import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
