@@ -123,7 +123,7 @@ def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line
 
 
 def _compare(gathered: Gathered, line: spec.Line, asked: schemas.Analysis) -> None:
-    """Ask of a line each choice of an analysis by itself, so that choices that exclude each other hide nothing."""
+    """Ask of a line the choices of an analysis; those that exclude each other one by one, so that they hide nothing."""
     loops, more_loops = tuple(asked.loops), tuple(asked.finite_element_loops)
     for choice in _choices(loops, more_loops, asked.closure, asked.aerodynamic_model):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
@@ -134,11 +134,13 @@ def _choices(
     loops: tuple[int, ...], more_loops: tuple[int, ...], closure: str, aerodynamic_model: str
 ) -> tuple[spec.Analysis, ...]:
     # Kept, since all lines of a batch are asked the same.
-    return (
-        replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops),
-        replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(closure)),
-        replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(aerodynamic_model)),
-    )
+    asked = replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops)
+    closed = replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(closure))
+    modelled = replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(aerodynamic_model))
+    try:
+        return (replace(asked, closure=closed.closure, aerodynamic_model=modelled.aerodynamic_model),)
+    except InvalidSpec:
+        return asked, closed, modelled
 
 
 def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
