@@ -25,7 +25,6 @@ from sqlalchemy import (
     make_url,
     select,
 )
-from sqlalchemy.dialects import postgresql
 from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.functions import func
@@ -36,6 +35,7 @@ from app.tables import Base, UtcDateTime
 _BUSY_SECONDS = 30.0
 _THREADS = 40
 _IMPATIENT: dict[str, Any] = {"connect_timeout": 2, "options": "-c statement_timeout=2000"}
+_POSTGRESQL = make_url("postgresql+psycopg://").get_dialect()()
 _CLOCK = "time by the database's clock"
 
 
@@ -130,7 +130,7 @@ def _copying(table: Table, names: tuple[str, ...]) -> tuple[bytes, tuple[str, ..
     """Return the statement for these columns, and PostgreSQL's names of their types."""
     columns = SQL(", ").join(map(Identifier, names))
     statement = SQL("COPY {} ({}) FROM STDIN (FORMAT BINARY)").format(Identifier(table.name), columns).as_bytes()
-    types = (table.columns[name].type.compile(dialect=postgresql.dialect()) for name in names)
+    types = (table.columns[name].type.compile(dialect=_POSTGRESQL) for name in names)
     return statement, tuple(text.partition("(")[0].lower() for text in types)
 
 
