@@ -61,15 +61,14 @@ def _rooms(moving: Sequence[tuple[spec.Line, Sequence[_Motion]]]) -> list[_Room]
     if not moving:
         return []
     positions = np.array(_equally_many([line.bundle.positions for line, _ in moving]))
-    lengths = [len(motions) for _, motions in moving]
     motions = [motion for _, of_line in moving for motion in of_line]
-    owner = np.repeat(np.arange(len(moving)), lengths)
+    owner = np.repeat(np.arange(len(moving)), [len(of_line) for _, of_line in moving])
     found = np.ptp(positions, axis=1)
     most, least = _bounds(motions, np.abs(positions).max(axis=1)[owner, ::-1])
     most += found[owner]
     np.maximum.at(found, owner, np.where([[orbit is None] for _, orbit in motions], most, 0.0))
     # Orbits that cannot reach as far as another one of their line does anyway need not be followed.
-    surely = np.maximum.reduceat(least, np.cumsum(lengths) - lengths)
+    surely = np.maximum.reduceat(least, np.searchsorted(owner, range(len(moving))))
     far = np.flatnonzero((most >= surely[owner]).any(axis=-1)).tolist()
     reaching = [(place, orbit) for place in far if (orbit := motions[place][1]) is not None]
     for first in range(0, len(reaching), _ORBITS_AT_ONCE):

@@ -7,12 +7,14 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from unittest import mock
 from uuid import UUID
 
+import pytest
 from sqlalchemy import Engine, event
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batch_results, batches, jobs, leases, submissions
+from app import batch_results, batches, convert, jobs, leases, submissions
 from app.auth import LOCAL
 from app.convert import PointResult
 from app.examples import example
@@ -22,6 +24,7 @@ from app.jobs import Draft, Submission
 from app.schemas import JobRequest
 from app.settings import Settings
 from app.submissions import Order
+from engine import clearance, spec
 from tests.app.lines import SHORT, changed
 from tests.documents import create_job, point_result, short_request
 
@@ -92,6 +95,19 @@ def test_a_batch_is_a_few_statements_and_a_message_for_hundreds_of_lines(
     with sessions() as session, counted() as statements:
         assert len(list(batch_results.documents(session, receipt.batch_id))) == LINES
     assert len(statements) <= 1 + LINES // 100
+
+
+def test_lines_side_by_side_are_checked_once_here_and_their_orbits_followed_together(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    checks, paths = mock.Mock(wraps=spec.check_compatible), mock.Mock(wraps=clearance.subconductor_paths)
+    monkeypatch.setattr(spec, "check_compatible", checks)
+    monkeypatch.setattr(clearance, "subconductor_paths", paths)
+    lines = [convert.NumberedLine(number, example("c11-twin")) for number in range(3)]
+    points = [item for item in convert.run_stack(SHORT, lines) if isinstance(item, PointResult)]
+    assert [point.failure for point in points] == [None] * len(lines)
+    assert checks.call_count <= 2 * len(lines)  # the engine asks once, too
+    assert paths.call_count <= 1
 
 
 def received(settings: Settings, sessions: sessionmaker[Session]) -> Receipt:
