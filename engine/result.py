@@ -76,7 +76,7 @@ class CriticalWindSpeedRow:
     unstable_pairs_after: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, since a line has dozens of these, which orjson writes by their `__dict__`
 class LimitCycleRow:
     """One motion at one wind speed: the equilibrium or a cycle; amplitudes are half of peak-to-peak (section 8).
 
