@@ -35,7 +35,7 @@ MEANING = {
     "branch_compiled_gain": "the same for a branch in a call of its own",
     "fleet_exponent": "exponent of the time over the number of lines",
     "finite_element_over_hybrid": "cost of the finite element model over the hybrid one",
-    "service_overhead_ratio": "a batch through HTTP, queue, worker and database over the engine alone",
+    "service_overhead_ratio": "a batch through HTTP, queue, worker, database over the engine alone, median of rounds",
     "two_worker_speedup": "two workers over one on two cores, from the start of the first chunk to the end of the last",
     "two_worker_batch_speedup": "the same from the first byte of the batch to the last byte of its results",
     "machine_loop_seconds": "`sum(range(10_000_000))` in Python [s]: what the machine is worth at the time of this run",
