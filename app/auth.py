@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 from ipaddress import ip_address
 from uuid import UUID
 
@@ -31,6 +32,7 @@ LOCAL = Caller("local", frozenset(Scope))
 """The caller of a service without keys, which is open to its own machine only."""
 
 
+@lru_cache(maxsize=256)
 def is_loopback(host: str) -> bool:
     """Tell whether a name or an address means this machine to itself."""
     try:

@@ -152,3 +152,9 @@ def test_a_bundle_is_a_circle_or_positions(bundle: dict[str, Any]) -> None:
 def test_a_study_has_one_or_two_axes_of_different_fields_and_at_most_ten_thousand_points(axes: list[Any]) -> None:
     with pytest.raises(ValidationError):
         schemas.Study.model_validate({"axes": axes})
+
+
+def test_documents_that_leave_a_field_out_share_its_default() -> None:
+    first, second = (schemas.JobRequest.model_validate({"line": example("c11-twin")}) for _ in range(2))
+    assert first.analysis is second.analysis
+    assert first.model_copy(update={"webhook_url": "https://a.example"}).webhook_url != first.webhook_url
