@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import Generic, TypeVar
 
 from sqlalchemy.orm import Session, sessionmaker
@@ -20,15 +21,24 @@ class Groups(Generic[Question, Answer]):
     the event loop, where a thread for every request would make all of them wait for each other.
     """
 
-    def __init__(self, name: str, answer: Callable[[Sequence[Question]], Sequence[Answer | Exception]]) -> None:
+    def __init__(
+        self,
+        name: str,
+        answer: Callable[[Sequence[Question]], Sequence[Answer | Exception]],
+        rest_seconds: float = 0.0,
+    ) -> None:
         """Take the function that answers a group, called in a thread of this object's own.
 
         It returns an answer for every question, or the exception that shall be raised where the question was asked.
+        After a group of several a rest lets the next one gather, unless that is full: under load larger groups cost
+        less than they wait.
         """
         self._answer = answer
         self._thread = ThreadPoolExecutor(1, thread_name_prefix=name)
         self._waiting: list[tuple[Question, asyncio.Future[Answer]]] = []
         self._work: asyncio.Task[None] | None = None
+        self._rest_seconds = rest_seconds
+        self._closing = asyncio.Event()
 
     async def ask(self, question: Question) -> Answer:
         """Return the answer to a question.
@@ -50,6 +60,7 @@ class Groups(Generic[Question, Answer]):
 
     async def close(self) -> None:
         """Answer what is still waiting, then end the thread."""
+        self._closing.set()
         if self._work is not None:
             await self._work
         self._thread.shutdown()
@@ -61,8 +72,14 @@ class Groups(Generic[Question, Answer]):
                 del self._waiting[:_MOST_AT_ONCE]
                 for (_, future), answer in zip(group, await self._answers([q for q, _ in group]), strict=True):
                     _settle(future, answer)
+                await self._rest(len(group))
         finally:
             self._work = None
+
+    async def _rest(self, answered: int) -> None:
+        if self._rest_seconds and answered > 1 and len(self._waiting) < _MOST_AT_ONCE:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._closing.wait(), self._rest_seconds)
 
     async def _answers(self, questions: Sequence[Question]) -> Sequence[Answer | Exception]:
         try:

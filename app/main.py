@@ -19,7 +19,7 @@ from app.head import HeadAsGet
 from app.headers import SecurityHeaders
 from app.jobs import look_up
 from app.observe import batches_seen, jobs_seen
-from app.queue import Sender, celery_application
+from app.queue import Dispatcher, Sender, celery_application
 from app.rates import Meter
 from app.routes import (
     aerodynamics,
@@ -40,6 +40,8 @@ from app.routes import (
 from app.settings import Settings, get_settings
 from app.watch import Watch
 
+_GATHERING_SECONDS = 0.006  # about what one group of posts takes
+_NOTES_A_SWEEP = 4.0
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
 
 Post a line to `/v1/jobs`, follow `Location` until the status is `successful`, then read `/results`.
@@ -118,8 +120,10 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
-    app.state.inbox = Groups("inbox", partial(committed_together, app.state.writers, submissions.accept))
-    app.state.dispatcher = Groups("dispatcher", app.state.sender.send_together)
+    app.state.inbox = Groups(
+        "inbox", partial(committed_together, app.state.writers, submissions.accept), _GATHERING_SECONDS
+    )
+    app.state.dispatcher = Dispatcher(app.state.sender, settings.sweep_seconds / _NOTES_A_SWEEP)
     app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
     app.state.job_watch = Watch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
     app.state.batch_watch = Watch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)

@@ -1,9 +1,11 @@
 """The way to the workers: a message carries the id of a job, nothing else. SQL is the truth; messages may be lost."""
 
+import asyncio
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -17,6 +19,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app import leases
 from app.db import make_engine, session_factory
+from app.groups import Groups
 from app.settings import Settings
 
 TASK_NAME = "galloping.run_job"
@@ -111,30 +114,68 @@ class Sender:
     sessions: sessionmaker[Session]
 
     def send(self, job_ids: Sequence[UUID], *, chunk: bool = False) -> bool:
-        """Send committed jobs, or chunks, as `dispatch` does: in one exchange with a broker that can take many."""
+        """Send committed jobs, or chunks, as `dispatch` does."""
+        return self.hand_over(job_ids, chunk=chunk) and self.mark(job_ids)
+
+    def hand_over(self, job_ids: Sequence[UUID], *, chunk: bool = False) -> bool:
+        """Send messages, in one exchange with a broker that can take many; on any fault leave all to the sweeper."""
         try:
             with self.application.producer_or_acquire() as producer, producer.batch():
                 queue = self.application.amqp.queues[_queue_name(chunk)].bind(producer.channel)  # once for all
                 for job_id in job_ids:
                     _send(self.application, job_id, queue, producer=producer)
-            self._mark(job_ids)
-        except (*_BROKER_FAULTS, SQLAlchemyError) as error:
-            _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids), error)
-            return False
+        except _BROKER_FAULTS as error:
+            return _left(job_ids, error)
         return True
 
-    def send_together(self, job_ids: Sequence[UUID]) -> list[bool]:
-        """Send the committed jobs of many requests; every one of them learns how it went."""
-        return [self.send(job_ids)] * len(job_ids)
+    def mark(self, job_ids: Sequence[UUID]) -> bool:
+        """Note that the messages of jobs are with the broker; on any fault leave all to the sweeper."""
+        try:
+            with self.sessions.begin() as session:
+                leases.mark_dispatched(session, job_ids)
+        except SQLAlchemyError as error:
+            return _left(job_ids, error)
+        return True
 
     def close(self) -> None:
         """Close the connections to the broker."""
         self.application.close()
 
-    def _mark(self, job_ids: Sequence[UUID]) -> None:
-        if job_ids:
-            with self.sessions.begin() as session:
-                leases.mark_dispatched(session, job_ids)
+
+class Dispatcher:
+    """Sends the jobs of many requests together, without letting any of them wait.
+
+    That they are sent is noted a moment later, for all since the last time in one transaction. Where the process dies
+    meanwhile, the sweeper sends them again.
+    """
+
+    def __init__(self, sender: Sender, note_seconds: float) -> None:
+        """Take what sends, and the time between two notes, which is less than the sweeper's patience."""
+        self._messages: Groups[UUID, bool] = Groups("messages", _for_all(sender.hand_over))
+        self._notes: Groups[UUID, bool] = Groups("notes", _for_all(sender.mark), note_seconds)
+
+    def put(self, job_id: UUID) -> None:
+        """Send a committed job soon."""
+        self._messages.put(job_id).add_done_callback(partial(self._note, job_id))
+
+    async def close(self) -> None:
+        """Send and note what is left."""
+        await self._messages.close()
+        await asyncio.sleep(0)  # for the last callback
+        await self._notes.close()
+
+    def _note(self, job_id: UUID, sent: "asyncio.Future[bool]") -> None:
+        if not sent.cancelled() and sent.exception() is None and sent.result():
+            self._notes.put(job_id)
+
+
+def _for_all(act: Callable[[Sequence[UUID]], bool]) -> Callable[[Sequence[UUID]], list[bool]]:
+    return lambda job_ids: [act(job_ids)] * len(job_ids)
+
+
+def _left(job_ids: Sequence[UUID], error: Exception) -> bool:
+    _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids), error)
+    return False
 
 
 def _send(application: Celery, job_id: UUID, queue: Any, **by: Any) -> None:

@@ -79,6 +79,37 @@ def test_who_has_gone_holds_up_nobody_and_closing_waits_for_the_rest() -> None:
     assert sorted(answered) == [1, 2, 3]
 
 
+def test_a_rest_after_a_group_lets_the_next_one_gather() -> None:
+    groups_answered: list[list[int]] = []
+
+    def answer(questions: Sequence[int]) -> Sequence[int]:
+        groups_answered.append(list(questions))
+        return questions
+
+    async def ask() -> None:
+        patient = Groups("test", answer, rest_seconds=3600.0)
+        assert [await patient.ask(1), await patient.ask(2)] == [1, 2]  # one by itself waits for nobody
+        assert await asyncio.gather(patient.ask(3), patient.ask(4)) == [3, 4]
+        later = [patient.put(number) for number in (5, 6)]
+        await asyncio.sleep(0.05)
+        assert groups_answered == [[1], [2], [3, 4]]
+        await patient.close()
+        assert [future.result() for future in later] == [5, 6]
+
+    asyncio.run(ask())
+    assert groups_answered == [[1], [2], [3, 4], [5, 6]]
+
+
+def test_a_full_group_waits_for_no_rest() -> None:
+    async def ask() -> None:
+        patient = Groups("test", lambda questions: questions, rest_seconds=3600.0)
+        async with asyncio.timeout(30.0):
+            assert await asyncio.gather(*map(patient.ask, range(200))) == list(range(200))
+        await patient.close()
+
+    asyncio.run(ask())
+
+
 def made(session: Session, questions: Sequence[str]) -> list[UUID]:
     """Make a job for every question; one question is refused, another cannot be stored."""
     if "refuse" in questions:

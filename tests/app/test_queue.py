@@ -1,15 +1,26 @@
+import asyncio
 import json
 import socket
 import time
 from pathlib import Path
-from uuid import uuid4
+from uuid import UUID, uuid4
 
 import pytest
 import redis
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.queue import QUEUE_NAME, TASK_NAME, BrokerUnavailable, celery_application, dispatch, open_queue
+from app.queue import (
+    QUEUE_NAME,
+    TASK_NAME,
+    BrokerUnavailable,
+    Dispatcher,
+    Sender,
+    celery_application,
+    dispatch,
+    open_queue,
+)
 from app.settings import Settings
+from tests.app.test_costs import counted
 from tests.documents import add_job, look
 from tests.servers import free_port
 
@@ -58,6 +69,41 @@ def test_refusing_broker_leaves_the_job_to_the_sweeper(sessions: sessionmaker[Se
     job_id = add_job(sessions)
     assert not dispatch(on_broker(settings, f"redis://127.0.0.1:{free_port()}/0"), job_id)
     assert look(sessions, job_id).dispatched_at is None
+
+
+def dispatched(sessions: sessionmaker[Session], settings: Settings, count: int) -> list[UUID]:
+    """Let a dispatcher send jobs and end; return them."""
+    jobs = [add_job(sessions) for _ in range(count)]
+    sender = Sender(celery_application(settings), sessions)
+
+    async def dispatch_all() -> None:
+        dispatcher = Dispatcher(sender, note_seconds=3600.0)
+        for job_id in jobs:
+            dispatcher.put(job_id)
+        await dispatcher.close()
+
+    asyncio.run(dispatch_all())
+    sender.close()
+    return jobs
+
+
+def test_a_dispatcher_sends_at_once_and_notes_together(
+    sessions: sessionmaker[Session], settings: Settings, redis_address: str
+) -> None:
+    with counted() as statements:
+        jobs = dispatched(sessions, on_broker(settings, redis_address), 30)
+    with redis.Redis.from_url(redis_address) as client:
+        messages = [json.loads(text)["headers"]["id"] for text in client.lrange(QUEUE_NAME, 0, -1)]
+    assert len(set(messages)) == 30
+    assert all(look(sessions, job_id).dispatched_at is not None for job_id in jobs)
+    assert len([text for text in statements if text.startswith("UPDATE")]) <= 2
+
+
+def test_what_a_dispatcher_cannot_send_is_left_to_the_sweeper(
+    sessions: sessionmaker[Session], settings: Settings
+) -> None:
+    jobs = dispatched(sessions, on_broker(settings, f"redis://127.0.0.1:{free_port()}/0"), 3)
+    assert [look(sessions, job_id).dispatched_at for job_id in jobs] == [None] * 3
 
 
 def test_silent_broker_does_not_hold_up_the_sender(sessions: sessionmaker[Session], settings: Settings) -> None:
