@@ -120,9 +120,8 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
-    app.state.inbox = Groups(
-        "inbox", partial(committed_together, app.state.writers, submissions.accept), _GATHERING_SECONDS
-    )
+    accepted = partial(committed_together, app.state.writers, submissions.accept)
+    app.state.inbox = Groups("inbox", accepted, _GATHERING_SECONDS)
     app.state.dispatcher = Dispatcher(app.state.sender, settings.sweep_seconds / _NOTES_A_SWEEP)
     app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
     app.state.job_watch = Watch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)

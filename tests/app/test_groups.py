@@ -87,9 +87,9 @@ def test_a_rest_after_a_group_lets_the_next_one_gather() -> None:
         return questions
 
     async def ask() -> None:
-        patient = Groups("test", answer, rest_seconds=3600.0)
+        patient = Groups[int, int]("test", answer, rest_seconds=3600.0)
         assert [await patient.ask(1), await patient.ask(2)] == [1, 2]  # one by itself waits for nobody
-        assert await asyncio.gather(patient.ask(3), patient.ask(4)) == [3, 4]
+        assert [*await asyncio.gather(patient.ask(3), patient.ask(4))] == [3, 4]
         later = [patient.put(number) for number in (5, 6)]
         await asyncio.sleep(0.05)
         assert groups_answered == [[1], [2], [3, 4]]
@@ -102,7 +102,7 @@ def test_a_rest_after_a_group_lets_the_next_one_gather() -> None:
 
 def test_a_full_group_waits_for_no_rest() -> None:
     async def ask() -> None:
-        patient = Groups("test", lambda questions: questions, rest_seconds=3600.0)
+        patient = Groups[int, int]("test", lambda questions: questions, rest_seconds=3600.0)
         async with asyncio.timeout(30.0):
             assert await asyncio.gather(*map(patient.ask, range(200))) == list(range(200))
         await patient.close()
