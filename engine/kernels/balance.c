@@ -10,18 +10,19 @@
 
 void release_system(System *w)
 {
-    free(w->place), free(w->active), free(w->waves), free(w->spectra), free(w->matrix), free(w->rows), free(w->slope);
-    free(w->x), free(w->values), free(w->loads), free(w->state), free(w->scratch);
+    free(w->place), free(w->active), free(w->waves), free(w->folded), free(w->spectra), free(w->order), free(w->known);
+    free(w->matrix), free(w->rows), free(w->solution), free(w->slope), free(w->x), free(w->values), free(w->loads), free(w->state);
+    free(w->scratch), free(w->sizes);
 }
 
 static void fill_waves(System *w)
 {
     for (int s = 0; s < w->samples; s++) {
         const double tau = 2.0 * M_PI * s / w->samples;
-        double *waves = w->waves + s * 2 * w->orders + w->harmonics, *values = (double *)w->values + s;
-        for (int k = -w->harmonics; k <= 2 * w->harmonics; k++) {
+        double *waves = w->waves + s * 2 * w->waves_kept, *values = (double *)w->values + s;
+        for (int k = 0; k <= 2 * w->harmonics && 2 * s <= w->samples; k++) {
             waves[k] = cos(k * tau) / w->samples;
-            waves[w->orders + k] = sin(k * tau) / w->samples;
+            waves[w->waves_kept + k] = sin(k * tau) / w->samples;
         }
         values[0] = 1.0;
         for (int k = 1; k <= w->harmonics; k++) {
@@ -29,6 +30,8 @@ static void fill_waves(System *w)
             values[2 * k * w->groups * LANES] = sin(k * tau);
         }
     }
+    for (int k = 0; k < w->harmonics; k++)
+        ((double *)w->order)[k] = k + 1, ((double *)w->known)[k] = 1.0;
 }
 
 int prepare_system(System *w, const Model *model, int harmonics, int besides)
@@ -36,24 +39,31 @@ int prepare_system(System *w, const Model *model, int harmonics, int besides)
     *w = (System){.m = model->m, .harmonics = harmonics, .size = 2 * harmonics + 1};
     w->samples = 4 * harmonics + 2;
     w->groups = (w->samples + LANES - 1) / LANES;
-    w->orders = (3 * harmonics + LANES) / LANES * LANES;
+    w->waves_kept = (2 * harmonics + LANES) / LANES * LANES;
+    w->orders = harmonics + w->waves_kept;
     w->balances = w->m * w->size;
     w->unknowns = w->balances + besides;
     w->stride = w->unknowns + 2 + LANES;
     const size_t m = (size_t)w->m, n = (size_t)w->unknowns, rows = (size_t)row_count(w), width = 2 * (size_t)w->orders;
+    const size_t half = (size_t)w->samples / 2 + 1;
     w->place = calloc(n, sizeof *w->place);
     w->active = calloc(2 * m, sizeof *w->active);
-    w->waves = calloc((size_t)w->samples * width, sizeof *w->waves);
-    w->spectra = calloc(rows * width, sizeof *w->spectra);
+    w->waves = calloc(half * 2 * (size_t)w->waves_kept, sizeof *w->waves);
+    w->folded = calloc(2 * half, sizeof *w->folded);
+    w->spectra = calloc(rows * width + LANES, sizeof *w->spectra);
+    w->order = calloc((size_t)harmonics / LANES + 1, sizeof *w->order);
+    w->known = calloc((size_t)harmonics / LANES + 1, sizeof *w->known);
     w->matrix = calloc(n * (size_t)w->stride, sizeof *w->matrix);
     w->rows = calloc(n, sizeof *w->rows);
+    w->sizes = calloc(n + LANES, sizeof *w->sizes);
+    w->solution = calloc(2 * n, sizeof *w->solution);
     w->slope = calloc(m * (size_t)w->size, sizeof *w->slope);
     w->x = calloc(n, sizeof *w->x);
     w->values = calloc((size_t)(w->size * w->groups), sizeof *w->values);
     w->loads = calloc(rows * (size_t)w->groups, sizeof *w->loads);
     w->state = calloc(4 * m + 2 * m * m, sizeof *w->state);
     w->scratch = calloc(load_scratch(model), sizeof *w->scratch);
-    if (!(w->place && w->active && w->waves && w->spectra && w->matrix && w->rows && w->slope && w->x && w->values
+    if (!(w->place && w->active && w->waves && w->folded && w->spectra && w->order && w->known && w->matrix && w->rows && w->sizes && w->solution && w->slope && w->x && w->values
           && w->loads && w->state && w->scratch))
         return 0;
     fill_waves(w);
@@ -90,7 +100,7 @@ static void differentiate(System *w, const double *coefficients)
     }
 }
 
-static inline Lanes series(const System *w, const double *coefficients, int group)
+WITHIN Lanes series(const System *w, const double *coefficients, int group)
 {
     Lanes sum = {0};
     for (int c = 0; c < w->size; c++)
@@ -122,29 +132,52 @@ WIDE static void sample(System *w, const Model *model, const double *coefficient
     }
 }
 
-/* Transform one row of the load; the number of samples is even. */
-WIDE static void transform(System *w, int row)
+/* Transform one row of the load for k up to `last`: cos k tau takes the sums of what tau and -tau have, sin k tau the
+ * differences. */
+WITHIN void fold_and_sum(System *w, int harmonics, int row, int last)
 {
     const double *load = (const double *)(w->loads + row * w->groups);
-    for (int k = 0; k < 2 * w->orders; k += LANES) {
-        Lanes even = {0}, odd = {0};
-        for (int s = 0; s < w->samples; s += 2) {
-            even += load[s] * *(const Lanes *)(w->waves + s * 2 * w->orders + k);
-            odd += load[s + 1] * *(const Lanes *)(w->waves + (s + 1) * 2 * w->orders + k);
-        }
-        *(Lanes *)(w->spectra + row * 2 * w->orders + k) = even + odd;
+    const int half = 2 * harmonics + 1, kept = (2 * harmonics + LANES) / LANES * LANES;
+    double *sums = w->folded, *differences = w->folded + half + 1;
+    double *even = w->spectra + row * 2 * w->orders + harmonics, *odd = even + w->orders;
+    sums[0] = load[0], sums[half] = load[half];
+    for (int s = 1; s < half; s++) {
+        sums[s] = load[s] + load[2 * half - s];
+        differences[s] = load[s] - load[2 * half - s];
     }
+    for (int k = 0; k <= last; k += LANES) {
+        const double *waves = w->waves + k;
+        Lanes by_cosine = {0}, by_sine = {0};
+        for (int s = 0; s <= half; s++, waves += 2 * kept) {
+            by_cosine += sums[s] * *(const Lanes *)waves;
+            by_sine += differences[s] * *(const Lanes *)(waves + kept);
+        }
+        *(Lanes *)(even + k) = by_cosine;
+        *(Lanes *)(odd + k) = by_sine;
+    }
+    for (int k = 1; k <= harmonics; k++) {
+        even[-k] = even[k];
+        odd[-k] = -odd[k];
+    }
+}
+
+WIDE static void transform(System *w, int row, int last)
+{
+    if (w->harmonics == 5) /* the usual number: loops of known length are unrolled */
+        fold_and_sum(w, 5, row, last);
+    else
+        fold_and_sum(w, w->harmonics, row, last);
 }
 
 /* Transform every row of the load that is not zero for good. */
 static void transform_all(System *w)
 {
     for (int i = 0; i < w->m; i++) {
-        transform(w, force_row(i));
-        transform(w, rate_row(w, i));
+        transform(w, force_row(i), w->harmonics);
+        transform(w, rate_row(w, i), w->harmonics);
         for (int v = 0; v < 2 * w->m; v++)
             if (w->active[v])
-                transform(w, gradient_row(w, i, v));
+                transform(w, gradient_row(w, i, v), 2 * w->harmonics);
     }
 }
 
@@ -152,6 +185,17 @@ static void transform_all(System *w)
 static double *block_of(const System *w, int i, int j)
 {
     return w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride + w->place[j * w->size];
+}
+
+WITHIN Lanes at(const double *first) { return *(const Lanes *)first; }
+
+/* Subtract x_1, y_1, x_2, y_2, ... from entries that follow one another. */
+WITHIN void subtract_pairs(double *entries, Lanes x, Lanes y)
+{
+    for (int lane = 0; lane < LANES; lane++) {
+        entries[2 * lane] -= x[lane];
+        entries[2 * lane + 1] -= y[lane];
+    }
 }
 
 /* Subtract U^2 P diag(df/dq) V + U w P diag(df/d(q'/U)) V D from the block of equation i and co-ordinate j, with V the
@@ -166,16 +210,18 @@ WIDE static void subtract_load_block(System *w, int i, int j, double speed, doub
         const double weight = a ? 1.0 : 0.5, f = weight * speed * speed, g = weight * speed * omega;
         double *cosine = block + (a ? 2 * a - 1 : 0) * w->stride, *sine = cosine + w->stride;
         cosine[0] -= 2.0 * f * even[a];
-        for (int b = 1; b <= w->harmonics; b++) {
-            cosine[2 * b - 1] -= f * (even[b - a] + even[a + b]) - g * b * (rate_odd[a + b] + rate_odd[b - a]);
-            cosine[2 * b] -= f * (odd[a + b] + odd[b - a]) + g * b * (rate_even[b - a] + rate_even[a + b]);
-        }
-        if (a == 0)
-            continue;
-        sine[0] -= 2.0 * f * odd[a];
-        for (int b = 1; b <= w->harmonics; b++) {
-            sine[2 * b - 1] -= f * (odd[a + b] - odd[b - a]) - g * b * (rate_even[b - a] - rate_even[a + b]);
-            sine[2 * b] -= f * (even[b - a] - even[a + b]) + g * b * (rate_odd[a + b] - rate_odd[b - a]);
+        if (a)
+            sine[0] -= 2.0 * f * odd[a];
+        for (int b = 1; b <= w->harmonics; b += LANES) {
+            const Lanes by_q = f * w->known[b / LANES], by_rate = g * w->order[b / LANES];
+            const Lanes e = at(even + b - a), e_sum = at(even + a + b), o = at(odd + b - a), o_sum = at(odd + a + b);
+            const Lanes r = at(rate_even + b - a), r_sum = at(rate_even + a + b);
+            const Lanes t = at(rate_odd + b - a), t_sum = at(rate_odd + a + b);
+            subtract_pairs(cosine + 2 * b - 1, by_q * (e + e_sum) - by_rate * (t_sum + t),
+                           by_q * (o_sum + o) + by_rate * (r + r_sum));
+            if (a)
+                subtract_pairs(sine + 2 * b - 1, by_q * (o_sum - o) - by_rate * (r - r_sum),
+                               by_q * (e - e_sum) + by_rate * (t_sum - t));
         }
     }
 }

@@ -6,13 +6,18 @@
 
 typedef struct {
     int m, harmonics, size, balances, unknowns, stride, samples, groups;  /* balances = m (2 H + 1) */
-    int orders;          /* of one spectrum: cos k tau for k = -H ... 2 H, padded, then sin k tau likewise */
+    int waves_kept;      /* cos k tau for k = 0 ... 2 H, padded to whole Lanes, then sin k tau likewise */
+    int orders;          /* of one spectrum: k = -H ... 2 H, padded, of cos k tau, then of sin k tau */
     int *place;          /* (unknowns), where each stands in the system: idle co-ordinates first */
     int *active;         /* (2 m), whether the load depends on this component of (q, q'/U) */
-    double *waves;       /* (samples, 2 orders), cos and sin of k tau over the number of samples */
-    double *spectra;     /* (rows, 2 orders): the same of every row of the load */
+    double *waves;       /* (samples / 2 + 1, 2 waves_kept), cos and sin of k tau over the number of samples */
+    double *folded;      /* (2, samples / 2 + 1), sums and differences of the samples at tau and -tau of one row */
+    double *spectra;     /* (rows, 2 orders): of every row of the load */
+    Lanes *order, *known; /* (H) padded to whole Lanes: 1, 2, ..., H, 0 beyond, and 1, 1, ..., 1, 0 beyond */
     double *matrix;      /* (unknowns, stride), with the right sides behind each row */
     double **rows;       /* (unknowns), into the matrix */
+    double *sizes;       /* (unknowns + LANES), scratch of the elimination */
+    double *solution;    /* (2, unknowns), of both right sides in the order of elimination */
     double *slope;       /* (m, 2 H + 1), coefficients of dq/dtau */
     double *x;           /* (unknowns), a copy of the point where only its parts are given */
     Lanes *values;       /* (2 H + 1, groups), the basis at groups of samples, 0 beyond the last */

@@ -38,7 +38,7 @@ static int prepare(Workspace *w, const Model *model, int harmonics)
 
 static inline Lanes *matrix_of(const Workspace *w, int which) { return w->matrices + which * w->count; }
 
-WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restrict right, Lanes *restrict product)
+WITHIN void product_of(int n, const Lanes *restrict left, const Lanes *restrict right, Lanes *restrict product)
 {
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) {
@@ -47,6 +47,14 @@ WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restri
                 sum += left[i * n + k] * right[k * n + j];
             product[i * n + j] = sum;
         }
+}
+
+WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restrict right, Lanes *restrict product)
+{
+    if (n == 6) /* the hybrid model: loops of known length are unrolled */
+        product_of(6, left, right, product);
+    else
+        product_of(n, left, right, product);
 }
 
 /* Set the lower half (m, 2 m) of A(tau) of y' = A y, y = (q, dq/dtau), at one Gauss point of the lanes' steps. */

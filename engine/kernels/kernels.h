@@ -41,9 +41,9 @@ size_t load_scratch(const Model *model);
 void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch);
 
 /* Solve systems by elimination with partial pivoting. Row i holds the coefficients, its right sides from entry n on, and
- * then at least LANES zeros; the solutions take the place of the right sides, and the rest is lost. Return 0 if a pivot
- * vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
-int eliminate(int n, double **rows, int sides);
+ * then at least LANES zeros, which are lost; the solutions are x (sides, n), and sizes (n + LANES) is scratch. Return 0
+ * if a pivot vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
+int eliminate(int n, double **rows, int sides, double *sizes, double *x);
 
 /* What Newton's method is told, engine.newton.Options. */
 typedef struct {

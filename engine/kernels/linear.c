@@ -1,46 +1,130 @@
-/* Dense linear systems of some dozen unknowns, too small for the overhead of a call to LAPACK to be small. */
+/* Dense linear systems of some dozen unknowns, too small for the overhead of a call to LAPACK to be small.
+ *
+ * Two columns are eliminated at a time, so that each row is read and written half as often. The sizes of the entries of
+ * the next column are noted where they arise: to look for a pivot through all rows would wait for memory at each. */
 #include "kernels.h"
 
 #include <math.h>
 
-static inline int largest(int n, int column, double *const *rows)
+/* Put the row of the largest of `sizes` from k on in place k, and return it, or NULL if none is above zero. */
+WITHIN double *choose_pivot(int n, int k, double **rows, double *sizes)
 {
-    int best = column;
-    double size = fabs(rows[column][column]);
-    for (int i = column + 1; i < n; i++) {
-        const double other = fabs(rows[i][column]);
-        if (other > size) {
-            size = other;
-            best = i;
-        }
-    }
-    return best;
+    double largest[LANES] = {0};
+    for (int i = k; i < n; i += LANES)
+        for (int lane = 0; lane < LANES; lane++)
+            largest[lane] = sizes[i + lane] > largest[lane] ? sizes[i + lane] : largest[lane];
+    double size = 0.0;
+    for (int lane = 0; lane < LANES; lane++)
+        size = largest[lane] > size ? largest[lane] : size;
+    int best = k;
+    while (best < n && sizes[best] != size)
+        best++;
+    if (best == n || size == 0.0)
+        return NULL;
+    double *pivot = rows[best];
+    rows[best] = rows[k];
+    rows[k] = pivot;
+    return pivot;
 }
 
-WIDE int eliminate(int n, double **rows, int sides)
+WITHIN void subtract(int first, int end, const double *pivot, double factor, double *row)
 {
-    for (int k = 0; k < n; k++) {
-        const int best = largest(n, k, rows);
-        double *pivot = rows[best];
-        rows[best] = rows[k];
-        rows[k] = pivot;
-        if (pivot[k] == 0.0)
-            return 0;
-        const double inverse = 1.0 / pivot[k];
-        for (int i = k + 1; i < n; i++) {
-            double *row = rows[i];
-            const double factor = row[k] * inverse;
-            if (factor == 0.0)
-                continue;
-            for (int j = k + 1; j < n + sides; j += LANES)
-                *(Lanes *)(row + j) -= factor * *(const Lanes *)(pivot + j);
+    for (int j = first; j < end; j += LANES)
+        *(Lanes *)(row + j) -= factor * *(const Lanes *)(pivot + j);
+}
+
+/* Subtract multiples of two rows, p and q, from two others. */
+WITHIN void subtract_both(int first, int end, const double *p, const double *q, double *a, double *b, const double *by)
+{
+    for (int j = first; j < end; j += LANES) {
+        const Lanes here = *(const Lanes *)(p + j), next = *(const Lanes *)(q + j);
+        *(Lanes *)(a + j) -= by[0] * here + by[1] * next;
+        *(Lanes *)(b + j) -= by[2] * here + by[3] * next;
+    }
+}
+
+/* Eliminate column k from the rows below and leave the inverse of the pivot in its place. */
+WITHIN int eliminate_one(int n, int end, int k, double **rows, double *sizes)
+{
+    double *pivot = choose_pivot(n, k, rows, sizes);
+    if (!pivot)
+        return 0;
+    pivot[k] = 1.0 / pivot[k];
+    for (int i = k + 1; i < n; i++) {
+        if (rows[i][k] != 0.0)
+            subtract(k + 1, end, pivot, rows[i][k] * pivot[k], rows[i]);
+        sizes[i] = fabs(rows[i][k + 1]);
+    }
+    return 1;
+}
+
+/* Eliminate columns k and k + 1 likewise. */
+WITHIN int eliminate_two(int n, int end, int k, double **rows, double *sizes)
+{
+    double *p = choose_pivot(n, k, rows, sizes);
+    if (!p)
+        return 0;
+    p[k] = 1.0 / p[k];
+    for (int i = k + 1; i < n; i++) {
+        rows[i][k] *= p[k];
+        rows[i][k + 1] -= rows[i][k] * p[k + 1];
+        sizes[i] = fabs(rows[i][k + 1]);
+    }
+    double *q = choose_pivot(n, k + 1, rows, sizes);
+    if (!q)
+        return 0;
+    q[k + 1] = 1.0 / q[k + 1];
+    subtract(k + 2, end, p, q[k], q);
+    int i = k + 2;
+    for (; i + 1 < n; i += 2) {
+        double *a = rows[i], *b = rows[i + 1];
+        const double by[] = {a[k], a[k + 1] * q[k + 1], b[k], b[k + 1] * q[k + 1]};
+        if (by[0] != 0.0 || by[1] != 0.0 || by[2] != 0.0 || by[3] != 0.0)
+            subtract_both(k + 2, end, p, q, a, b, by);
+        sizes[i] = fabs(a[k + 2]), sizes[i + 1] = fabs(b[k + 2]);
+    }
+    if (i < n) {
+        subtract(k + 2, end, p, rows[i][k], rows[i]);
+        subtract(k + 2, end, q, rows[i][k + 1] * q[k + 1], rows[i]);
+        sizes[i] = fabs(rows[i][k + 2]);
+    }
+    return 1;
+}
+
+/* Solve for some unknowns at a time: what they take from those behind them does not wait for one another. */
+WITHIN void substitute_back(int n, int side, double **rows, double *x)
+{
+    for (int stop = n; stop > 0; stop -= LANES) {
+        const int start = stop > LANES ? stop - LANES : 0;
+        double rest[LANES];
+        for (int k = start; k < stop; k++) {
+            Lanes sum = {0};
+            for (int j = stop; j < n; j += LANES)
+                sum += *(const Lanes *)(rows[k] + j) * *(const Lanes *)(x + j);
+            rest[k - start] = rows[k][side] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
+        }
+        for (int k = stop - 1; k >= start; k--) {
+            x[k] = rest[k - start] * rows[k][k];
+            for (int i = start; i < k; i++)
+                rest[i - start] -= rows[i][k] * x[k];
         }
     }
-    for (int side = n; side < n + sides; side++)
-        for (int k = n - 1; k >= 0; k--) {
-            const double x = rows[k][side] /= rows[k][k];
-            for (int i = 0; i < k; i++)
-                rows[i][side] -= rows[i][k] * x;
-        }
+}
+
+WIDE int eliminate(int n, double **rows, int sides, double *sizes, double *x)
+{
+    const int end = n + sides;
+    for (int i = 0; i < n + LANES; i++)
+        sizes[i] = i < n ? fabs(rows[i][0]) : 0.0;
+    if (!eliminate_one(n, end, 0, rows, sizes))
+        return 0;
+    int k = 1;
+    for (; k + 1 < n; k += 2)
+        if (!eliminate_two(n, end, k, rows, sizes))
+            return 0;
+    if (k < n && !eliminate_one(n, end, k, rows, sizes))
+        return 0;
+    for (int side = 0; side < sides; side++)
+        substitute_back(n, n + side, rows, x + side * n);
     return 1;
 }

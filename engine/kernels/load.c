@@ -21,7 +21,7 @@ size_t load_scratch(const Model *model)
     return (size_t)model->local + 1 + (size_t)model->monomials;
 }
 
-static inline Lanes polynomial(int count, const double *coefficients, const Lanes *terms)
+WITHIN Lanes polynomial(int count, const double *coefficients, const Lanes *terms)
 {
     Lanes sum = {0};
     for (int t = 0; t < count; t++)
@@ -29,9 +29,10 @@ static inline Lanes polynomial(int count, const double *coefficients, const Lane
     return sum;
 }
 
-WIDE void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch)
+WITHIN void evaluate(const Model *model, int m, int local, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch)
 {
-    const int m = model->m, local = model->local;
+    const int lower = 1 + local + local * (local + 1) / 2;
+    const int monomials = lower - 1 + local * (local + 1) * (local + 2) / 6;
     Lanes *x = scratch, *terms = scratch + local;
     memset(force, 0, (size_t)m * sizeof *force);
     memset(gradient, 0, (size_t)m * 2 * (size_t)m * sizeof *gradient);
@@ -42,13 +43,21 @@ WIDE void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *g
         powers(local, x, terms);
         for (int i = 0; i < m; i++) {
             const ptrdiff_t row = (ptrdiff_t)p * m + i;
-            force[i] += polynomial(model->monomials, model->table + row * model->monomials, terms + 1);
+            force[i] += polynomial(monomials, model->table + row * monomials, terms + 1);
             for (int l = 0; l < local; l++) {
-                const Lanes slope = polynomial(model->lower, model->slopes + (row * local + l) * model->lower, terms);
+                const Lanes slope = polynomial(lower, model->slopes + (row * local + l) * lower, terms);
                 for (int v = 0; v < 2 * m; v++)
                     if (forms[l * 2 * m + v] != 0.0)
                         gradient[i * 2 * m + v] += forms[l * 2 * m + v] * slope;
             }
         }
     }
+}
+
+WIDE void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch)
+{
+    if (model->m == 3 && model->local == 3) /* the hybrid model: loops of known length are unrolled */
+        evaluate(model, 3, 3, state, force, gradient, scratch);
+    else
+        evaluate(model, model->m, model->local, state, force, gradient, scratch);
 }

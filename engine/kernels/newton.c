@@ -31,7 +31,7 @@ static double scaled_size(const System *w, const double *scale)
 {
     double sum = 0.0;
     for (int u = 0; u < w->unknowns; u++) {
-        const double part = w->rows[w->place[u]][w->unknowns] / scale[u];
+        const double part = w->solution[w->place[u]] / scale[u];
         sum += part * part;
     }
     return sqrt(sum / w->unknowns);
@@ -56,7 +56,7 @@ static int find_step(System *w, const Model *model, const Balances *wanted, ptrd
         add_condition(w, x, wanted->row + cycle * n, wanted->target[cycle]);
     for (int row = 0; row < n; row++)
         w->rows[row] = w->matrix + (ptrdiff_t)row * w->stride;
-    return eliminate(n, w->rows, 1 + wanted->follows);
+    return eliminate(n, w->rows, 1 + wanted->follows, w->sizes, w->solution);
 }
 
 static void iterate(System *w, const Model *model, const Balances *wanted, ptrdiff_t cycle, const Options *options)
@@ -71,9 +71,9 @@ static void iterate(System *w, const Model *model, const Balances *wanted, ptrdi
             return;
         const double taken = size > options->largest_step ? options->largest_step / size : 1.0;
         for (int u = 0; u < n; u++) {
-            x[u] -= taken * w->rows[w->place[u]][n];
+            x[u] -= taken * w->solution[w->place[u]];
             if (wanted->follows)
-                wanted->tangent[cycle * n + u] = w->rows[w->place[u]][n + 1];
+                wanted->tangent[cycle * n + u] = w->solution[n + w->place[u]];
         }
         wanted->step[cycle] = size;
         wanted->iterations[cycle] = iteration + 1;
