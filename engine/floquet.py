@@ -8,6 +8,7 @@ import numpy as np
 from engine import compiled
 from engine.aerodynamics import force_gradient
 from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
+from engine.eigenvalues import eigenvalues
 from engine.harmonic import Orbits, basis, fourier, pick, states
 from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability
@@ -52,7 +53,7 @@ def floquet(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int
     cycles, size, _ = matrices.shape
     values = np.full((cycles, size), np.nan, dtype=np.complex128)
     known = np.isfinite(matrices).all(axis=(-1, -2))
-    values[known] = np.linalg.eigvals(matrices[known])
+    values[known] = eigenvalues(matrices[known])
     trivial = np.abs(values - 1.0).argmin(axis=-1)
     order = np.argsort(np.arange(size) != trivial[:, None], axis=-1, kind="stable")
     values = np.take_along_axis(values, order, axis=-1)

@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.eigenvalues import eigenvalues
 from engine.harmonic import half_peak_to_peak, pick, states
 from engine.hybrid import Discretization, observation, take
 from engine.outcome import Outcome, Stability
@@ -80,7 +81,7 @@ def _equilibria(found: Found, loops: tuple[int, ...], scales: _Scales) -> Iterat
     """Yield the rows of the static state, and of wind speeds where it oscillates away but no cycle was found."""
     members = found.line.size
     speeds = np.broadcast_to(found.winds, (members, found.winds.size))
-    values = np.linalg.eigvals(at_wind(state_matrices(found.model), speeds)).astype(np.complex128)
+    values = eigenvalues(at_wind(state_matrices(found.model), speeds))
     pairs = unstable_pairs(values)
     size = np.abs(values).max(axis=-1, initial=0.0)
     undecided = np.asarray(np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size)

@@ -12,6 +12,7 @@ from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
 from engine.bifurcations import Bifurcations, Kind
 from engine.branches import passed
 from engine.cycles import Cycles
+from engine.eigenvalues import eigenvalues
 from engine.harmonic import Orbits, pick
 from engine.hybrid import ReducedModel, take
 from engine.newton import Options
@@ -230,9 +231,7 @@ def _without_stable(
     if not places:
         return places
     member, wind = np.array(sorted(places), dtype=np.intp).T
-    values = np.asarray(
-        np.linalg.eigvals(at_wind(state_matrices(take(model, member)), winds[wind][:, None]))[:, 0], dtype=np.complex128
-    )
+    values = eigenvalues(at_wind(state_matrices(take(model, member)), winds[wind]))
     unstable = unstable_pairs(values) > 0
     return {place for place, moves in zip(sorted(places), unstable.tolist(), strict=True) if moves}
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from engine.aerodynamics import force_gradient
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from engine.eigenvalues import eigenvalues
 from engine.hybrid import ReducedModel
 
 NEARLY_IMAGINARY = 1e-6  # real over imaginary part of a pair that the eigenproblem in U puts on the axis
@@ -127,10 +128,10 @@ def crossing_error(model: ReducedModel, member: IntArray, wind_speed: FloatArray
     return np.asarray(np.abs(value.real / slope.real))
 
 
-def unstable_pairs(eigenvalues: ComplexArray) -> IntArray:
+def unstable_pairs(values: ComplexArray) -> IntArray:
     """Count unstable pairs, a real eigenvalue as one, of eigenvalues (..., n): (...)."""
-    size = np.abs(eigenvalues).max(axis=-1, keepdims=True)
-    unstable = (eigenvalues.real > 1e-12 * size) & (eigenvalues.imag >= 0.0)
+    size = np.abs(values).max(axis=-1, keepdims=True)
+    unstable = (values.real > 1e-12 * size) & (values.imag >= 0.0)
     return np.asarray(unstable.sum(axis=-1))
 
 
@@ -191,7 +192,7 @@ def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, F
     problem[:, :size, size:] = np.eye(size)
     problem[:, size:, :size] = -np.linalg.solve(b_0, b_2) * limit**2
     problem[:, size:, size:] = -np.linalg.solve(b_0, b_1) * limit
-    inverse = np.linalg.eigvals(problem) if problem.size else np.zeros((0, 2 * size), dtype=np.complex128)
+    inverse = eigenvalues(problem)
     real = (np.abs(inverse.imag) < 1e-6 * np.abs(inverse)) & (inverse.real > 1.0 - 1e-9)
     member, column = np.nonzero(real)
     return member, limit / inverse.real[member, column]
@@ -219,7 +220,7 @@ def _divergences(model: ReducedModel, usable: IntArray, limit: float) -> tuple[I
     gradient = force_gradient(model.load, np.zeros((model.mass.shape[0], 1, 2 * m)))[usable, 0, :, :m]
     if usable.size == 0:
         return usable, np.zeros(0)
-    inverse = np.linalg.eigvals(np.linalg.solve(model.stiffness[usable], gradient))
+    inverse = eigenvalues(np.linalg.solve(model.stiffness[usable], gradient))
     real = (np.abs(inverse.imag) < 1e-9 * np.abs(inverse)) & (inverse.real > limit**-2)
     member, column = np.nonzero(real)
     return usable[member], 1.0 / np.sqrt(inverse.real[member, column])
@@ -239,7 +240,7 @@ def _described(
     following = np.where(np.append(same, False), np.append(speed[1:], limit), np.maximum(limit, speed * (1.0 + 1e-6)))
     preceding = np.where(np.append(False, same), np.append(0.0, speed[:-1]), 0.0)[: speed.size]
     between = np.stack([0.5 * (preceding + speed), 0.5 * (speed + following[: speed.size])], axis=-1)
-    counts = unstable_pairs(np.linalg.eigvals(at_wind(matrices, between)).astype(np.complex128))
+    counts = unstable_pairs(eigenvalues(at_wind(matrices, between)))
     onset = np.where(oscillation, slope.real > 0.0, counts[:, 1] > counts[:, 0])
     still = _null_vectors(matrices, speed)
     shape = np.where(oscillation[:, None], np.abs(vector[:, :m]), still)

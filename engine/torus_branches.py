@@ -142,7 +142,8 @@ def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
     scale = np.repeat(np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1)), size, axis=-1)[:, index]
     matrix = linearized(model, tori)[1][:, index[:, None], index] / scale[:, None] / scale[:, :, None]
     direction = np.zeros((count, m * size + 3))
-    direction[:, index] = np.linalg.svd(matrix)[2][:, -1] / scale
+    # The eigenvectors of the square come at a fifth of the cost of the singular ones, exact enough for a start.
+    direction[:, index] = np.linalg.eigh(matrix.swapaxes(-1, -2) @ matrix)[1][..., 0] / scale
     return direction
 
 
@@ -217,7 +218,10 @@ def _nearest(traces: Sequence[Traces], found: Bifurcations, point: int) -> Orbit
     """Guess the cycle at a torus point from the branches of its model that pass its wind speed."""
     nearest, best = SAME_FREQUENCY, None
     for trace in traces:
-        own = trace.points.pick(np.flatnonzero(trace.member == found.member[point]))
+        here = np.flatnonzero(trace.member == found.member[point])
+        if here.size < 2:
+            continue
+        own = trace.points.pick(here)
         orbits = orbits_of(passed(own, found.wind_speed[[point]])[2], trace.problem.model.mass.shape[-1])
         gap = np.abs(orbits.angular_frequency / found.angular_frequency[point] - 1.0)
         if gap.min(initial=np.inf) < nearest:
