@@ -176,7 +176,9 @@ def small_eigenvalues(matrices: FloatArray) -> ComplexArray:
     """Find the eigenvalues (..., n) of real matrices (..., n, n), NaN where the method does not end."""
     n = matrices.shape[-1]
     values = np.empty((*matrices.shape[:-2], n, 2))
-    eigenvalues((values.size // (2 * n) if n else 0, n), (np.ascontiguousarray(matrices), np.empty(n * (n + 1)), values))
+    eigenvalues(
+        (values.size // (2 * n) if n else 0, n), (np.ascontiguousarray(matrices), np.empty(n * (n + 1)), values)
+    )
     return np.asarray(values.view(np.complex128)[..., 0])
 
 

@@ -1,8 +1,9 @@
 """Rows of the motions at each wind speed: the equilibrium and every cycle. Theory section 8."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields
+from itertools import chain, repeat
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from engine.profile import horizontal_position
 from engine.resonance import divided, motion_shares
 from engine.result import LimitCycleRow
 from engine.rows import Found, by_line, number
-from engine.spec import Model
 from engine.stability import at_wind, state_matrices, unstable_pairs
 from engine.torus_lines import amplitude_range, base_frequencies, largest_angle, mean_square_velocity
 
@@ -23,12 +23,10 @@ ANGLE_SAMPLES = 48
 _UNSTABLE, _LOST = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
 _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
-_TRUST = ("found_by", "harmonics", "residual", "truncation", "detuning_sensitivity", "direct_difference")
 _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
 _FREQUENCIES = ("frequency_hz", "second_frequency_hz")
-_MEASURES = (*_AMPLITUDES, *_SMALLEST, *_SHARES, *_TRUST, *_FREQUENCIES, "branch")
-_UNMEASURED: dict[str, Any] = dict.fromkeys(_MEASURES)
-_AT_REST = _UNMEASURED | dict.fromkeys(_AMPLITUDES, 0.0)
+_VERDICTS = (Stability.UNKNOWN, Stability.UNSTABLE, Stability.STABLE)
+_NAMES = tuple(field.name for field in fields(LimitCycleRow))
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +34,7 @@ class Motion:
     """A row and, for a cycle, its Fourier series where it is observed: (3, 2 H + 1) of V, W [m] and Theta [rad]."""
 
     row: LimitCycleRow
-    series: FloatArray | None = None
+    series: list[list[float]] | None = None
 
 
 def motion_rows(made: Discretization, found: Found, loops: tuple[int, ...], lowest: FloatArray) -> list[list[Motion]]:
@@ -57,11 +55,9 @@ def motion_rows(made: Discretization, found: Found, loops: tuple[int, ...], lowe
         speed=lowest * made.profile.span_length,
         observed={k: _observed_at(made, k) for k in {*loops, *np.unique(found.loops).tolist()}},
     )
-    for line, motion in _equilibria(found, loops, scales):
-        table[line].append(motion)
-    for line, motion in _cycles(made, found, scales):
-        table[line].append(motion)
-    for line, motion in _tori(made, found, scales):
+    for line, motion in chain(
+        _equilibria(found, loops, scales), _cycles(made, found, scales), _tori(made, found, scales)
+    ):
         table[line].append(motion)
     for motions in table:
         motions.sort(key=lambda m: (m.row.loops, m.row.wind_speed_m_per_s, m.row.kind != "equilibrium"))
@@ -77,35 +73,58 @@ class _Scales:
     observed: dict[int, FloatArray]
 
 
+@dataclass(frozen=True, slots=True)
+class _Places:
+    """What identifies rows: index of the line, loops and wind speed [m/s] of each, all (k,)."""
+
+    line: IntArray
+    loops: IntArray
+    wind_speed: FloatArray
+
+
 def _equilibria(found: Found, loops: tuple[int, ...], scales: _Scales) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of the static state, and of wind speeds where it oscillates away but no cycle was found."""
-    members = found.line.size
-    speeds = np.broadcast_to(found.winds, (members, found.winds.size))
-    values = eigenvalues(at_wind(state_matrices(found.model), speeds))
-    pairs = unstable_pairs(values)
+    members, winds = found.line.size, found.winds.size
+    values = eigenvalues(at_wind(state_matrices(found.model), np.broadcast_to(found.winds, (members, winds))))
     size = np.abs(values).max(axis=-1, initial=0.0)
-    undecided = np.asarray(np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size)
-    oscillating = np.asarray(((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1))
-    reached = set(zip(found.cycles.member.tolist(), found.cycles.wind.tolist(), strict=True))
-    for member, line in enumerate(found.line.tolist()):
-        static = bool(found.model.statically_unstable[member])
-        for wind, k in ((w, k) for k in loops if k in found.loops[member] for w in range(found.winds.size)):
-            place = _Place(found.name, k, float(found.winds[wind]), line)
-            if static:
-                yield line, Motion(_row(place, scales, "equilibrium", Stability.UNSTABLE, _UNSTABLE))
-                continue
-            stability = Stability.UNSTABLE if pairs[member, wind] else Stability.STABLE
-            stability = Stability.UNKNOWN if undecided[member, wind] else stability
-            yield line, Motion(_row(place, scales, "equilibrium", stability, Outcome.CONVERGED, _AT_REST))
-            if oscillating[member, wind] and (member, wind) not in reached and k == found.loops[member, 0]:
-                yield line, Motion(_row(place, scales, "periodic", Stability.UNKNOWN, _LOST))
+    undecided = np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size
+    static = found.model.statically_unstable
+    growing = (unstable_pairs(values) > 0) | static[:, None]
+    verdict = np.where(undecided & ~static[:, None], 0, np.where(growing, 1, 2))
+    known = (found.loops[:, :, None] == np.array(loops, dtype=np.intp)).any(axis=1)
+    member, at, wind = np.nonzero(np.broadcast_to(known[:, :, None], (members, len(loops), winds)))
+    rests = _Places(found.line[member], np.array(loops, dtype=np.intp)[at], found.winds[wind])
+    still = np.where(static[member], np.nan, 0.0)
+    told: dict[str, Iterable[Any]] = {
+        "kind": repeat("equilibrium"),
+        "stability": [_VERDICTS[number] for number in verdict[member, wind].tolist()],
+        "outcome": [_UNSTABLE if lost else Outcome.CONVERGED for lost in static[member].tolist()],
+    }
+    yield from _written(found, scales, rests, dict.fromkeys(_AMPLITUDES, still), told)
+    oscillating = ((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1) & ~static[:, None]
+    oscillating[found.cycles.member, found.cycles.wind] = False
+    # A row of the first co-ordinate's loops stands for all that oscillates there.
+    oscillating &= np.isin(found.loops[:, :1], loops)
+    yield from _without_motion(found, scales, np.argwhere(oscillating), "periodic")
+
+
+def _without_motion(found: Found, scales: _Scales, lost: IntArray, kind: str) -> Iterator[tuple[int, Motion]]:
+    """Yield a row for each member and wind, (k, 2), where a motion is likely but none was found."""
+    member, wind = lost.reshape(-1, 2).T
+    places = _Places(found.line[member], found.loops[member, 0], found.winds[wind])
+    told: dict[str, Iterable[Any]] = {
+        "kind": repeat(kind),
+        "stability": repeat(Stability.UNKNOWN),
+        "outcome": repeat(_LOST),
+    }
+    return _written(found, scales, places, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), told)
 
 
 def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all cycles with their series where they are observed."""
     cycles = found.cycles
     if cycles.member.size == 0:
-        return
+        return iter(())
     line, loops = found.line[cycles.member], _own_loops(found)
     shapes = found.model.shapes[cycles.member]
     series = np.empty((cycles.member.size, 3, cycles.orbits.coefficients.shape[-1]))
@@ -114,19 +133,23 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
         seen = observation(made, shapes[here], int(k))
         series[here] = seen.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
     outside = _outside_fit(found, made.sections.fitted_range[line])
-    outcome = [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()]
-    places = zip(loops.tolist(), cycles.orbits.wind_speed.tolist(), line.tolist(), strict=True)
-    told = zip(cycles.floquet.stability.tolist(), outcome, _measures(found, series), strict=True)
-    for i, (place, (stability, judged, measures)) in enumerate(zip(places, told, strict=True)):
-        row = _row(_Place(found.name, *place), scales, "periodic", stability, judged, measures)
-        yield place[-1], Motion(row, series[i])
+    told: dict[str, Iterable[Any]] = {
+        "kind": repeat("periodic"),
+        "stability": cycles.floquet.stability.tolist(),
+        "branch": cycles.branch.tolist(),
+        "found_by": cycles.found_by,
+        "harmonics": cycles.harmonics.tolist(),
+        "outcome": [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()],
+    }
+    places = _Places(line, loops, cycles.orbits.wind_speed)
+    return _written(found, scales, places, _measures(found, series), told, series.tolist())
 
 
-def _measures(found: Found, series: FloatArray) -> Iterator[dict[str, Any]]:
-    """Yield the fields of a row that only a cycle has, None where a number is not known."""
+def _measures(found: Found, series: FloatArray) -> dict[str, FloatArray]:
+    """Return the columns of numbers that only cycles have, NaN where one is not known."""
     cycles, trust = found.cycles, found.confidence
     mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[cycles.member]
-    columns = {
+    return {
         **dict(zip(_AMPLITUDES, half_peak_to_peak(series).T, strict=True)),
         **dict(zip(_SHARES, motion_shares(mass, cycles.orbits.coefficients, found.model.direction).T, strict=True)),
         "frequency_hz": cycles.orbits.angular_frequency / (2.0 * np.pi),
@@ -135,82 +158,76 @@ def _measures(found: Found, series: FloatArray) -> Iterator[dict[str, Any]]:
         "detuning_sensitivity": trust.detuning,
         "direct_difference": trust.direct,
     }
-    known: dict[str, Sequence[Any]] = {
-        name: [number(value) for value in column.tolist()] for name, column in columns.items()
-    }
-    unknown = dict.fromkeys((*_SMALLEST, "second_frequency_hz"))
-    known |= {"branch": cycles.branch.tolist(), "harmonics": cycles.harmonics.tolist(), "found_by": cycles.found_by}
-    for values in zip(*known.values(), strict=True):
-        yield unknown | dict(zip(known, values, strict=True))
 
 
 def _tori(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all quasi-periodic motions, and of wind speeds where one is likely but none was found."""
     known, model = found.quasi_periodic, found.model
-    tori, member = known.tori, known.member
+    tori, member, line = known.tori, known.member, found.line[known.member]
     frequency, _ = base_frequencies(model, member, tori)
     energy = np.diagonal(model.mass, axis1=-2, axis2=-1)[member] * mean_square_velocity(tori)
-    shares = divided(energy, model.direction)
-    for i, line in enumerate(found.line[member].tolist()):
+    loops = found.loops[member, energy.argmax(axis=-1)]
+    ranges, outcome = np.empty((2, 3, member.size)), []
+    for i in range(member.size):
         one = tori.pick(np.array([i]))
-        loops = int(found.loops[member[i], energy[i].argmax()])
-        series = observation(made, model.shapes[member[i]], loops).T @ one.coefficients[0]
-        largest, smallest = amplitude_range(series, one, float(frequency[i, 0]))
-        beyond = largest_angle(model, int(member[i]), one) > made.sections.fitted_range[line]
-        measures = _UNMEASURED | {
-            **dict(zip(_AMPLITUDES, largest.tolist(), strict=True)),
-            **dict(zip(_SMALLEST, smallest.tolist(), strict=True)),
-            **dict(zip(_SHARES, shares[i].tolist(), strict=True)),
-            **dict(zip(_FREQUENCIES, (frequency[i] / (2.0 * np.pi)).tolist(), strict=True)),
-            "branch": int(known.branch[i]),
-            "found_by": known.found_by[i],
-            "harmonics": tori.order[0],
-            "residual": float(known.residual[i]),
-            "truncation": number(float(known.truncation[i])),
-            "direct_difference": number(float(known.direct[i])),
-        }
-        place = _Place(found.name, loops, float(one.wind_speed[0]), line)
-        outcome = Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED
-        yield line, Motion(_row(place, scales, "quasi_periodic", known.stability[i], outcome, measures))
-    for at, wind in known.lost.tolist():
-        place = _Place(found.name, int(found.loops[at, 0]), float(found.winds[wind]), int(found.line[at]))
-        yield place.line, Motion(_row(place, scales, "quasi_periodic", Stability.UNKNOWN, _LOST))
+        series = observation(made, model.shapes[member[i]], int(loops[i])).T @ one.coefficients[0]
+        ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
+        beyond = largest_angle(model, int(member[i]), one) > made.sections.fitted_range[line[i]]
+        outcome.append(Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED)
+    measures = {
+        **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
+        **dict(zip(_SHARES, divided(energy, model.direction).T, strict=True)),
+        **dict(zip(_FREQUENCIES, frequency.T / (2.0 * np.pi), strict=True)),
+        "residual": known.residual,
+        "truncation": known.truncation,
+        "direct_difference": known.direct,
+    }
+    told: dict[str, Iterable[Any]] = {
+        "kind": repeat("quasi_periodic"),
+        "stability": known.stability.tolist(),
+        "branch": known.branch.tolist(),
+        "found_by": known.found_by,
+        "harmonics": repeat(tori.order[0]),
+        "outcome": outcome,
+    }
+    yield from _written(found, scales, _Places(line, loops, tori.wind_speed), measures, told)
+    yield from _without_motion(found, scales, known.lost, "quasi_periodic")
 
 
-@dataclass(frozen=True, slots=True)
-class _Place:
-    """What identifies a row: model, loops, wind speed [m/s] and the index of the line."""
-
-    model: Model
-    loops: int
-    wind_speed: float
-    line: int
-
-
-def _row(
-    place: _Place,
+def _written(
+    found: Found,
     scales: _Scales,
-    kind: Literal["equilibrium", "periodic", "quasi_periodic"],
-    stability: Stability,
-    outcome: Outcome,
-    measures: Mapping[str, Any] = _UNMEASURED,
-) -> LimitCycleRow:
-    """Write a row; amplitudes V, W [m] and Theta [rad] and all that goes with them stand in its measures."""
-    sag, speed = float(scales.sag[place.line]), float(scales.speed[place.line])
-    vertical, horizontal = measures["vertical_m"], measures["horizontal_m"]
-    return LimitCycleRow(
-        model=place.model,
-        loops=place.loops,
-        wind_speed_m_per_s=place.wind_speed,
-        kind=kind,
-        stability=stability,
-        observed_at_m=float(scales.observed[place.loops][place.line]),
-        vertical_ratio=None if vertical is None else vertical / sag,
-        horizontal_ratio=None if horizontal is None else horizontal / sag,
-        reduced_wind_speed=place.wind_speed / speed if np.isfinite(speed) else None,
-        outcome=outcome,
-        **measures,
-    )
+    places: _Places,
+    measures: Mapping[str, FloatArray],
+    told: Mapping[str, Iterable[Any]],
+    series: Iterable[list[list[float]] | None] = repeat(None),
+) -> Iterator[tuple[int, Motion]]:
+    """Write rows from columns, with the line of each; a column that is not given, and what is not finite, is None.
+
+    measures: columns of numbers, those of the amplitudes among them; told: all others.
+    """
+    sag, speed = scales.sag[places.line], scales.speed[places.line]
+    observed = {k: at.tolist() for k, at in scales.observed.items()}
+    lines, loops = places.line.tolist(), places.loops.tolist()
+    with np.errstate(invalid="ignore"):  # the speed of a line without a vertical frequency is infinite
+        reduced = np.where(np.isfinite(speed), places.wind_speed / speed, np.nan)
+    numbers = dict(measures) | {
+        "wind_speed_m_per_s": places.wind_speed,
+        "vertical_ratio": measures["vertical_m"] / sag,
+        "horizontal_ratio": measures["horizontal_m"] / sag,
+        "reduced_wind_speed": reduced,
+    }
+    columns: dict[str, Iterable[Any]] = dict.fromkeys(_NAMES, repeat(None))
+    columns |= {name: _numbers(column) for name, column in numbers.items()} | dict(told)
+    columns |= {"model": repeat(found.name), "loops": loops}
+    columns["observed_at_m"] = [observed[k][line] for k, line in zip(loops, lines, strict=True)]
+    return zip(lines, map(Motion, map(LimitCycleRow, *columns.values()), series), strict=False)
+
+
+def _numbers(column: FloatArray) -> list[Any]:
+    """Return numbers, None where one is not finite."""
+    values: list[Any] = column.tolist()
+    return values if np.isfinite(column).all() else [number(value) for value in values]
 
 
 def _observed_at(made: Discretization, loops: int) -> FloatArray:

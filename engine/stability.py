@@ -221,7 +221,7 @@ def _divergences(model: ReducedModel, usable: IntArray, limit: float) -> tuple[I
     gradient = force_gradient(model.load, np.zeros((model.mass.shape[0], 1, 2 * m)))[usable, 0, :, :m]
     if usable.size == 0:
         return usable, np.zeros(0)
-    inverse = eigenvalues(np.linalg.solve(model.stiffness[usable], gradient))
+    inverse = eigenvalues(np.asarray(np.linalg.solve(model.stiffness[usable], gradient), dtype=np.float64))
     real = (np.abs(inverse.imag) < 1e-9 * np.abs(inverse)) & (inverse.real > limit**-2)
     member, column = np.nonzero(real)
     return usable[member], 1.0 / np.sqrt(inverse.real[member, column])
