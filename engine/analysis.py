@@ -28,7 +28,7 @@ from engine.hybrid import (
 from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.outcome import Fault, InvalidSpec
 from engine.quasi_periodic import integrated, quasi_periodic_motions
-from engine.report import assembled, uncollected
+from engine.report import assembled
 from engine.result import LoopCompetitionRow, Progress, Result
 from engine.rows import Found, FrequencyTable, coupled_squares
 from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, check_compatible
@@ -114,8 +114,7 @@ def _analysed(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, 
             found.append((yield from _finite_element(prepared, prepared.modes, hybrid, analysis)))
     yield Progress(0.95, "result rows")
     competitions = _competitions(prepared, hybrid, analysis)
-    with uncollected():
-        results = assembled(prepared.made, prepared.shapes, tuple(squares), tuple(found), analysis, competitions)
+    results = assembled(prepared.made, prepared.shapes, tuple(squares), tuple(found), analysis, competitions)
     yield Progress(1.0, "done")
     return results
 

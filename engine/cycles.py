@@ -118,6 +118,8 @@ def _from_hopf(model: ReducedModel, crossings: Crossings, winds: FloatArray, har
     rest = np.flatnonzero(crossings.oscillation & ~crossings.onset)
     same = first.problem.member[:, None] == crossings.member[rest]
     unreached = rest[~(same & reaches(first, crossings, rest)).any(axis=0)]
+    if not unreached.size:
+        return [first]
     return [first, traced_from_hopf(model, crossings, unreached, harmonics, winds)]
 
 

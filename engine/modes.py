@@ -100,10 +100,15 @@ def at_points(system: Matrices, nodal: FloatArray) -> FloatArray:
 
 def solve_symmetric(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Solve K x = lambda M x on stacks: eigenvalues (..., n) ascending and vectors (..., n, n) with X^T M X = 1."""
-    inverse = np.linalg.inv(np.linalg.cholesky(mass))
-    standard = inverse @ stiffness @ inverse.swapaxes(-1, -2)
-    values, vectors = np.linalg.eigh(0.5 * (standard + standard.swapaxes(-1, -2)))
+    inverse, standard = _standard(stiffness, mass)
+    values, vectors = np.linalg.eigh(standard)
     return values, inverse.swapaxes(-1, -2) @ vectors
+
+
+def _standard(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return L^-1 with M = L L^T, and L^-1 K L^-T, of which numpy reads the lower triangle: (..., n, n) each."""
+    inverse = np.linalg.inv(np.linalg.cholesky(mass))
+    return inverse, inverse @ stiffness @ inverse.swapaxes(-1, -2)
 
 
 def _always_fixed(freedoms: int) -> BoolArray:
@@ -127,15 +132,16 @@ def _labelled(
     stiffness = system.stiffness[:, freedoms[:, None], freedoms]
     mass = system.mass[:, freedoms[:, None], freedoms]
     _decouple(stiffness, mass, system.fixed[:, freedoms])
-    values, vectors = solve_symmetric(stiffness, mass)
+    inverse, standard = _standard(stiffness, mass)
+    values, vectors = np.linalg.eigh(standard)
     targets = _sines(freedoms, system.stiffness.shape[-1] // FIELDS, directions, loops)
     reach = targets @ mass
     norm = np.sqrt(np.einsum("lij,ij->li", reach, targets))
-    overlap = (reach / norm[..., None]) @ vectors
+    overlap = (reach / norm[..., None]) @ inverse.swapaxes(-1, -2) @ vectors
     chosen = assign(overlap**2)
     sign = np.sign(np.take_along_axis(overlap, chosen[..., None], axis=-1))
     picked = np.take_along_axis(vectors.swapaxes(-1, -2), chosen[..., None], axis=1)
-    return picked * sign, np.take_along_axis(values, chosen, axis=-1)
+    return (picked * sign) @ inverse, np.take_along_axis(values, chosen, axis=-1)
 
 
 def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: BoolArray) -> None:

@@ -34,7 +34,7 @@ class Motion:
     """A row and, for a cycle, its Fourier series where it is observed: (3, 2 H + 1) of V, W [m] and Theta [rad]."""
 
     row: LimitCycleRow
-    series: list[list[float]] | None = None
+    series: FloatArray | None = None
 
 
 def motion_rows(made: Discretization, found: Found, loops: tuple[int, ...], lowest: FloatArray) -> list[list[Motion]]:
@@ -142,7 +142,7 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
         "outcome": [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()],
     }
     places = _Places(line, loops, cycles.orbits.wind_speed)
-    return _written(found, scales, places, _measures(found, series), told, series.tolist())
+    return _written(found, scales, places, _measures(found, series), told, series)
 
 
 def _measures(found: Found, series: FloatArray) -> dict[str, FloatArray]:
@@ -200,7 +200,7 @@ def _written(
     places: _Places,
     measures: Mapping[str, FloatArray],
     told: Mapping[str, Iterable[Any]],
-    series: Iterable[list[list[float]] | None] = repeat(None),
+    series: Iterable[FloatArray | None] = repeat(None),
 ) -> Iterator[tuple[int, Motion]]:
     """Write rows from columns, with the line of each; a column that is not given, and what is not finite, is None.
 

@@ -1,9 +1,5 @@
 """From arrays of a stack of models to the result of each line."""
 
-import gc
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 
 from engine import ENGINE_VERSION
@@ -92,18 +88,6 @@ def assembled(
     return results
 
 
-@contextmanager
-def uncollected() -> Iterator[None]:
-    """Pause the search for cycles of references: while rows grow, which have none, it costs a twelfth of a line."""
-    pauses = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if pauses:
-            gc.enable()
-
-
 def line_warnings(line: Line) -> list[str]:
     """Say what of a line lies outside the assumptions of the static profile."""
     result = []
@@ -143,7 +127,7 @@ def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...]
     orbits = []
     for i, motion in enumerate(motions):
         if motion.series is not None:
-            vertical, horizontal, torsional = map(tuple, motion.series)
+            vertical, horizontal, torsional = (tuple(row) for row in motion.series.tolist())
             orbits.append(Orbit(i, vertical, horizontal, torsional))
     return tuple(motion.row for motion in motions), tuple(orbits)
 
