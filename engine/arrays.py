@@ -14,6 +14,11 @@ ObjectArray = NDArray[np.object_]
 AnyArray = NDArray[Any]
 
 
+def lengths(vectors: FloatArray) -> FloatArray:
+    """Return the Euclidean lengths of vectors (..., n): (...); numpy's norm takes twice as long for small stacks."""
+    return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))
+
+
 def merged(array: AnyArray, first: int, last: int = -1) -> AnyArray:
     """Merge the axes from first to last, both negative, into one; stacks without members keep their shape."""
     shape = array.shape

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine import compiled
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, merged
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths, merged
 from engine.continuation import (
     Points,
     Problem,
@@ -21,7 +21,7 @@ from engine.continuation import (
     tangents,
 )
 from engine.harmonic import Orbits, basis, first_angle, linearized, pick, whole_size
-from engine.hybrid import ReducedModel
+from engine.hybrid import ReducedModel, lowest_frequency
 from engine.newton import Options, Solution
 from engine.stability import Crossings, critical_modes
 
@@ -91,8 +91,8 @@ class CycleProblem(Problem):
         """Measure each co-ordinate by its own size, or by a share of the whole, frequency and wind by themselves."""
         weight = np.sqrt(np.diagonal(self.model.mass, axis1=-2, axis2=-1))[self.member[branch]]
         coefficients = orbits_of(z, weight.shape[-1]).coefficients
-        own = weight * np.linalg.norm(coefficients, axis=-1)
-        whole = np.maximum(np.linalg.norm(own, axis=-1), self.reference[branch])
+        own = weight * lengths(coefficients)
+        whole = np.maximum(lengths(own), self.reference[branch])
         size = np.maximum(own, SMALLEST_SHARE * whole[:, None]) / weight
         return np.concatenate([np.repeat(size, coefficients.shape[-1], axis=-1), np.abs(z[:, -2:])], axis=-1)
 
@@ -247,6 +247,7 @@ def traced(
     found, last = [before], before.pick(before.branch)
     steps = branches(problem, start, direction, STEPS)
     ended = np.zeros(start.shape[0], dtype=np.bool_)
+    slowest = SLOWEST * lowest_frequency(problem.model)[problem.member]
     alive: BoolArray | None = None
     while True:
         try:
@@ -257,7 +258,8 @@ def traced(
         returned = _returned(problem, last.pick(new.branch), new)
         ended[new.branch] = returned
         found.append(new.pick(~returned))
-        alive = ~returned & _goes_on(problem, new, limits) & ~_closed(problem, before.pick(new.branch), new, len(found))
+        alive = ~returned & _goes_on(problem, new, limits, slowest)
+        alive &= ~_closed(problem, before.pick(new.branch), new, len(found))
         last.put(new)
     every = Points(*(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent")))
     return Traces(problem, every.pick(np.argsort(every.branch, kind="stable")), outcome, ended, born)
@@ -271,15 +273,13 @@ def _returned(problem: CycleProblem, before: Points, new: Points) -> BoolArray:
     return np.asarray(np.einsum("kmc,kmc,km->k", first, second, weight) < 0.0)
 
 
-def _goes_on(problem: CycleProblem, new: Points, limits: tuple[float, float]) -> BoolArray:
+def _goes_on(problem: CycleProblem, new: Points, limits: tuple[float, float], slowest: FloatArray) -> BoolArray:
     """Tell which branches stay inside the range of the parameter, of angles and of frequencies."""
     member = problem.member[new.branch]
     orbits = problem.orbits(new.z, new.branch)
     rising, value = new.tangent[:, -1] > 0.0, new.z[:, -1]
     inside = (rising | (value > limits[0])) & (~rising | (value < limits[1]))
-    natural = np.diagonal(problem.model.stiffness, axis1=-2, axis2=-1)
-    natural = np.sqrt(np.abs(natural / np.diagonal(problem.model.mass, axis1=-2, axis2=-1)).min(axis=-1))
-    quick = orbits.angular_frequency > SLOWEST * natural[member]
+    quick = orbits.angular_frequency > slowest[new.branch]
     return np.asarray(inside & quick & (first_angle(problem.model, member, orbits) < LARGEST_ANGLE))
 
 
@@ -289,7 +289,7 @@ def _closed(problem: CycleProblem, start: Points, new: Points, count: int) -> Bo
         return np.zeros(new.branch.size, dtype=np.bool_)
     scale = start.scale
     first, second = (_invariant(p.z / scale, problem.model.mass.shape[-1]) for p in (start, new))
-    near = np.linalg.norm(first - second, axis=-1) < STEPS.largest
+    near = lengths(first - second) < STEPS.largest
     along = np.einsum("ki,ki->k", (start.tangent / scale)[:, -2:], (new.tangent / scale)[:, -2:]) > 0.0
     return np.asarray(near & along)
 

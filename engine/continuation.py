@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths
 from engine.newton import Options, Solution, newton, solved
 from engine.outcome import Outcome
 
@@ -93,7 +93,7 @@ class Points:
 def points_at(problem: Problem, branch: IntArray, z: FloatArray, direction: FloatArray) -> Points:
     """Make points (k, n + 1) of branches (k,) with tangents along given directions."""
     scale = problem.scale(z, branch)
-    return Points(branch, z, scale, direction / np.linalg.norm(direction / scale, axis=-1, keepdims=True))
+    return Points(branch, z, scale, direction / lengths(direction / scale)[:, None])
 
 
 Test = Callable[[Points], FloatArray]
@@ -188,18 +188,20 @@ def interpolated(left: Points, right: Points, share: FloatArray, unknowns: slice
 
     Or some of the unknowns alone.
     """
-    length = np.linalg.norm((right.z - left.z) / left.scale, axis=-1, keepdims=True)
-    after = length * right.tangent / np.linalg.norm(right.tangent / left.scale, axis=-1, keepdims=True)
-    ends = np.stack([part[:, unknowns] for part in (left.z, right.z, length * left.tangent, after)], axis=1)
+    length = lengths((right.z - left.z) / left.scale)
+    after = (length / lengths(right.tangent / left.scale))[:, None] * right.tangent
+    ends = (left.z, right.z, length[:, None] * left.tangent, after)
     cube, square = share**3, share**2
     weights = [2.0 * cube - 3.0 * square + 1.0, 3.0 * square - 2.0 * cube, cube - 2.0 * square + share, cube - square]
-    return np.asarray(np.einsum("k...e,kez->k...z", np.stack(weights, axis=-1), ends))
+    between = (EVERY,) + (None,) * (share.ndim - 1)
+    parts = [weight[..., None] * end[:, unknowns][between] for weight, end in zip(weights, ends, strict=True)]
+    return np.asarray(parts[0] + parts[1] + parts[2] + parts[3])
 
 
 def _predicted(before: Points, here: Points, length: FloatArray) -> FloatArray:
     """Extrapolate Hermite's cubic through the last two points, or the tangent where there is only one."""
-    step = np.linalg.norm((here.z - before.z) / before.scale, axis=-1)
-    along = np.linalg.norm(here.tangent / before.scale, axis=-1)
+    step = lengths((here.z - before.z) / before.scale)
+    along = lengths(here.tangent / before.scale)
     cubic = interpolated(before, here, 1.0 + length * along / step)
     return np.where(np.isnan(cubic), here.z + length[:, None] * here.tangent, cubic)
 
@@ -207,8 +209,8 @@ def _predicted(before: Points, here: Points, length: FloatArray) -> FloatArray:
 def _faithful(here: Points, new: Points, guess: FloatArray, steps: Steps) -> BoolArray:
     """Tell where a point found lies near its guess and in the direction of the branch: else it may be on another."""
     turned = new.tangent / here.scale
-    cosine = np.einsum("ki,ki->k", turned, here.tangent / here.scale) / np.linalg.norm(turned, axis=-1)
-    far, missed = (np.linalg.norm((new.z - z) / here.scale, axis=-1) for z in (here.z, guess))
+    cosine = np.einsum("ki,ki->k", turned, here.tangent / here.scale) / lengths(turned)
+    far, missed = (lengths((new.z - z) / here.scale) for z in (here.z, guess))
     return np.asarray((cosine > steps.straightness) & (missed < steps.miss * far))
 
 
@@ -223,6 +225,8 @@ def _at_length(
     good = np.flatnonzero(solution.converged)
     # The direction is that of the point to within the last step.
     found = points_at(problem, base.branch[good], solution.x[good], direction[good])
+    if good.size == base.branch.size:
+        return found, solution
     whole = Points(base.branch, *(np.full_like(guess, np.nan) for _ in range(3)))
     whole.z[good], whole.scale[good], whole.tangent[good] = found.z, found.scale, found.tangent
     return whole, solution

@@ -14,7 +14,7 @@ from engine.describing import FirstHarmonic, energy_balance_cycles, explicit_cyc
 from engine.family import CycleFamily, Starts
 from engine.floquet import Floquet, floquet
 from engine.harmonic import Orbits, balance, oscillation_size, pick, resized
-from engine.hybrid import ReducedModel, take
+from engine.hybrid import ReducedModel, lowest_frequency, take
 from engine.result import FoundBy
 from engine.stability import Crossings
 
@@ -156,8 +156,7 @@ def solved_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArra
     orbits, solution = balance(model, starts.member, starts.orbits)
     before = oscillation_size(model, starts.member, starts.orbits)
     size = oscillation_size(model, starts.member, orbits)
-    square = np.diagonal(model.stiffness, axis1=-2, axis2=-1) / np.diagonal(model.mass, axis1=-2, axis2=-1)
-    slowest = np.sqrt(np.abs(square).min(axis=-1))[starts.member]
+    slowest = lowest_frequency(model)[starts.member]
     good = solution.converged & (size > SMALLEST * before) & (orbits.angular_frequency > SLOWEST * slowest)
     return Starts(starts.member, starts.wind, orbits), good
 

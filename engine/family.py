@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, merged
+from engine.arrays import BoolArray, FloatArray, IntArray, lengths, merged
 from engine.harmonic import Orbits, pick
 from engine.hybrid import ReducedModel
 from engine.result import FoundBy
@@ -90,14 +90,14 @@ class CycleFamily:
         known = order[np.minimum(first[:, None] + column, order.size - 1)]
         frequency = np.array([orbit[1] for orbit in self._orbits])[known]
         sizes = np.array(self._sizes)[known]
-        size = np.linalg.norm(_signature(self._model, starts), axis=-1)[:, None]
+        size = lengths(_signature(self._model, starts))[:, None]
         near = np.abs(frequency / starts.orbits.angular_frequency[:, None] - 1.0) <= NEAR
         return np.where(near & (column < count[:, None]), np.abs(np.log(sizes / size)), np.inf)
 
     def add(self, starts: Starts, good: BoolArray, found_by: FoundBy) -> IntArray:
         """Record the good ones of these solutions and return the number of each, -1 for the others: (starts,)."""
         signatures = _signature(self._model, starts)
-        sizes = np.linalg.norm(signatures, axis=-1).tolist()
+        sizes = lengths(signatures).tolist()
         numbers = np.full(good.size, -1, dtype=np.intp)
         for i in np.flatnonzero(good).tolist():
             key = (int(starts.member[i]), int(starts.wind[i]))
@@ -116,7 +116,8 @@ class CycleFamily:
     def _number(self, key: tuple[int, int], signature: FloatArray) -> tuple[int, bool]:
         known = self._known.setdefault(key, [])
         for number, other in known:
-            if np.linalg.norm(signature - other) <= SAME * self._sizes[number]:
+            apart = signature - other
+            if float(apart @ apart) <= (SAME * self._sizes[number]) ** 2:
                 return number, False
         known.append((len(self._orbits), signature))
         return len(self._orbits), True

@@ -203,7 +203,7 @@ def first_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatA
     states = np.stack([np.concatenate([cosine, rate * sine], -1), np.concatenate([sine, -rate * cosine], -1)], axis=-1)
     if m == 0 or forms.shape[1] == 0:
         return np.zeros(member.size)
-    return np.asarray(np.linalg.norm(forms @ states, axis=-1).max(axis=-1))
+    return np.asarray(np.sqrt(np.square(forms @ states).sum(axis=-1).max(axis=-1)))
 
 
 def resized(orbits: Orbits, harmonics: int) -> Orbits:

@@ -162,6 +162,12 @@ def finite_element_model(
     )
 
 
+def lowest_frequency(model: ReducedModel) -> FloatArray:
+    """Return the root of the smallest |K_ii / M_ii| of each model: (members,) [rad/s]."""
+    square = np.diagonal(model.stiffness, axis1=-2, axis2=-1) / np.diagonal(model.mass, axis1=-2, axis2=-1)
+    return np.asarray(np.sqrt(np.abs(square).min(axis=-1)))
+
+
 def take(model: ReducedModel, index: Any) -> ReducedModel:
     """Pick or repeat models along the leading axes; index is any numpy index of those axes."""
     return ReducedModel(

@@ -121,7 +121,8 @@ def _births(model: ReducedModel, cycles: Cycles, found: Bifurcations, winds: Flo
     needed = np.isin(found.member, needy)
     births = born_at_torus_points(model, cycles.traces, found, needed | found.may_end_stability, COARSE)
     wanted = np.isin(births.member, needy)
-    wanted[born_stable(model, births)] = True
+    others = np.flatnonzero(~wanted)
+    wanted[others[born_stable(model, births.pick(others))]] = True
     return births.pick(np.flatnonzero(wanted))
 
 
