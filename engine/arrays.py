@@ -14,6 +14,11 @@ ObjectArray = NDArray[np.object_]
 AnyArray = NDArray[Any]
 
 
+def eigenvalues(matrices: FloatArray) -> ComplexArray:
+    """Return the eigenvalues (..., n) of finite real matrices (..., n, n), in no order."""
+    return np.asarray(np.linalg.eigvals(matrices), dtype=np.complex128)
+
+
 def lengths(vectors: FloatArray) -> FloatArray:
     """Return the Euclidean lengths of vectors (..., n): (...); numpy's norm takes twice as long for small stacks."""
     return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))

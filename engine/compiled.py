@@ -5,12 +5,12 @@ Where they were not built AVAILABLE is False, and the numpy forms beside the cal
 
 import numpy as np
 
-from engine.arrays import AnyArray, ComplexArray, FloatArray, IntArray
+from engine.arrays import AnyArray, FloatArray, IntArray
 from engine.hybrid import ReducedModel
 from engine.newton import Options, Solution, solution
 
 try:
-    from engine._kernels import eigenvalues, even_parts, flows, linearization, monodromies, newton
+    from engine._kernels import even_parts, flows, linearization, monodromies, newton
 
     AVAILABLE = True
 except ImportError:
@@ -170,16 +170,6 @@ def even_part(
     places = (polynomials, statics, np.broadcast_to(member, angle.shape), angle)
     even_parts((polynomials.shape[0], angle.size), _contiguous(*places), (even, square))
     return even, square
-
-
-def small_eigenvalues(matrices: FloatArray) -> ComplexArray:
-    """Find the eigenvalues (..., n) of real matrices (..., n, n), NaN where the method does not end."""
-    n = matrices.shape[-1]
-    values = np.empty((*matrices.shape[:-2], n, 2))
-    eigenvalues(
-        (values.size // (2 * n) if n else 0, n), (np.ascontiguousarray(matrices), np.empty(n * (n + 1)), values)
-    )
-    return np.asarray(values.view(np.complex128)[..., 0])
 
 
 def integrated_block(

@@ -12,8 +12,7 @@ import numpy as np
 
 from engine import compiled
 from engine.aerodynamics import force
-from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray
-from engine.eigenvalues import eigenvalues
+from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
 from engine.hybrid import ReducedModel, take
 from engine.stability import at_wind, state_matrices
 

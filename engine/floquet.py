@@ -7,8 +7,7 @@ import numpy as np
 
 from engine import compiled
 from engine.aerodynamics import force_gradient
-from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
-from engine.eigenvalues import eigenvalues
+from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
 from engine.harmonic import Orbits, basis, fourier, pick, states
 from engine.hybrid import ReducedModel, take
 from engine.outcome import Stability

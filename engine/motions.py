@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.eigenvalues import eigenvalues
+from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
 from engine.harmonic import half_peak_to_peak, pick, states
 from engine.hybrid import Discretization, observation, take
 from engine.outcome import Outcome, Stability

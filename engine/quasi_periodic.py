@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
+from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
 from engine.bifurcations import Bifurcations, Kind
 from engine.branches import passed
 from engine.cycles import Cycles
-from engine.eigenvalues import eigenvalues
 from engine.harmonic import Orbits, pick
 from engine.hybrid import ReducedModel, take
 from engine.newton import Options

@@ -6,8 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from engine.aerodynamics import force_gradient
-from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from engine.eigenvalues import eigenvalues
+from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
 from engine.hybrid import ReducedModel
 
 NEARLY_IMAGINARY = 1e-6  # real over imaginary part of a pair that the eigenproblem in U puts on the axis
@@ -192,8 +191,7 @@ def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, F
     problem[:, :size, size:] = np.eye(size)
     problem[:, size:, :size] = -np.linalg.solve(b_0, b_2) * limit**2
     problem[:, size:, size:] = -np.linalg.solve(b_0, b_1) * limit
-    # LAPACK's: it deflates graded matrices more carefully than the kernel does, which would miss one crossing in 200.
-    inverse = np.linalg.eigvals(problem) if problem.size else np.zeros((0, 2 * size), dtype=np.complex128)
+    inverse = eigenvalues(problem) if problem.size else np.zeros((0, 2 * size), dtype=np.complex128)
     real = (np.abs(inverse.imag) < 1e-6 * np.abs(inverse)) & (inverse.real > 1.0 - 1e-9)
     member, column = np.nonzero(real)
     return member, limit / inverse.real[member, column]

@@ -45,10 +45,6 @@ void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradie
  * if a pivot vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
 int eliminate(int n, double **rows, int sides, double *sizes, double *x);
 
-/* Find the eigenvalues (count, n), pairs of real and imaginary part, of matrices (count, n, n); work (n, n + 1) is scratch.
- * They are NaN where a matrix is not finite or the method does not end. */
-void find_eigenvalues(ptrdiff_t count, int n, const double *matrices, double *work, double *values);
-
 /* What Newton's method is told, engine.newton.Options. */
 typedef struct {
     double tolerance, largest_step;

@@ -205,31 +205,11 @@ static PyObject *flows(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, done);
 }
 
-static PyObject *eigenvalues(PyObject *Py_UNUSED(self), PyObject *arguments)
-{
-    Buffers buffers = {.count = 0};
-    PyObject *matrices, *work, *values;
-    Py_ssize_t count;
-    int n;
-    if (!PyArg_ParseTuple(arguments, "(ni)(OOO)", &count, &n, &matrices, &work, &values))
-        return NULL;
-    const double *given = REALS(matrices, count * n * n);
-    double *scratch = given ? RESULT(work, (Py_ssize_t)n * (n + 1)) : NULL;
-    double *found = scratch ? RESULT(values, 2 * count * n) : NULL;
-    if (found) {
-        Py_BEGIN_ALLOW_THREADS
-        find_eigenvalues(count, n, given, scratch, found);
-        Py_END_ALLOW_THREADS
-    }
-    return finished(&buffers, 1);
-}
-
 static PyMethodDef methods[] = {
     {"newton", newton, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
     {"linearization", linearization, METH_VARARGS, "Evaluate the harmonic balance of a stack of cycles with its slopes."},
     {"monodromies", monodromies, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
     {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},
-    {"eigenvalues", eigenvalues, METH_VARARGS, "Find the eigenvalues of a stack of small real matrices."},
     {"flows", flows, METH_VARARGS, "Integrate the equations of motion of a stack of starts directly."},
     {NULL, NULL, 0, NULL},
 };

@@ -12,7 +12,6 @@ from engine.arrays import FloatArray, IntArray
 from engine.cycles import Cycles, energy_starts, find_cycles
 from engine.describing import explicit_cycles
 from engine.direct_starts import spread_starts
-from engine.eigenvalues import eigenvalues
 from engine.floquet import floquet, monodromy
 from engine.harmonic import Orbits, balance, linearized
 from engine.hybrid import ReducedModel, take
@@ -119,29 +118,6 @@ def test_multipliers_are_those_of_the_numpy_form(name: str, both: pytest.MonkeyP
     assert known.any()
     for mine, theirs in zip(found[known], expected[known], strict=True):
         assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-11 * np.abs(theirs).max())
-
-
-@pytest.mark.parametrize("n", [1, 2, 3, 6, 7, 12, 30])
-def test_eigenvalues_are_those_of_the_numpy_form(n: int, both: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(n)
-    matrices = rng.normal(size=(COPIES, 7, n, n)) * np.exp(rng.normal(size=(COPIES, 7, n, 1)))
-    matrices[0] = np.triu(matrices[0])
-    matrices[1, 0], matrices[1, 1], matrices[1, 2] = np.zeros((n, n)), np.eye(n), np.roll(np.eye(n), 1, axis=0)
-    matrices[2] *= 1e3 ** np.arange(n) / 1e3 ** np.arange(n)[:, None]
-    found = eigenvalues(matrices)
-    both.setattr(compiled, "AVAILABLE", False)
-    expected = eigenvalues(matrices)
-    apart = np.abs(found[..., :, None] - expected[..., None, :])
-    size = np.abs(expected).max(axis=-1)[..., None]
-    assert (apart.min(axis=-1) <= 1e-11 * size).all()
-    assert (apart.min(axis=-2) <= 1e-11 * size).all()
-
-
-def test_matrices_that_are_not_finite_have_no_eigenvalues() -> None:
-    matrices = np.stack([np.full((3, 3), np.inf), np.full((3, 3), np.nan), np.full((3, 3), 1e308)])
-    found = compiled.small_eigenvalues(matrices)
-    assert np.isnan(found[:2]).all()
-    assert compiled.small_eigenvalues(np.zeros((0, 4, 4))).shape == (0, 4)
 
 
 def test_explicit_cycles_are_those_of_the_numpy_form(both: pytest.MonkeyPatch) -> None:
