@@ -11,8 +11,8 @@
 void release_system(System *w)
 {
     free(w->place), free(w->active), free(w->waves), free(w->folded), free(w->spectra), free(w->order), free(w->known);
-    free(w->matrix), free(w->rows), free(w->solution), free(w->slope), free(w->x), free(w->values), free(w->loads), free(w->state);
-    free(w->scratch), free(w->sizes);
+    free(w->matrix), free(w->rows), free(w->sizes), free(w->solution), free(w->slope), free(w->x), free(w->values);
+    free(w->loads), free(w->state), free(w->scratch);
 }
 
 static void fill_waves(System *w)
@@ -63,7 +63,8 @@ int prepare_system(System *w, const Model *model, int harmonics, int besides)
     w->loads = calloc(rows * (size_t)w->groups, sizeof *w->loads);
     w->state = calloc(4 * m + 2 * m * m, sizeof *w->state);
     w->scratch = calloc(load_scratch(model), sizeof *w->scratch);
-    if (!(w->place && w->active && w->waves && w->folded && w->spectra && w->order && w->known && w->matrix && w->rows && w->sizes && w->solution && w->slope && w->x && w->values
+    if (!(w->place && w->active && w->waves && w->folded && w->spectra && w->order && w->known
+          && w->matrix && w->rows && w->sizes && w->solution && w->slope && w->x && w->values
           && w->loads && w->state && w->scratch))
         return 0;
     fill_waves(w);

@@ -29,7 +29,8 @@ WITHIN Lanes polynomial(int count, const double *coefficients, const Lanes *term
     return sum;
 }
 
-WITHIN void evaluate(const Model *model, int m, int local, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch)
+WITHIN void evaluate(const Model *model, int m, int local, const Lanes *state, Lanes *force, Lanes *gradient,
+                     Lanes *scratch)
 {
     const int lower = 1 + local + local * (local + 1) / 2;
     const int monomials = lower - 1 + local * (local + 1) * (local + 2) / 6;
