@@ -3,8 +3,6 @@
 import re
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import lru_cache
-from ipaddress import ip_address
 from uuid import UUID
 
 OWNER_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,63}")
@@ -30,12 +28,3 @@ class Caller:
 
 LOCAL = Caller("local", frozenset(Scope))
 """The caller of a service without keys, which is open to its own machine only."""
-
-
-@lru_cache(maxsize=256)
-def is_loopback(host: str) -> bool:
-    """Tell whether a name or an address means this machine to itself."""
-    try:
-        return host.lower() == "localhost" or ip_address(host).is_loopback
-    except ValueError:
-        return False

@@ -15,11 +15,6 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import uvicorn
-from alembic import command
-from alembic.config import Config
-from alembic.runtime.migration import MigrationContext
-from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, text
 
 from app import keys, logs, processes, telemetry
 from app.auth import is_loopback
@@ -34,7 +29,6 @@ HTTP = "app.protocol:BoundedHeads"
 LOOP = "app.listening:SharingLoop"
 """What takes connections, likewise."""
 
-_MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
 _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded
 _METRICS_BYTES = 1 << 20  # far more than all routes and answers need
 _STOP_SECONDS = 10.0
@@ -46,38 +40,6 @@ _logger = logging.getLogger(__name__)
 
 class Unguarded(Exception):
     """Raised when a service would be open to everybody."""
-
-
-def migrate(settings: Settings) -> int:
-    """Bring the database to the newest revision; several at once wait for each other. Returns 0.
-
-    Raises
-    ------
-    sqlalchemy.exc.SQLAlchemyError
-        If the database cannot be reached or refuses.
-    """
-    engine = make_engine(settings)
-    try:
-        with engine.begin() as connection:
-            _take_turns(connection)
-            command.upgrade(alembic_config(connection), "head")
-    finally:
-        engine.dispose()
-    return 0
-
-
-def alembic_config(connection: Connection) -> Config:
-    """Make Alembic's configuration for our migrations on an open connection."""
-    config = Config()
-    config.set_main_option("script_location", "migrations:")
-    config.attributes["connection"] = connection
-    return config
-
-
-def is_newest(connection: Connection) -> bool:
-    """Tell whether a database has the newest schema."""
-    present = MigrationContext.configure(connection).get_current_heads()
-    return set(present) == set(ScriptDirectory.from_config(alembic_config(connection)).get_heads())
 
 
 def worker(settings: Settings) -> NoReturn:
@@ -198,12 +160,6 @@ def _reserve_metrics(folder: Path) -> None:
     It would make a sparse file, whose pages are only sought when they are written, by a signal instead of an error.
     """
     (folder / f"histogram_{os.getpid()}.db").write_bytes(bytes(_METRICS_BYTES))
-
-
-def _take_turns(connection: Connection) -> None:
-    # SQLite's transactions begin as writers already, so that only one of them is past this line.
-    if connection.dialect.name == "postgresql":
-        connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _MIGRATION_LOCK})
 
 
 if __name__ == "__main__":

@@ -5,8 +5,9 @@ on the generalized co-ordinates q and on q'/U alone, so integrals along the span
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -253,3 +254,8 @@ def published_load(
     points = merged(fields, -2)
     angle = _angle_forms(points, diameter[..., None], factor)
     return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)
+
+
+def take_load(load: PolynomialLoad, index: Any) -> PolynomialLoad:
+    """Pick or repeat loads along the leading axes."""
+    return PolynomialLoad(*(getattr(load, field.name)[index] for field in fields(load)))
