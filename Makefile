@@ -17,7 +17,7 @@ $(VENV)/.ready: pyproject.toml constraints.txt $(wildcard engine/kernels/*)
 	touch $@
 
 demo: setup
-	$(BIN)/python -m app.demo --output demo-output
+	$(BIN)/python -m app.cli.demo --output demo-output
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal tests

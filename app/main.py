@@ -9,18 +9,18 @@ from fastapi import FastAPI
 from sqlalchemy import Engine
 from starlette.types import ASGIApp
 
-from app import errors, metrics, submissions, telemetry
-from app.access import Access
+from app.coalescing.grouped_calls import Groups, committed_together
+from app.coalescing.shared_watch import Watch
 from app.convert import ENGINE_VERSION
-from app.db import make_engine, session_factory
-from app.gate import Gate
-from app.groups import Groups, committed_together
-from app.head import HeadAsGet
-from app.headers import SecurityHeaders
-from app.jobs import look_up
-from app.observe import batches_seen, jobs_seen
-from app.queue import Dispatcher, Sender, celery_application
-from app.rates import Meter
+from app.http import problems
+from app.http.head_as_get import HeadAsGet
+from app.http.request_log import Access
+from app.http.security_headers import SecurityHeaders
+from app.jobs import submissions
+from app.jobs.dispatch import Dispatcher, Sender, celery_application
+from app.jobs.job_records import look_up
+from app.jobs.watched_states import batches_seen, jobs_seen
+from app.operation import metrics
 from app.routes import (
     aerodynamics,
     batch_intake,
@@ -37,8 +37,11 @@ from app.routes import (
     reference,
     results,
 )
-from app.settings import Settings, get_settings
-from app.watch import Watch
+from app.runtime import telemetry
+from app.runtime.settings import Settings, get_settings
+from app.security.gate import Gate
+from app.security.quotas import Meter
+from app.storage.database import make_engine, session_factory
 
 _GATHERING_SECONDS = 0.006  # about what one group of posts takes
 _NOTES_A_SWEEP = 4.0
@@ -102,7 +105,7 @@ def create_app(settings: Settings | None = None) -> Service:
     _equip(app, settings, database)
     meter = Meter(settings)
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
-    errors.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
+    problems.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
     for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)

@@ -16,17 +16,19 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import uvicorn
 
-from app import keys, logs, processes, telemetry
-from app.auth import is_loopback
-from app.db import make_engine, session_factory
-from app.settings import Settings, get_settings
+from app.runtime import logs, processes, telemetry
+from app.runtime.loopback import is_loopback
+from app.runtime.settings import Settings, get_settings
+from app.security import keys
+from app.storage.database import make_engine, session_factory
+from app.storage.migration import migrate
 
 if TYPE_CHECKING:
     from app.main import Service
 
-HTTP = "app.protocol:BoundedHeads"
+HTTP = "app.http.bounded_heads:BoundedHeads"
 """What speaks HTTP on a connection, as uvicorn is told of it."""
-LOOP = "app.listening:SharingLoop"
+LOOP = "app.http.listening:SharingLoop"
 """What takes connections, likewise."""
 
 _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded

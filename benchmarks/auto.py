@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine import polynomial
 from engine.arrays import FloatArray
-from engine.hybrid import ReducedModel
+from engine.models.reduced_model import ReducedModel
+from engine.numerics import polynomial
 
 VARIABLES = "abcdef"  # q_v, q_w, q_theta and their rates
 

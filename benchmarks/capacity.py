@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.settings import Settings
+from app.runtime.settings import Settings
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "capacity.md"

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.examples import example
+from app.reference.source_lines import example
 from benchmarks.engine_speed import STANDARD_JOB, analysed
 from benchmarks.lines import random_line
 from benchmarks.measure import median_seconds

@@ -17,13 +17,13 @@ from benchmarks.measure import median_ratio, median_seconds, numpy_forms, record
 from benchmarks.models import discretized, hybrid_models, plain_rate
 from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
-from engine.cycles import Cycles, explicit_starts, find_cycles
-from engine.floquet import Floquet, floquet
-from engine.harmonic import balance, half_peak_to_peak, pick, states
-from engine.hybrid import ReducedModel, take
+from engine.cycles.floquet import Floquet, floquet
+from engine.cycles.harmonic_balance import balance, half_peak_to_peak, pick, states
+from engine.cycles.search import Cycles, explicit_starts, find_cycles
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel, take
 from engine.result import Result
 from engine.spec import Analysis, Line, Model
-from engine.stability import critical_wind_speeds
 
 HARMONICS = 5
 HIGHEST_WIND = 30.0  # m/s
@@ -230,7 +230,7 @@ def profile() -> list[tuple[str, float]]:
 def _place(path: str, function: str) -> str:
     if "/engine/" in path:
         return "engine/" + path.rsplit("/engine/", 1)[1]
-    if "engine._kernels" in function:
+    if "engine.kernels._kernels" in function:
         return f"compiled: {function.rsplit('.', 1)[1].rstrip('>')}"
     return f"numpy.linalg.{function}" if path.endswith("_linalg.py") else "Python and numpy besides"
 

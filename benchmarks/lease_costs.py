@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from sqlalchemy import select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases
-from app.db import make_engine, session_factory
-from app.settings import Settings
+from app.jobs import leases
+from app.runtime.settings import Settings
+from app.storage.database import make_engine, session_factory
 from app.tables.jobs import Job, JobStatus
 from benchmarks.processor import seconds_by_role
 from worker.sweep import sweep

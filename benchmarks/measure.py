@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import compiled
+from engine.kernels import compiled
 
 LAPACK = ("solve", "inv", "eig", "eigvals", "eigh", "eigvalsh", "cholesky", "svd", "det")
 

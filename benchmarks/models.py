@@ -4,13 +4,15 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from engine import polynomial
 from engine.arrays import FloatArray
-from engine.fem import matrices
-from engine.hybrid import Discretization, ReducedModel, hybrid_model, take, with_published_load
-from engine.modes import directional_shapes
-from engine.profile import static_profile
-from engine.sections import sections
+from engine.mechanics.cross_sections import sections
+from engine.mechanics.finite_elements import matrices
+from engine.mechanics.modes import directional_shapes
+from engine.mechanics.static_profile import static_profile
+from engine.models.discretization import Discretization
+from engine.models.hybrid import hybrid_model, with_published_load
+from engine.models.reduced_model import ReducedModel, take
+from engine.numerics import polynomial
 from engine.spec import Analysis, Line
 
 Rate = Callable[[float, FloatArray], FloatArray]

@@ -24,12 +24,13 @@ import httpx
 import numpy as np
 import psycopg
 
-from app import processes, schemas
+from app import schemas
 from app.convert import STACK
 from app.convert.assemble import SoundParts, gather
-from app.examples import example
-from app.serve import migrate
-from app.settings import Settings
+from app.reference.source_lines import example
+from app.runtime import processes
+from app.runtime.settings import Settings
+from app.storage.migration import migrate
 from benchmarks.lease_costs import lease_costs
 from benchmarks.load import CLIENTS, Request, closed_loop, open_loop
 from benchmarks.processor import seconds_by_role

@@ -7,9 +7,9 @@ import numpy as np
 
 from benchmarks.models import discretized, hybrid_models
 from engine.arrays import FloatArray
-from engine.direct_starts import spread_starts
-from engine.hybrid import observation
-from engine.settling import Runs, settled
+from engine.checks.direct_starts import spread_starts
+from engine.checks.settled_motion import Runs, settled
+from engine.models.discretization import observation
 from engine.spec import Line
 
 LOOPS = (1, 2)

@@ -6,33 +6,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merged
-from engine.bifurcations import bifurcations
-from engine.competition import loop_competitions
-from engine.confidence import confidence
-from engine.cycles import Cycles, explicit_starts, find_cycles
-from engine.direct_starts import direct_starts
-from engine.effects import device_effects
-from engine.family import Starts
-from engine.fem import FIELDS
-from engine.harmonic import Orbits, resized
-from engine.hybrid import (
-    Discretization,
-    ReducedModel,
-    discretize,
-    finite_element_model,
-    hybrid_model,
-    joint_model,
-    take,
-    with_published_load,
-)
-from engine.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
+from engine.checks.confidence import confidence
+from engine.checks.direct_starts import direct_starts
+from engine.cycles.bifurcations import bifurcations
+from engine.cycles.families import Starts
+from engine.cycles.harmonic_balance import Orbits, resized
+from engine.cycles.search import Cycles, explicit_starts, find_cycles
+from engine.mechanics.finite_elements import FIELDS
+from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
+from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
+from engine.models.discretization import Discretization, discretize
+from engine.models.finite_element import finite_element_model
+from engine.models.hybrid import hybrid_model, joint_model, with_published_load
+from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Fault, InvalidSpec
-from engine.quasi_periodic import integrated, quasi_periodic_motions
-from engine.report import assembled
+from engine.report.assembled import assembled
+from engine.report.device_effects import device_effects
+from engine.report.loop_competitions import loop_competitions
+from engine.report.rows import Found, FrequencyTable, coupled_squares
 from engine.result import LoopCompetitionRow, Progress, Result
-from engine.rows import Found, FrequencyTable, coupled_squares
 from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, check_compatible
-from engine.stability import Crossings, critical_wind_speeds
+from engine.tori.quasi_periodic import integrated, quasi_periodic_motions
 
 
 @dataclass(frozen=True, slots=True)

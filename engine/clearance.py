@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from engine.arrays import FloatArray
-from engine.harmonic import fourier
+from engine.cycles.harmonic_balance import fourier
 from engine.outcome import Fault, require
 from engine.spec.rules import positive
 

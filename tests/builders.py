@@ -6,22 +6,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.aerodynamics import polynomial_load
 from engine.analysis import analyse
 from engine.arrays import FloatArray
-from engine.fem import matrices
-from engine.hybrid import (
-    Discretization,
-    ReducedModel,
-    finite_element_model,
-    hybrid_model,
-    take,
-    with_published_load,
-)
-from engine.modes import directional_shapes, full_modes
-from engine.profile import static_profile
+from engine.mechanics.cross_sections import sections
+from engine.mechanics.finite_elements import matrices
+from engine.mechanics.modes import directional_shapes, full_modes
+from engine.mechanics.static_profile import static_profile
+from engine.models.aerodynamic_load import polynomial_load
+from engine.models.discretization import Discretization
+from engine.models.finite_element import finite_element_model
+from engine.models.hybrid import hybrid_model, with_published_load
+from engine.models.reduced_model import ReducedModel, take
 from engine.result import LimitCycleRow, Result
-from engine.sections import sections
 from engine.spec import (
     Aerodynamics,
     Analysis,

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.db import make_engine, session_factory
-from app.serve import migrate
-from app.settings import Settings
+from app.runtime.settings import Settings
+from app.storage.database import make_engine, session_factory
+from app.storage.migration import migrate
 from tests import servers
 from tests.documents import hasty_settings
 

@@ -8,13 +8,13 @@ from uuid import UUID
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import jobs
-from app.auth import LOCAL, Caller, Scope
 from app.convert import TABLES, PointResult
-from app.db import database_time
-from app.examples import example
-from app.jobs import Draft, Submission
-from app.settings import Settings
+from app.jobs import job_records
+from app.jobs.job_records import Draft, Submission
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
+from app.security.caller import LOCAL, Caller, Scope
+from app.storage.database import database_time
 from app.tables import Job, JobEvent, PointRow
 
 STRANGER = Caller("stranger", frozenset(Scope))
@@ -69,8 +69,8 @@ def hasty_settings(directory: Path) -> Settings:
 
 def create_job(session: Session, caller: Caller, document: dict[str, Any], **labels: Any) -> Draft:
     """Make a job that waits for a worker, for the caller of this to commit."""
-    job = jobs.draft(Submission(caller, document, **labels), database_time(session))
-    jobs.insert(session, [(caller, job)])
+    job = job_records.draft(Submission(caller, document, **labels), database_time(session))
+    job_records.insert(session, [(caller, job)])
     return job
 
 
@@ -83,7 +83,7 @@ def add_job(sessions: sessionmaker[Session], document: dict[str, Any] | None = N
 def look(sessions: sessionmaker[Session], job_id: UUID) -> Job:
     """Return the job as the database has it now."""
     with sessions() as session:
-        job = jobs.get(session, LOCAL.owner, job_id)
+        job = job_records.get(session, LOCAL.owner, job_id)
     assert job is not None
     return job
 

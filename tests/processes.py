@@ -8,8 +8,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.processes import environment
-from app.settings import Settings
+from app.runtime.processes import environment
+from app.runtime.settings import Settings
 from tests.servers import wait_until
 
 Process = subprocess.Popen[bytes]

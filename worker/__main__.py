@@ -11,9 +11,10 @@ from uuid import uuid4
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases, logs, processes
-from app.db import make_engine, session_factory
-from app.settings import Settings, get_settings
+from app.jobs import leases
+from app.runtime import logs, processes
+from app.runtime.settings import Settings, get_settings
+from app.storage.database import make_engine, session_factory
 from worker.courier import courier
 from worker.health import show_life
 from worker.presence import presence

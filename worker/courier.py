@@ -13,10 +13,11 @@ import httpx
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import addresses, webhooks
-from app.addresses import RefusedAddress
-from app.settings import Settings
-from app.webhooks import Attempt, Message, Share
+from app.jobs import webhooks
+from app.jobs.webhooks import Attempt, Message, Share
+from app.runtime.settings import Settings
+from app.security import webhook_addresses
+from app.security.webhook_addresses import RefusedAddress
 
 _AT_ONCE = 64
 _AN_OWNER = 16
@@ -45,7 +46,7 @@ async def send(settings: Settings, message: Message, context: ssl.SSLContext) ->
     """Send a message once to the address that its host has now; nothing of the answer but the status is read."""
     try:
         with anyio.fail_after(settings.webhook_timeout_seconds):
-            target = await addresses.vet(message.url, private=settings.webhook_private_networks)
+            target = await webhook_addresses.vet(message.url, private=settings.webhook_private_networks)
             async with httpx.AsyncClient(verify=context, trust_env=False, follow_redirects=False) as client:
                 headers = {
                     **webhooks.signed_headers(settings, message, datetime.now(UTC)),

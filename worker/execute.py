@@ -16,11 +16,14 @@ from pydantic import ValidationError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches, convert, correlation, leases, reuse, telemetry
+from app import convert
+from app.batches import batch_records
 from app.convert import Advance, PointResult
-from app.db import make_engine, session_factory
-from app.leases import Beat, Claim, Failure
-from app.settings import Settings
+from app.jobs import leases, reuse
+from app.jobs.leases import Beat, Claim, Failure
+from app.runtime import correlation, telemetry
+from app.runtime.settings import Settings
+from app.storage.database import make_engine, session_factory
 from app.tables import FailureKind
 from engine.outcome import InvalidSpec
 
@@ -122,7 +125,7 @@ def _steps(session: Session, held: Claim) -> Iterator[Advance | PointResult]:
         line_hash = reuse.hash_of(held.owner, held.document)
         steps = convert.run(held.document)
         return steps if line_hash is None else _with_hashes(steps, {0: line_hash})
-    analysis, lines = batches.lines_of_chunk(session, held.job_id, held.batch_id)
+    analysis, lines = batch_records.lines_of_chunk(session, held.job_id, held.batch_id)
     hashes = reuse.hashes(held.owner, analysis, lines)
     known = [] if held.document.get("anew") else reuse.stored(session, hashes, convert.ENGINE_VERSION)
     known_numbers = {point.point for point in known}

@@ -4,7 +4,7 @@ import sys
 import time
 from pathlib import Path
 
-from app.settings import Settings, get_settings
+from app.runtime.settings import Settings, get_settings
 
 _SWEEPS = 15.0
 _LEAST_SECONDS = 30.0

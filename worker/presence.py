@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import workers
-from app.settings import Settings
+from app.operation import workers
+from app.runtime.settings import Settings
 
 _logger = logging.getLogger(__name__)
 

@@ -8,9 +8,11 @@ from uuid import UUID
 
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches, idempotency, leases, tallies
-from app.queue import BrokerUnavailable, open_queue
-from app.settings import Settings
+from app.batches import batch_records
+from app.jobs import idempotency, leases
+from app.jobs.dispatch import BrokerUnavailable, open_queue
+from app.runtime.settings import Settings
+from app.storage import counters
 
 _logger = logging.getLogger(__name__)
 
@@ -25,8 +27,8 @@ def sweep(sessions: sessionmaker[Session], settings: Settings) -> int:
     """
     release(sessions, settings)
     with sessions.begin() as session:
-        batches.discard_abandoned(session)
-        tallies.fold(session)
+        batch_records.discard_abandoned(session)
+        counters.fold(session)
         idempotency.forget_expired(session)
     return sum(_send_waiting(sessions, settings, chunks) for chunks in (False, True))
 

@@ -10,11 +10,11 @@ from celery import Celery
 from celery.signals import setup_logging, worker_process_init, worker_process_shutdown
 from sqlalchemy.orm import Session, configure_mappers, sessionmaker
 
-from app import logs, telemetry
-from app.db import make_engine, session_factory
-from app.processes import end_with_parent
-from app.queue import CHUNK_QUEUE_NAME, QUEUE_NAME, TASK_NAME, celery_application
-from app.settings import Settings, get_settings
+from app.jobs.dispatch import CHUNK_QUEUE_NAME, QUEUE_NAME, TASK_NAME, celery_application
+from app.runtime import logs, telemetry
+from app.runtime.processes import end_with_parent
+from app.runtime.settings import Settings, get_settings
+from app.storage.database import make_engine, session_factory
 from worker.execute import execute
 
 OWNER = "GALLOPING_WORKER_OWNER"

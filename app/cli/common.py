@@ -13,8 +13,8 @@ import typer
 if TYPE_CHECKING:
     from sqlalchemy.orm import Session, sessionmaker
 
-    from app.faults import Fault
-    from app.settings import Settings
+    from app.runtime.settings import Settings
+    from app.schemas.faults import Fault
 
 BAD_INPUT = 2
 FAILED = 1
@@ -50,7 +50,7 @@ def read_request(line: Path, analysis: Path | None, study: Path | None, placemen
 
 
 def _read_json(path: Path) -> Any:
-    from app.faults import BadInput, parse_json
+    from app.schemas.faults import BadInput, parse_json
 
     try:
         raw = sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()
@@ -65,7 +65,7 @@ def read_settings(data_dir: Path | None) -> "Settings":
     """Read the settings from the environment; end with what is wrong with them, if anything is."""
     from pydantic import ValidationError
 
-    from app.settings import Settings
+    from app.runtime.settings import Settings
 
     try:
         return Settings() if data_dir is None else Settings(data_dir=data_dir)
@@ -100,8 +100,8 @@ def operator_told() -> Iterator[None]:
 @contextmanager
 def using_database(settings: "Settings") -> Iterator["sessionmaker[Session]"]:
     """Give sessions on a database of this version; end with one sentence where there is none."""
-    from app.db import make_engine, session_factory
-    from app.serve import is_newest
+    from app.storage.database import make_engine, session_factory
+    from app.storage.migration import is_newest
 
     with operator_told():
         engine = make_engine(settings)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.auth import OWNER_PATTERN, Scope
 from app.cli.common import BAD_INPUT, AsJson, DataDirectory, end, print_table, read_settings, using_database, write
+from app.security.caller import OWNER_PATTERN, Scope
 
 if TYPE_CHECKING:
     from app.tables import ApiKey
@@ -29,7 +29,7 @@ def create(
     data_dir: DataDirectory = None,
 ) -> None:
     """Make a key and print it; it cannot be shown again. From the first key on the service asks for one."""
-    from app import keys
+    from app.security import keys
 
     if not OWNER_PATTERN.fullmatch(owner):
         end(f"--owner: must be 1 to 64 letters, digits and . _ @ -, got {owner!r}", BAD_INPUT)
@@ -50,7 +50,7 @@ def list_keys(
     data_dir: DataDirectory = None,
 ) -> None:
     """List the keys, oldest first, by what may be shown of them."""
-    from app import keys
+    from app.security import keys
 
     with using_database(read_settings(data_dir)) as sessions, sessions() as session:
         documents = [_document(key) for key in keys.listed(session, owner)]
@@ -66,7 +66,7 @@ def revoke(
     data_dir: DataDirectory = None,
 ) -> None:
     """Revoke a key; running services refuse it after GALLOPING_KEY_CACHE_SECONDS at most."""
-    from app import keys
+    from app.security import keys
 
     settings = read_settings(data_dir)
     try:

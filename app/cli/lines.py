@@ -22,8 +22,8 @@ from app.cli.common import (
     refuse,
     write,
 )
-from app.examples import EXAMPLE_NAMES
-from app.studies import STUDY_NAMES
+from app.reference.source_lines import EXAMPLE_NAMES
+from app.reference.source_studies import STUDY_NAMES
 
 if TYPE_CHECKING:
     from app.convert import PointResult
@@ -37,11 +37,11 @@ def analyse(
     output: OutputFile = None,
 ) -> None:
     """Analyse a line in this process, without service or database."""
-    from app.processes import ONE_BLAS_THREAD
+    from app.runtime.processes import ONE_BLAS_THREAD
 
     os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, which reads it once
     from app import convert
-    from app.faults import BadInput
+    from app.schemas.faults import BadInput
 
     document = read_request(line, analysis, study, placement)
     try:
@@ -69,12 +69,12 @@ def example(
     ] = None,
 ) -> None:
     """Print one of the source's lines, or one of its studies of that line, ready to run."""
-    from app import examples, studies
+    from app.reference import source_lines, source_studies
 
     for kind, wanted, known in (("example", name, EXAMPLE_NAMES), ("study", study, STUDY_NAMES)):
         if wanted is not None and wanted not in known:
             end(f"there is no {kind} {wanted!r}; there are {', '.join(known)}", BAD_INPUT)
-    write(examples.example(name) if study is None else studies.study_request(study, name), None)
+    write(source_lines.example(name) if study is None else source_studies.study_request(study, name), None)
 
 
 def ellipse(
@@ -86,7 +86,7 @@ def ellipse(
 ) -> None:
     """Print the galloping ellipse of design practice at mid-loop; nulls where the method sees no galloping."""
     from app import convert
-    from app.faults import BadInput
+    from app.schemas.faults import BadInput
 
     try:
         write(convert.ellipse(method, sag_m, span_m, diameter_m, subconductors), None)
@@ -97,9 +97,10 @@ def ellipse(
 def _result(request: Mapping[str, Any], points: Sequence["PointResult"]) -> Any:
     from dataclasses import asdict
 
-    from app import convert, export
+    from app import convert
+    from app.export import formats
 
     tables: dict[str, list[dict[str, object]]] = {
         name: [{**point.axes, **row} for point in points for row in point.tables[name]] for name in convert.TABLES
     }
-    return json.loads("".join(export.result_text(request, [asdict(point) for point in points], tables)))
+    return json.loads("".join(formats.result_text(request, [asdict(point) for point in points], tables)))

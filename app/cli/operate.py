@@ -18,7 +18,7 @@ from app.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from app.status import Contents, Status
+    from app.operation.service_status import Contents, Status
 
 _WORKERS = ("name", "version", "processes", "running", "seen")
 _EVENTS = ("at", "owner", "key_id", "action", "subject", "detail")
@@ -26,7 +26,7 @@ _EVENTS = ("at", "owner", "key_id", "action", "subject", "detail")
 
 def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
     """Show database, broker, workers, queues, jobs and leases; ends with 1 if anything needs the operator."""
-    from app import status as service
+    from app.operation import service_status as service
 
     with operator_told():
         found = service.look(read_settings(data_dir))
@@ -53,7 +53,7 @@ def prune(
     """Remove jobs and batches that ended long ago, with results and events; what waits or runs is kept."""
     from dataclasses import asdict
 
-    from app import prune as retention
+    from app.operation import prune as retention
 
     kept = retention.Retention(timedelta(days=days), timedelta(days=audit_days))
     with using_database(read_settings(data_dir)) as sessions:
@@ -73,7 +73,7 @@ def audit(
     data_dir: DataDirectory = None,
 ) -> None:
     """Show who changed what, the newest first."""
-    from app import audit as record
+    from app.security import audit as record
 
     since = datetime.now(UTC) - timedelta(days=days) if days else None
     with using_database(read_settings(data_dir)) as sessions, sessions() as session:

@@ -24,7 +24,7 @@ from app.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from app.settings import Settings
+    from app.runtime.settings import Settings
 
 _PATIENCE_SECONDS = 5.0  # a person waits at the other end
 
@@ -77,7 +77,7 @@ def worker(data_dir: DataDirectory = None) -> None:
 
 def migrate(data_dir: DataDirectory = None) -> None:
     """Bring the database of the settings to the newest schema."""
-    from app.serve import migrate as run
+    from app.storage.migration import migrate as run
 
     with operator_told():
         run(read_settings(data_dir))

@@ -11,7 +11,7 @@ from uuid import uuid4
 import httpx
 from pydantic import BaseModel, ValidationError
 
-from app.faults import Fault
+from app.schemas.faults import Fault
 
 Show = Callable[[float, str], object]
 Body = Callable[[], bytes | IO[bytes]]

@@ -3,8 +3,8 @@
 from app.convert.check import check, read, request_faults, with_further_faults
 from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
+from app.convert.mode_shapes import mode_shapes
 from app.convert.run import TABLES, Advance, PointResult, Table, columns, run
-from app.convert.shapes import mode_shapes
 from app.convert.stack import STACK, NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
 from engine import ENGINE_VERSION
 

@@ -11,9 +11,9 @@ from app.convert import study
 from app.convert.assemble import SoundParts, gather
 from app.convert.parts import placement
 from app.convert.pointers import json_names, to_pointer
-from app.convert.sound import SoundAxis, pruned, sound_analysis, sound_axes, sound_parts
+from app.convert.sound_parts import SoundAxis, pruned, sound_analysis, sound_axes, sound_parts
 from app.convert.study import Ground
-from app.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer
+from app.schemas.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer
 from engine.outcome import InvalidSpec
 from engine.spec import check_placement
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 from app.convert.run import specification_of_point
-from app.faults import BadInput, Fault
+from app.schemas.faults import BadInput, Fault
 from engine.outcome import InvalidSpec
 
 EllipseMethodName = Literal["davison", "toye", "cigre", "aeso"]

@@ -5,7 +5,7 @@ from typing import Any
 
 from app import schemas
 from app.convert.pointers import json_names
-from app.faults import BadInput, Fault, json_pointer
+from app.schemas.faults import BadInput, Fault, json_pointer
 from engine.outcome import InvalidSpec
 
 
@@ -19,7 +19,7 @@ def fit(request: schemas.MeasuredCoefficients) -> dict[str, Any]:
     """
     import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
 
-    from engine.fit import CoefficientTable, den_hartog_coefficient, fit_coefficients  # noqa: PLC0415
+    from engine.mechanics.coefficients import CoefficientTable, den_hartog_coefficient, fit_coefficients  # noqa: PLC0415
 
     degrees = np.array([row.angle for row in request.table])
     columns = np.array([(row.lift, row.drag, row.moment) for row in request.table])

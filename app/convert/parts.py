@@ -67,7 +67,7 @@ def aerodynamics(
 
 
 def _fitted(part: schemas.MeasuredCoefficients) -> spec.Aerodynamics:
-    from engine.fit import fit_measured  # noqa: PLC0415 - lines without a table need no numerics
+    from engine.mechanics.coefficients import fit_measured  # noqa: PLC0415 - lines without a table need no numerics
 
     rows = [(math.radians(row.angle), row.lift, row.drag, row.moment) for row in part.table]
     angle, lift, drag, moment = zip(*rows, strict=True)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pydantic import BaseModel
 
 from app import schemas
-from app.faults import Fault, json_pointer
+from app.schemas.faults import Fault, json_pointer
 from engine import outcome
 
 

@@ -12,7 +12,7 @@ import orjson
 from app import schemas
 from app.convert import parts, study
 from app.convert.assemble import SoundParts, gather
-from app.convert.peaks import peaks
+from app.convert.ranking_figures import peaks
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
 from engine.result import (
@@ -168,7 +168,7 @@ class _Solved:
 def _followed(request: schemas.JobRequest, held: list[_Solved]) -> Iterator[PointResult]:
     """Follow the cycles of the points over the one field of a study; where that fails, its points say so."""
     # The API and `galloping --help` need no solver.
-    from engine.followed import followed  # noqa: PLC0415
+    from engine.studies.followed import followed  # noqa: PLC0415
 
     def line_at(value: float) -> spec.Line:
         return specification(request, {parameter: value})[0]
@@ -216,7 +216,7 @@ def _steps(
         from engine.analysis import analyse  # noqa: PLC0415
 
         return analyse(line, analysis)
-    from engine.placement import place  # noqa: PLC0415
+    from engine.studies.placement import place  # noqa: PLC0415
 
     return place(line, analysis, parts.placement(placement))
 

@@ -12,7 +12,7 @@ from app import schemas
 from app.convert.assemble import SoundParts, gather
 from app.convert.check import request_faults, with_further_faults
 from app.convert.run import Advance, PointResult, failed_point, point_results
-from app.faults import BadInput, Fault, faults_of
+from app.schemas.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.outcome import InvalidSpec
 

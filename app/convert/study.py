@@ -12,9 +12,9 @@ from pydantic import BaseModel, ValidationError
 from app import schemas
 from app.convert.assemble import SoundParts, gather
 from app.convert.pointers import to_pointer
-from app.convert.sound import PARTS, SoundAxis, sound_parts
-from app.faults import Fault, faults_of, json_pointer
+from app.convert.sound_parts import PARTS, SoundAxis, sound_parts
 from app.schemas.analysis import STUDY_POINTS_LIMIT
+from app.schemas.faults import Fault, faults_of, json_pointer
 
 _UNVARIABLE = frozenset({"name", "asset_id", "tags"})
 

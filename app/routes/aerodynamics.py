@@ -5,13 +5,14 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Response
 from fastapi.responses import JSONResponse
 
-from app import convert, idempotency, jobs, schemas
-from app.errors import ProblemKind, StrictJsonRoute, invalid_document
-from app.faults import BadInput
+from app import convert, schemas
+from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document
+from app.jobs import idempotency, job_records
 from app.routes import documentation, reference_documentation
 from app.routes.common import PREFIX, Writers
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
 from app.schemas.aerodynamics import FitAnswer
+from app.schemas.faults import BadInput
 
 router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route_class=StrictJsonRoute)
 
@@ -45,6 +46,6 @@ def fit(
         raise invalid_document(error.faults) from error
 
     def fingerprint() -> str:
-        return idempotency.fingerprint(router.prefix, jobs.canonical(document.model_dump(mode="json")))
+        return idempotency.fingerprint(router.prefix, job_records.canonical(document.model_dump(mode="json")))
 
     return once(writers, key, fingerprint, lambda _: Made(answer)).answer

@@ -6,11 +6,12 @@ from uuid import UUID
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batch_counts, batch_results, batches
-from app.auth import Caller
-from app.batch_counts import Counts
-from app.errors import ProblemError, ProblemKind
+from app.batches import batch_records, line_results
+from app.http.problems import ProblemError, ProblemKind
+from app.jobs import batch_progress
+from app.jobs.batch_progress import Counts
 from app.routes.common import PREFIX, RETRY_SECONDS
+from app.security.caller import Caller
 from app.tables import ENDED, Batch
 
 BATCHES = f"{PREFIX}/batches"
@@ -26,7 +27,7 @@ def find_batch(session: Session, caller: Caller, batch_id: UUID) -> Batch:
     ProblemError
         404 if the owner has none of that id, whoever else may have one.
     """
-    batch = batches.get(session, caller.owner, batch_id)
+    batch = batch_records.get(session, caller.owner, batch_id)
     if batch is None:
         raise ProblemError(ProblemKind.NOT_FOUND, f"There is no batch {batch_id}.")
     return batch
@@ -44,9 +45,9 @@ def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UU
     """
     with readers() as session:
         find_batch(session, caller, batch_id)
-        counts = batch_counts.counts(session, [batch_id])[batch_id]
+        counts = batch_progress.counts(session, [batch_id])[batch_id]
         if counts.status in ENDED:
-            return batches.outcome(session, batch_id)
+            return batch_records.outcome(session, batch_id)
     if partial:
         return None
     raise ProblemError(
@@ -92,14 +93,14 @@ def line_counts(counts: Counts, rejected: int) -> dict[str, int]:
 
 def batch_document(session: Session, batch: Batch, counts: Counts) -> dict[str, Any]:
     """Return the status document of a batch, with the faults of the first lines that were rejected."""
-    shown = list(batch_results.errors(session, batch.id, _ERRORS_SHOWN)) if batch.rejected_lines else []
+    shown = list(line_results.errors(session, batch.id, _ERRORS_SHOWN)) if batch.rejected_lines else []
     return {**batch_summary(batch, counts), "errors": shown[:_ERRORS_SHOWN]}
 
 
 def accepted_batch(session: Session, caller: Caller, batch_id: UUID) -> JSONResponse:
     """Return the answer to who has sent a batch, or sent it again."""
     batch = find_batch(session, caller, batch_id)
-    document = batch_document(session, batch, batch_counts.counts(session, [batch_id])[batch_id])
+    document = batch_document(session, batch, batch_progress.counts(session, [batch_id])[batch_id])
     return JSONResponse(document, 202, headers={"Location": batch_address(batch_id), "Retry-After": RETRY_SECONDS})
 
 

@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from app.examples import example
-from app.export import PARQUET
+from app.export.formats import PARQUET
+from app.reference.source_lines import example
 from app.routes import documentation
 from app.schemas.batch import BatchRequest, RankedLine
 from app.schemas.fields import example_of

@@ -14,18 +14,19 @@ from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
 from starlette.requests import ClientDisconnect
 
-from app import idempotency, intake, webhooks
-from app.auth import Caller
-from app.errors import ProblemError, ProblemKind, invalid_document, query_fault
-from app.faults import BadInput, Fault, parse_json
-from app.idempotency import Key
-from app.intake import BodyTooLarge, Incoming
+from app.batches import intake
+from app.batches.intake import BodyTooLarge, Incoming
+from app.http.problems import ProblemError, ProblemKind, invalid_document, query_fault
+from app.jobs import idempotency, webhooks
+from app.jobs.idempotency import Key
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import BATCHES, accepted_batch
 from app.routes.common import CallerOf, MayReuse, SenderOf, Writers, vet_webhook
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, as_kept, held
+from app.runtime.settings import Settings
 from app.schemas.batch import BatchDocument
-from app.settings import Settings
+from app.schemas.faults import BadInput, Fault, parse_json
+from app.security.caller import Caller
 
 if TYPE_CHECKING:
     from hashlib import _Hash

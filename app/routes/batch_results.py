@@ -9,11 +9,12 @@ from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session
 
-from app import batch_results, export
-from app.batch_results import BatchTable
-from app.columns import columns_of
-from app.conditional import strong_tag, unless_known
-from app.errors import ProblemError, ProblemKind
+from app.batches import line_results
+from app.batches.line_results import BatchTable
+from app.export import formats
+from app.export.columns import columns_of
+from app.http.conditional import strong_tag, unless_known
+from app.http.problems import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import require_results
 from app.routes.common import PREFIX, CallerOf, Readers, streamed
@@ -26,7 +27,7 @@ BatchFormat = Literal["ndjson", "csv", "parquet"]
 _MEDIA_TYPES: dict[BatchFormat, str] = {
     "ndjson": "application/x-ndjson",
     "csv": "text/csv",
-    "parquet": export.PARQUET,
+    "parquet": formats.PARQUET,
 }
 _TABLES: dict[BatchTableName, BatchTable] = dict(zip(get_args(BatchTableName), get_args(BatchTable), strict=True))
 
@@ -64,10 +65,10 @@ def results(
 
     Every row has `number`, `reference` and `asset_id`. A line without results has its failure.
     """
-    form = asked.format or export.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
+    form = asked.format or formats.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
     if form is None:
         raise ProblemError(
-            ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {export.PARQUET}."
+            ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {formats.PARQUET}."
         )
     state = require_results(readers, caller, batch_id, partial=asked.partial)
     # What still changes has no tag: a strong one would have to be known before the last row is read.
@@ -76,14 +77,14 @@ def results(
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
         if form == "ndjson" and asked.table is None:
-            return export.in_blocks(batch_results.documents(session, batch_id))
-        rows = batch_results.rows(session, batch_id, name)
+            return formats.in_blocks(line_results.documents(session, batch_id))
+        rows = line_results.rows(session, batch_id, name)
         if form == "parquet":
-            from app import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
+            from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
-            return parquet.parquet_bytes(columns_of(name, batch_results.columns(name)), rows)
-        text = export.csv_text(batch_results.columns(name), rows) if form == "csv" else export.ndjson_text(rows)
-        return export.in_blocks(text)
+            return parquet.parquet_bytes(columns_of(name, line_results.columns(name)), rows)
+        text = formats.csv_text(line_results.columns(name), rows) if form == "csv" else formats.ndjson_text(rows)
+        return formats.in_blocks(text)
 
     return streamed(readers, pieces, _MEDIA_TYPES[form], headers)
 
@@ -104,6 +105,6 @@ def errors(batch_id: UUID, caller: CallerOf, readers: Readers) -> StreamingRespo
     require_results(readers, caller, batch_id, partial=True)
 
     def pieces(session: Session) -> Iterator[str]:
-        return export.in_blocks(export.json_text("errors", batch_results.errors(session, batch_id)))
+        return formats.in_blocks(formats.json_text("errors", line_results.errors(session, batch_id)))
 
     return streamed(readers, pieces, "application/json", {})

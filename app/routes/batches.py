@@ -8,9 +8,12 @@ from fastapi import APIRouter, Depends, Query, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
-from app import batch_counts, batches, convert, idempotency, intake, paging
-from app.errors import ProblemKind, query_fault
-from app.jobs import CancelOutcome
+from app import convert
+from app.batches import batch_records, intake
+from app.http import paging
+from app.http.problems import ProblemKind, query_fault
+from app.jobs import batch_progress, idempotency
+from app.jobs.job_records import CancelOutcome
 from app.routes import batch_documentation, documentation
 from app.routes.batch_common import (
     BATCHES,
@@ -23,8 +26,8 @@ from app.routes.batch_common import (
 from app.routes.common import RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
 from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
+from app.runtime.settings import cursor_key
 from app.schemas.batch import BatchDocument, BatchPage
-from app.settings import cursor_key
 from app.tables import ENDED
 
 router = APIRouter(prefix=BATCHES, tags=["batches"])
@@ -58,7 +61,7 @@ def status(
     """
     with readers() as session:
         batch = find_batch(session, caller, batch_id)
-        counts = batch_counts.counts(session, [batch_id])[batch_id]
+        counts = batch_progress.counts(session, [batch_id])[batch_id]
         headers = applied(wait) if counts.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
         return JSONResponse(batch_document(session, batch, counts), headers=headers)
 
@@ -82,9 +85,9 @@ def list_batches(
     key = cursor_key(settings)
     after = _place(key, cursor) if cursor else None
     with readers() as session:
-        found = batches.page(session, caller.owner, after, limit + 1)
+        found = batch_records.page(session, caller.owner, after, limit + 1)
         shown = found[:limit]
-        counts = batch_counts.counts(session, [batch.id for batch in shown])
+        counts = batch_progress.counts(session, [batch.id for batch in shown])
     following = None
     if len(found) > limit:
         place = paging.encode(key, (shown[-1].created_at, shown[-1].id))
@@ -110,7 +113,7 @@ def resubmit(
     def make(session: Session) -> Made:
         batch = find_batch(session, caller, batch_id)
         size = intake.lines_a_chunk(settings, convert.read_analysis(batch.analysis))
-        chunk_ids = batches.resubmit(session, caller, batch_id, size)
+        chunk_ids = batch_records.resubmit(session, caller, batch_id, size)
         return Made(accepted_batch(session, caller, batch_id), chunk_ids)
 
     made = once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "resubmit"), make)
@@ -138,10 +141,10 @@ def cancel(batch_id: UUID, caller: CallerOf, writers: Writers) -> Response:
     """Cancel what has not ended of a batch, or remove one that has ended."""
     with writers.begin() as session:
         batch = find_batch(session, caller, batch_id)
-        outcome = batches.cancel(session, caller, batch_id)
+        outcome = batch_records.cancel(session, caller, batch_id)
         if outcome is CancelOutcome.REMOVED:
             return Response(status_code=204)
-        document = batch_document(session, batch, batch_counts.counts(session, [batch_id])[batch_id])
+        document = batch_document(session, batch, batch_progress.counts(session, [batch_id])[batch_id])
     if outcome is CancelOutcome.REQUESTED:
         return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
     return JSONResponse(document)

@@ -6,14 +6,15 @@ from fastapi import APIRouter, Query
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
-from app import convert, results
-from app.errors import ProblemError, ProblemKind, query_fault
+from app import convert
+from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.routes import documentation
 from app.routes.common import PREFIX, Readers
 from app.routes.ended import EndedJob
 from app.routes.results import point_rows, request_of_point
 from app.schemas.clearance import Clearance
 from app.schemas.fields import example_of
+from app.storage import stored_results
 
 router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
 
@@ -53,7 +54,7 @@ def clearance(ended: EndedJob, asked: Annotated[ClearanceQuery, Query()], reader
         raise query_fault("vertical_spacing_m", "the other phase cannot hang in the same place")
     with readers() as session:
         found = point_rows(session, job.id, asked.point)
-        points = results.points(session, job.id)
+        points = stored_results.points(session, job.id)
         found["static"] = [p["static"] for p in points if p["point"] == asked.point and p["static"]]
         request = request_of_point(session, job, asked.point)
     if not found["static"]:

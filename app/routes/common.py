@@ -9,15 +9,16 @@ from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session, sessionmaker
 from starlette.types import Receive, Scope, Send
 
-from app import addresses, jobs
-from app.addresses import RefusedAddress
-from app.auth import Caller
-from app.errors import ProblemError, ProblemKind, invalid_document
-from app.faults import Fault
-from app.groups import Groups
-from app.jobs import Draft
-from app.queue import Sender
-from app.settings import Settings
+from app.coalescing.grouped_calls import Groups
+from app.http.problems import ProblemError, ProblemKind, invalid_document
+from app.jobs import job_records
+from app.jobs.dispatch import Sender
+from app.jobs.job_records import Draft
+from app.runtime.settings import Settings
+from app.schemas.faults import Fault
+from app.security import webhook_addresses
+from app.security.caller import Caller
+from app.security.webhook_addresses import RefusedAddress
 from app.tables import Job, JobStatus
 
 PREFIX = "/v1"
@@ -113,7 +114,7 @@ def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
     ProblemError
         404 if the owner has none of that id, whoever else may have one.
     """
-    job = jobs.get(session, caller.owner, job_id)
+    job = job_records.get(session, caller.owner, job_id)
     if job is None:
         raise _no_job(job_id)
     return job
@@ -143,7 +144,7 @@ async def vet_webhook(settings: Settings, url: str) -> None:
         422 if nothing is sent there.
     """
     try:
-        await addresses.vet(url, private=settings.webhook_private_networks)
+        await webhook_addresses.vet(url, private=settings.webhook_private_networks)
     except RefusedAddress as error:
         raise invalid_document([Fault("/webhook_url", "refused_address", str(error))]) from error
 

@@ -7,8 +7,8 @@ from fastapi import APIRouter
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
-from app import idempotency, webhooks
-from app.errors import ProblemKind
+from app.http.problems import ProblemKind
+from app.jobs import idempotency, webhooks
 from app.routes import documentation
 from app.routes.batch_common import batch_address, find_batch
 from app.routes.common import PREFIX, CallerOf, Readers, SettingsOf, Writers, find_job, job_address

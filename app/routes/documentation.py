@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 from typing import Any
 
-from app.errors import MEDIA_TYPE, ProblemKind, problem_document
-from app.examples import EXAMPLE_NAMES, example
-from app.export import PARQUET
-from app.faults import Fault
-from app.gate import is_open
+from app.export.formats import PARQUET
+from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document
+from app.reference.source_lines import EXAMPLE_NAMES, example
 from app.schemas.answers import Problem
+from app.schemas.faults import Fault
 from app.schemas.fields import example_of
 from app.schemas.placement import EXAMPLE as PLACEMENT
 from app.schemas.rows import LimitCycle
+from app.security.gate import is_open
 
 _NULL = "\0null"
 _JOB = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e"

@@ -6,8 +6,8 @@ from uuid import UUID
 
 from fastapi import Depends, Header
 
-from app.conditional import strong_tag, unless_known
-from app.errors import ProblemError, ProblemKind
+from app.http.conditional import strong_tag, unless_known
+from app.http.problems import ProblemError, ProblemKind
 from app.routes.common import RETRY_SECONDS, CallerOf, Readers, find_job, job_address
 from app.tables import Job, JobStatus
 

@@ -10,10 +10,10 @@ from fastapi import APIRouter, Depends, Header
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy import func, select
 
-from app import batch_counts
-from app.conditional import Bodiless
-from app.errors import ProblemKind
-from app.observe import BatchSeen, Happening
+from app.http.conditional import Bodiless
+from app.http.problems import ProblemKind
+from app.jobs import batch_progress
+from app.jobs.watched_states import BatchSeen, Happening
 from app.routes import documentation
 from app.routes.batch_common import find_batch, line_counts
 from app.routes.common import PREFIX, CallerOf, Readers, find_job
@@ -67,7 +67,7 @@ def _event_of_batch(batch_id: UUID, caller: CallerOf, readers: Readers, last_eve
     """Return the id of the last event that has arrived; 404 and 204 as for jobs."""
     with readers() as session:
         find_batch(session, caller, batch_id)
-        counts = batch_counts.counts(session, [batch_id])[batch_id]
+        counts = batch_progress.counts(session, [batch_id])[batch_id]
     if counts.status in ENDED and last_event_id == _batch_event_id(counts):
         raise Bodiless(204)
     return last_event_id or ""
@@ -124,7 +124,7 @@ def _counted(batch: BatchSeen) -> ServerSentEvent:
     return ServerSentEvent(id=_batch_event_id(counts), event=counts.status.value, data=data)
 
 
-def _batch_event_id(counts: batch_counts.Counts) -> str:
+def _batch_event_id(counts: batch_progress.Counts) -> str:
     """Return what two equal states of a batch have in common."""
     lines = counts.accepted, counts.running, counts.successful, counts.failed, counts.dismissed
     return "-".join(map(str, (*lines, f"{counts.progress:.6f}")))

@@ -10,14 +10,14 @@ from fastapi.responses import JSONResponse
 from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 
-from app import metrics
-from app.errors import ProblemError, ProblemKind
-from app.queue import BrokerUnavailable, open_queue
+from app.http.problems import ProblemError, ProblemKind
+from app.jobs.dispatch import BrokerUnavailable, open_queue
+from app.operation import metrics
 from app.routes import documentation
 from app.routes.common import Readers, SettingsOf
+from app.runtime.settings import Settings
 from app.schemas.answers import Health, ProblemPage
-from app.serve import is_newest
-from app.settings import Settings
+from app.storage.migration import is_newest
 
 router = APIRouter(tags=["service"])
 

@@ -12,10 +12,13 @@ from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
-from app import convert, idempotency, jobs, paging, schemas
-from app.errors import ProblemKind, StrictJsonRoute, invalid_document, query_fault
-from app.idempotency import KeyTaken
-from app.jobs import CancelOutcome, Draft, JobFilters, Submission
+from app import convert, schemas
+from app.http import paging
+from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document, query_fault
+from app.jobs import idempotency, job_records
+from app.jobs.idempotency import KeyTaken
+from app.jobs.job_records import CancelOutcome, Draft, JobFilters, Submission
+from app.jobs.submissions import Keyed, Order
 from app.routes import documentation
 from app.routes.common import (
     PREFIX,
@@ -33,10 +36,9 @@ from app.routes.common import (
 )
 from app.routes.once import KEY_PROBLEMS, KeyOf, as_kept, first_answer
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
+from app.runtime.settings import cursor_key
 from app.schemas.answers import JobDocument, JobPage
 from app.schemas.fields import Label
-from app.settings import cursor_key
-from app.submissions import Keyed, Order
 from app.tables import ENDED, JobStatus
 
 router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
@@ -100,7 +102,7 @@ async def _ordered(
     line, kept = document.line, document.kept()
 
     def fingerprint() -> str:
-        return idempotency.fingerprint(router.prefix, jobs.canonical(kept), document.webhook_url or "")
+        return idempotency.fingerprint(router.prefix, job_records.canonical(kept), document.webhook_url or "")
 
     submission = Submission(request.state.caller, kept, line.name, line.asset_id, line.tags)
     keyed = Keyed(key, fingerprint, lambda job: as_kept(_accepted(job))) if key is not None else None
@@ -197,7 +199,7 @@ def list_jobs(
     key = cursor_key(settings)
     after = _place(key, filters.cursor) if filters.cursor else None
     with readers() as session:
-        found = jobs.page(session, caller.owner, filters.as_filters(), after, filters.limit + 1)
+        found = job_records.page(session, caller.owner, filters.as_filters(), after, filters.limit + 1)
         documents = [job_document(job) for job in found[: filters.limit]]
     following = None
     if len(found) > filters.limit:
@@ -225,7 +227,7 @@ def list_jobs(
 def cancel(job_id: UUID, caller: CallerOf, writers: Writers) -> Response:
     """Cancel a job, or remove one that has ended."""
     with writers.begin() as session:
-        outcome = jobs.cancel(session, caller, job_id)
+        outcome = job_records.cancel(session, caller, job_id)
         if outcome is CancelOutcome.REMOVED:
             return Response(status_code=204)
         session.flush()

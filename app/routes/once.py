@@ -15,9 +15,9 @@ from fastapi.responses import JSONResponse, Response
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import idempotency
-from app.errors import ProblemError, ProblemKind
-from app.idempotency import Answer, Kept, Key, KeyTaken
+from app.http.problems import ProblemError, ProblemKind
+from app.jobs import idempotency
+from app.jobs.idempotency import Answer, Kept, Key, KeyTaken
 from app.routes.common import RETRY_SECONDS
 
 _RENEWALS_A_LEASE = 5

@@ -8,15 +8,18 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session
 
-from app import batches, convert, export, results
-from app.columns import axis_columns, columns_of
+from app import convert
+from app.batches import batch_records
 from app.convert import Table
-from app.errors import ProblemError, ProblemKind
-from app.export import Format
+from app.export import formats
+from app.export.columns import axis_columns, columns_of
+from app.export.formats import Format
+from app.http.problems import ProblemError, ProblemKind
 from app.routes import documentation
 from app.routes.common import PREFIX, Readers, failure_of, streamed
 from app.routes.ended import EndedJob
 from app.schemas.answers import ResultDocument, TableName
+from app.storage import stored_results
 from app.tables import Job
 
 router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
@@ -53,11 +56,11 @@ def whole(ended: EndedJob, readers: Readers) -> StreamingResponse:
     job, headers = ended.job, ended.headers("json")
 
     def pieces(session: Session) -> Iterator[str]:
-        points = list(results.points(session, job.id))
-        tables: dict[str, Rows] = {name: results.rows(session, job.id, name) for name in convert.TABLES}
-        return export.in_blocks(export.result_text(job.document, points, tables, failure_of(job)))
+        points = list(stored_results.points(session, job.id))
+        tables: dict[str, Rows] = {name: stored_results.rows(session, job.id, name) for name in convert.TABLES}
+        return formats.in_blocks(formats.result_text(job.document, points, tables, failure_of(job)))
 
-    return streamed(readers, pieces, export.MEDIA_TYPES["json"], headers)
+    return streamed(readers, pieces, formats.MEDIA_TYPES["json"], headers)
 
 
 @router.get(
@@ -73,21 +76,21 @@ def table(
     format: Annotated[Format | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
 ) -> StreamingResponse:
     """Return one table of flat rows, as JSON, CSV or Parquet by `?format=` or the Accept header."""
-    chosen = format or export.preferred_format(request.headers.get("accept", ""))
+    chosen = format or formats.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
-        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {export.PARQUET}.")
+        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {formats.PARQUET}.")
     job, headers = ended.job, ended.headers(chosen)
     name = _TABLES[table]
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
-        rows = results.rows(session, job.id, name)
+        rows = stored_results.rows(session, job.id, name)
         if chosen == "parquet":
             return _parquet(job, name, rows)
         if chosen == "csv":
-            return export.in_blocks(export.csv_text([*_axes(job), *convert.columns(name)], rows))
-        return export.in_blocks(export.json_text(name, rows))
+            return formats.in_blocks(formats.csv_text([*_axes(job), *convert.columns(name)], rows))
+        return formats.in_blocks(formats.json_text(name, rows))
 
-    return streamed(readers, pieces, export.MEDIA_TYPES[chosen], headers)
+    return streamed(readers, pieces, formats.MEDIA_TYPES[chosen], headers)
 
 
 @router.get(
@@ -157,12 +160,12 @@ def request_of_point(session: Session, job: Job, point: int) -> tuple[Mapping[st
     """Return the request that a point of a job belongs to, and its number there; a chunk's points are lines."""
     if job.batch_id is None:
         return job.document, point
-    analysis, lines = batches.lines_of_chunk(session, job.id, job.batch_id)
+    analysis, lines = batch_records.lines_of_chunk(session, job.id, job.batch_id)
     return {"line": next(line.document for line in lines if line.number == point), "analysis": analysis}, 0
 
 
 def _parquet(job: Job, name: Table, rows: Rows) -> Iterator[bytes]:
-    from app import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
+    from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
     study = (job.document.get("study") or {"axes": []})["axes"]
     before = columns_of("summary", ["number"]) if job.batch_id is not None else axis_columns(study)
@@ -183,24 +186,26 @@ def point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dic
     ProblemError
         404 if there is no such point.
     """
-    axes = next((p["axes"] for p in results.points(session, job_id) if p["point"] == point), None)
+    axes = next((p["axes"] for p in stored_results.points(session, job_id) if p["point"] == point), None)
     if axes is None:
         raise ProblemError(ProblemKind.NOT_FOUND, f"The job has no results at point {point}.")
     wanted = dict(axes) if isinstance(axes, dict) else {}
 
     def at_point(name: Table) -> list[dict[str, Any]]:
-        rows = results.rows(session, job_id, name)
+        rows = stored_results.rows(session, job_id, name)
         return [row for row in rows if all(row[key] == value for key, value in wanted.items())]
 
     found: dict[str, list[dict[str, Any]]] = {name: at_point(name) for name in _TABLES.values()}
-    found["orbits"] = [orbit for orbit in results.orbits(session, job_id) if orbit["point"] == point]
+    found["orbits"] = [orbit for orbit in stored_results.orbits(session, job_id) if orbit["point"] == point]
     return found
 
 
 def _study_rows(session: Session, job_id: UUID) -> dict[str, list[dict[str, Any]]]:
     """Return what the picture of a study shows, each row after the values of the axes."""
-    points = list(results.points(session, job_id))
+    points = list(stored_results.points(session, job_id))
     solved = [{**point["axes"], **point["static"]} for point in points if point["static"]]
     failed = [{**point["axes"], "failure": point["failure"]} for point in points if point["failure"]]
-    tables = {name: list(results.rows(session, job_id, name)) for name in ("critical_wind_speeds", "limit_cycles")}
+    tables = {
+        name: list(stored_results.rows(session, job_id, name)) for name in ("critical_wind_speeds", "limit_cycles")
+    }
     return {"static": solved, "failures": failed, **tables}

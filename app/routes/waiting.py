@@ -8,9 +8,9 @@ from uuid import UUID
 import anyio
 from fastapi import Depends, Header, Request
 
-from app.auth import Caller
-from app.observe import BatchSeen, JobSeen
-from app.watch import Watch
+from app.coalescing.shared_watch import Watch
+from app.jobs.watched_states import BatchSeen, JobSeen
+from app.security.caller import Caller
 
 _WAIT = re.compile(r'(?:^|,)\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=[,;]|$)', re.IGNORECASE)
 APPLIED_HEADER: dict[str, Any] = {

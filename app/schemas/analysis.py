@@ -7,7 +7,7 @@ from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic.functional_validators import PlainValidator
 from pydantic_core import PydanticCustomError
 
-from app.examples import example
+from app.reference.source_lines import example
 from app.schemas.fields import Document, quantity
 from app.schemas.line import Line
 from app.schemas.placement import EXAMPLE as PLACEMENT

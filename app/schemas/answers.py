@@ -6,7 +6,7 @@ from uuid import UUID
 
 from pydantic import ConfigDict, Field
 
-from app.examples import example
+from app.reference.source_lines import example
 from app.schemas.fields import Answer, example_of, told
 from app.schemas.rows import (
     Bifurcation,

@@ -6,7 +6,7 @@ from uuid import UUID
 
 from pydantic import Field
 
-from app.examples import example
+from app.reference.source_lines import example
 from app.schemas.analysis import Analysis
 from app.schemas.answers import Link, Status, TableName
 from app.schemas.fields import Answer, Document, Label, example_of, told

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from app.examples import example
+from app.reference.source_lines import example
 from app.schemas.fields import ICED_MASS, ON_SPAN, Document, quantity
 from app.schemas.measured import MeasuredCoefficients
 

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from app.examples import example
+from app.reference.source_lines import example
 from app.schemas.devices import Device
 from app.schemas.environment import Damping, Ice, Wind
 from app.schemas.fields import ICED_MASS, LENGTH_LIMIT_M, Document, Label, TagKey, quantity

@@ -7,7 +7,7 @@ from uuid import UUID
 from sqlalchemy import BigInteger, CheckConstraint, ForeignKey, Index, Integer, String, Text
 from sqlalchemy.orm import Mapped, mapped_column, relationship
 
-from app import correlation
+from app.runtime import correlation
 from app.tables.base import Base, FailureKind, JobEventKind, JobStatus
 
 

@@ -12,9 +12,9 @@ from app.tables.base import Base
 class PointRow(Base):
     """One point of a study, or one line of a chunk under its number; a job without a study has the one point 0.
 
-    tables and orbits are JSON compressed by Zstandard (`app.results`), null for a point that failed. Lines of a batch
-    are ranked by what stands in an index with it. What is found of a line is found again by input_hash (`app.reuse`);
-    it is null for points of a study.
+    tables and orbits are JSON compressed by Zstandard (`app.storage.stored_results`), null for a point that failed.
+    Lines of a batch are ranked by what stands in an index with it. The result of a line is found again by input_hash
+    (`app.jobs.reuse`); it is null for points of a study.
     """
 
     __tablename__ = "results"

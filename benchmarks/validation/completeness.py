@@ -14,11 +14,11 @@ from benchmarks.models import discretized, hybrid_models, plain_rate
 from benchmarks.starts import LEVELS, LONGEST, LOOPS, MIXES, WINDS, Case, Ends, ends
 from benchmarks.validation.common import table
 from engine.arrays import FloatArray
-from engine.direct_starts import spread_starts
-from engine.hybrid import take
+from engine.checks.direct_starts import spread_starts
+from engine.checks.settled_motion import STEPS, Runs, advanced, flow
+from engine.models.reduced_model import take
 from engine.outcome import Outcome
 from engine.result import LimitCycleRow, Orbit, Result
-from engine.settling import STEPS, Runs, advanced, flow
 from engine.spec import Analysis, Line, Model
 
 SEED, LINES = 20261122, 96
@@ -195,10 +195,10 @@ def section() -> Iterator[str]:
         f"{len(found.cases)} cases of the hybrid model. Each is integrated from {found.starts // len(found.cases)} "
         f"starts, vertical, horizontal, torsional and mixed, of random phases and four sizes, up to {LEVELS[-1]:g} rad "
         f"of torsion or turn of the wind, for at most {LONGEST} blocks of fifty of the shortest periods. The method "
-        f"(engine/settling.py) is within {integration_error(lines[:COMPARED_LINES], SEED):.0e} of DOP853 after "
-        f"{COMPARED} periods from starts of {LEVELS[-2]:g} rad. Two motions are one if their sizes by direction and "
-        f"those of their velocities differ by less than {SAME:.0%}; the largest difference of an attractor from the "
-        f"motion reported for it is {_worst(found):.2%}.\n"
+        f"(engine/checks/settled_motion.py) is within {integration_error(lines[:COMPARED_LINES], SEED):.0e} of DOP853 "
+        f"after {COMPARED} periods from starts of {LEVELS[-2]:g} rad. Two motions are one if their sizes by direction "
+        f"and those of their velocities differ by less than {SAME:.0%}; the largest difference of an attractor from "
+        f"the motion reported for it is {_worst(found):.2%}.\n"
     )
     yield table(["", "number"], list(_counts(found)))
     missed = [a for a in found.attractors if a.verdict is not Verdict.REPORTED]

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 from benchmarks.lines import source_line
 from benchmarks.validation.common import SUBCONDUCTORS, table
-from engine.placement import place
 from engine.result import Result
 from engine.spec import Analysis, Model, Objective, PendulumChoice, Placement
+from engine.studies.placement import place
 
 ASKED = Analysis(models=(Model.HYBRID,), wind_speeds=(4.0,))
 CHOICE = PendulumChoice(2, (10.0, 115.0), (5.0, 20.0), (0.2, 0.5))

@@ -8,9 +8,10 @@ from benchmarks.engine_speed import found_cycles
 from benchmarks.lines import source_line
 from benchmarks.models import discretized, hybrid_models
 from benchmarks.validation.common import WINDS, table
-from engine.harmonic import half_peak_to_peak, pick, states
-from engine.hybrid import observation, take
-from engine.integrate import integrate
+from engine.checks.time_integration import integrate
+from engine.cycles.harmonic_balance import half_peak_to_peak, pick, states
+from engine.models.discretization import observation
+from engine.models.reduced_model import take
 
 CYCLES = 300
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.lines import source_line
 from benchmarks.validation.common import ROOT, SUBCONDUCTORS, result, table
-from engine.harmonic import fourier
+from engine.cycles.harmonic_balance import fourier
 from engine.result import LimitCycleRow, Result
 from engine.spec import Analysis, LongitudinalInertia, LoopCompetition, Model
 

@@ -11,17 +11,17 @@ from scipy.integrate import solve_ivp
 from benchmarks.lines import random_line, source_line
 from benchmarks.models import discretized, hybrid_models
 from benchmarks.validation.common import table
-from engine import polynomial
 from engine.arrays import FloatArray
-from engine.bifurcations import Kind, bifurcations
-from engine.cycles import explicit_starts, find_cycles
-from engine.hybrid import ReducedModel, take
+from engine.cycles.bifurcations import Kind, bifurcations
+from engine.cycles.search import explicit_starts, find_cycles
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel, take
+from engine.numerics import polynomial
 from engine.outcome import Stability
-from engine.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
 from engine.spec import Line, Span, TorusSearch
-from engine.stability import critical_wind_speeds
-from engine.torus import Tori, states
-from engine.torus_lines import base_frequencies
+from engine.tori.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
+from engine.tori.spectrum import base_frequencies
+from engine.tori.two_frequency_balance import Tori, states
 
 SEED = 19
 LINES = 200

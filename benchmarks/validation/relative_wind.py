@@ -10,13 +10,15 @@ from benchmarks.lines import source_line
 from benchmarks.models import discretized
 from benchmarks.validation.common import SUBCONDUCTORS, WINDS, percent, result, table
 from engine.arrays import FloatArray
-from engine.cycles import explicit_starts, find_cycles
-from engine.harmonic import Orbits, half_peak_to_peak, pick, states
-from engine.hybrid import Discretization, ReducedModel, hybrid_model, observation, take, with_published_load
-from engine.modes import at_points, directional_shapes
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, pick, states
+from engine.cycles.search import explicit_starts, find_cycles
+from engine.mechanics.modes import at_points, directional_shapes
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.discretization import Discretization, observation
+from engine.models.hybrid import hybrid_model, with_published_load
+from engine.models.reduced_model import ReducedModel, take
 from engine.result import LimitCycleRow
 from engine.spec import AerodynamicModel, Analysis, Line, Model
-from engine.stability import critical_wind_speeds
 
 DRAG_AT_REST = 1.0
 OTHER_DRAGS = (0.5, 1.5)

@@ -9,7 +9,7 @@ from scipy.special import ellipk
 
 from benchmarks.lines import source_line
 from benchmarks.validation.common import percent, result, table
-from engine.profile import GRAVITY, static_profile
+from engine.mechanics.static_profile import GRAVITY, static_profile
 from engine.result import Result
 from engine.spec import Analysis, Line, Model, StaticTwist
 

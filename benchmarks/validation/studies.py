@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from app import convert, plots
-from app.examples import EXAMPLE_NAMES
 from app.plots.studies import curves
-from app.studies import study_request
+from app.reference.source_lines import EXAMPLE_NAMES
+from app.reference.source_studies import study_request
 from benchmarks.validation.common import ROOT, table
 from benchmarks.validation.statements import (
     BUNDLES,

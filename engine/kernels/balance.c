@@ -1,4 +1,4 @@
-/* The equations of the harmonic balance and their slopes. engine/harmonic.py, theory section 7.2.
+/* The equations of the harmonic balance and their slopes. engine/cycles/harmonic_balance.py, theory section 7.2.
  *
  * A product of the load's gradient g(tau) with a Fourier basis needs only the harmonics of g up to 2 H, since
  * 2 cos a cos b = cos(a - b) + cos(a + b) and so on: blocks of the Jacobian are sums of Toeplitz and Hankel matrices. */

@@ -1,4 +1,4 @@
-/* The scalar equation of the explicit first harmonic. engine/describing.py, theory section 7.1. */
+/* The scalar equation of the explicit first harmonic. engine/cycles/first_harmonic.py, theory section 7.1. */
 #include "kernels.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Monodromy matrices by Magnus' method of fourth order, two Gauss points a step. engine/floquet.py, theory section 7.3.
+/* Monodromy matrices by Magnus' method of fourth order, two Gauss points a step. engine/cycles/floquet.py, theory section 7.3.
  *
  * Each lane follows a stretch of the period of its own, so that matrix products run side by side. */
 #include "kernels.h"

@@ -23,7 +23,7 @@ typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned
 #define WITHIN static inline
 #endif
 
-/* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U), laid out as engine.hybrid.ReducedModel:
+/* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U), laid out as engine.models.reduced_model.ReducedModel:
  * mass, damping, stiffness (m, m); forms (points, local, 2 m); table (points, m, monomials);
  * slopes (points, m, local, lower monomials). */
 typedef struct {
@@ -45,7 +45,7 @@ void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradie
  * if a pivot vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
 int eliminate(int n, double **rows, int sides, double *sizes, double *x);
 
-/* What Newton's method is told, engine.newton.Options. */
+/* What Newton's method is told, engine.numerics.newton.Options. */
 typedef struct {
     double tolerance, largest_step;
     int iterations;
@@ -96,7 +96,7 @@ typedef struct {
 /* Integrate the linearized equations over one period; return 0 if memory is short. Theory section 7.3. */
 int integrate_monodromies(const Model *stack, const Monodromies *wanted);
 
-/* Starts whose motions are integrated directly, laid out as engine.settling.Flow with the starts on the last axis:
+/* Starts whose motions are integrated directly, laid out as engine.checks.settled_motion.Flow with the starts on the last axis:
  * half (2 m, 2 m), bend (points, m, monomials of degree 2 and 3), forms (points, local, 2 m), angle (2 m) and step of each.
  * One step is taken for every entry of window (steps), which weighs the squares that are summed up. state (2 m) is moved
  * on; square (2 m) and largest, the largest square of the angle of attack, are of the states after each step. */
@@ -111,7 +111,7 @@ typedef struct {
 int integrate_flows(const Flows *flows);
 
 /* Where the explicit first harmonic is wanted: polynomials (members, 4, 7) and statics (members, 3) as in
- * engine.describing; member, angle (count); even, square (count, 2). */
+ * engine.cycles.first_harmonic; member, angle (count); even, square (count, 2). */
 typedef struct {
     ptrdiff_t count;
     const ptrdiff_t *member;

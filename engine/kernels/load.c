@@ -1,4 +1,4 @@
-/* The load: cubic polynomials in linear forms of (q, q'/U), summed over points. engine/aerodynamics.py, theory section 5. */
+/* The load: cubic polynomials in linear forms of (q, q'/U), summed over points. engine/models/aerodynamic_load.py, theory section 5. */
 #include "monomials.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* The module engine._kernels: arrays come in as buffers, whose item and length are checked before use. */
+/* The module engine.kernels._kernels: arrays come in as buffers, whose item and length are checked before use. */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 #include <string.h>

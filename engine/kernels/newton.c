@@ -1,4 +1,4 @@
-/* Newton's method on harmonic balances, one cycle after another. engine/harmonic.py, theory section 7.2. */
+/* Newton's method on harmonic balances, one cycle after another. engine/cycles/harmonic_balance.py, theory section 7.2. */
 #include "balance.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Direct integration of starts side by side, LANES at a time: Lawson's form of the Runge-Kutta method of fourth order.
- * engine/settling.py. */
+ * engine/checks/settled_motion.py. */
 #include "monomials.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any
 
-from app.examples import example
+from app.reference.source_lines import example
 
 COEFFICIENTS = example("c11-twin")["ice"]["aerodynamics"]
 FULL_LINE: dict[str, Any] = {

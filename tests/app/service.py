@@ -12,8 +12,9 @@ import httpx
 import uvicorn
 
 from app.main import create_app
-from app.serve import HTTP, migrate
-from app.settings import Settings
+from app.runtime.settings import Settings
+from app.serve import HTTP
+from app.storage.migration import migrate
 from tests.documents import short_request
 from tests.servers import wait_until
 from worker.execute import run_job

@@ -1,50 +1,34 @@
 """What a request and a line cost in statements and messages: counts, which no clock and no machine changes."""
 
-import contextlib
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from unittest import mock
 from uuid import UUID
 
 import pytest
-from sqlalchemy import Engine, event
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batch_results, batches, convert, jobs, leases, submissions
-from app.auth import LOCAL
+from app import convert
+from app.batches import batch_records, line_results
+from app.batches.intake import Incoming, Receipt, receive
+from app.coalescing.grouped_calls import committed_together
 from app.convert import PointResult
-from app.examples import example
-from app.groups import committed_together
-from app.intake import Incoming, Receipt, receive
-from app.jobs import Draft, Submission
+from app.jobs import job_records, leases, submissions
+from app.jobs.job_records import Draft, Submission
+from app.jobs.submissions import Order
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
 from app.schemas import JobRequest
-from app.settings import Settings
-from app.submissions import Order
+from app.security.caller import LOCAL
 from engine import clearance, spec
 from tests.app.lines import SHORT, changed
 from tests.documents import create_job, point_result, short_request
+from tests.statements import counted
 
 LINES = 400
-
-
-@contextlib.contextmanager
-def counted() -> Iterator[list[str]]:
-    """Give a list that gathers the statements of every engine, COPY apart, which is the driver's own."""
-    statements: list[str] = []
-
-    def note(_connection: Any, _cursor: Any, statement: str, *_: Any) -> None:
-        if not statement.startswith("BEGIN"):  # on PostgreSQL the driver sends it along with the first statement
-            statements.append(statement)
-
-    event.listen(Engine, "before_cursor_execute", note)
-    try:
-        yield statements
-    finally:
-        event.remove(Engine, "before_cursor_execute", note)
 
 
 def test_posts_that_come_together_are_as_few_statements_as_one(
@@ -75,7 +59,7 @@ def test_looks_at_jobs_are_two_statements_however_many_come_together(sessions: s
         made = [create_job(session, LOCAL, short_request(), tags={"n": str(n)}).id for n in range(40)]
     for ids in (made[:1], made):
         with counted() as statements:
-            found = jobs.look_up(sessions, ids)
+            found = job_records.look_up(sessions, ids)
         assert [job and job.id for job in found] == ids
         assert len(statements) == 2
         assert not any("document" in text for text in statements)
@@ -93,7 +77,7 @@ def test_a_batch_is_a_few_statements_and_a_message_for_hundreds_of_lines(
             work_off(sessions, chunk_id)
     assert len(statements) <= 10 * len(receipt.chunk_ids)
     with sessions() as session, counted() as statements:
-        assert len(list(batch_results.documents(session, receipt.batch_id))) == LINES
+        assert len(list(line_results.documents(session, receipt.batch_id))) == LINES
     assert len(statements) <= 1 + LINES // 100
 
 
@@ -120,7 +104,7 @@ def work_off(sessions: sessionmaker[Session], chunk_id: UUID) -> None:
     with sessions.begin() as session:
         held = leases.claim(session, chunk_id, "here", 60.0)
         assert held is not None and held.batch_id is not None
-        _, lines = batches.lines_of_chunk(session, held.job_id, held.batch_id)
+        _, lines = batch_records.lines_of_chunk(session, held.job_id, held.batch_id)
     points: list[PointResult] = [point_result(line.number) for line in lines]
     with sessions.begin() as session:
         assert leases.finish(session, held, points)

@@ -7,7 +7,7 @@ import pytest
 from pydantic import BaseModel
 
 from app import convert, schemas
-from app.export import PARQUET
+from app.export.formats import PARQUET
 from app.main import create_app
 from app.schemas import aerodynamics, answers, batch, clearance, reference, rows
 from tests.app import service

@@ -7,7 +7,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from app import schemas
-from app.examples import EXAMPLE_NAMES, example
+from app.reference.source_lines import EXAMPLE_NAMES, example
 from app.schemas import aerodynamics, answers, batch, clearance, reference, rows
 from app.schemas.fields import Answer
 

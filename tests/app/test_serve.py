@@ -13,11 +13,11 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.serve import migrate
-from app.settings import Settings
+from app.runtime.settings import Settings
+from app.storage.migration import migrate
 from tests.app.lines import SHORT
 from tests.documents import short_request
-from tests.e2e.test_serve import is_ready, serving, submit, wait_for
+from tests.embedded import is_ready, serving, submit, wait_for
 from tests.processes import children, running
 from tests.servers import free_port, wait_until
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from app.examples import example
+from app.reference.source_lines import example
 from engine.outcome import Outcome
 
 Json = dict[str, Any]

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from tests.documents import hasty_settings
-from tests.e2e.test_serve import serving
+from tests.embedded import serving
 from tests.servers import free_port
 
 PAGE = Path(__file__).parents[2] / "docs" / "client.md"

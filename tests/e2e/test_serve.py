@@ -1,22 +1,21 @@
 """`galloping serve` as a whole: the job by HTTP, a clean end, and a start after everything was killed."""
 
-import contextlib
 import json
 import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 from uuid import UUID
 
 import httpx
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.db import make_engine, session_factory
-from app.settings import Settings
+from app.runtime.settings import Settings
+from app.storage.database import make_engine, session_factory
 from tests.documents import hasty_settings, history, long_request, short_request
-from tests.processes import Process, group, kill_group, running
+from tests.embedded import serving, status, submit, wait_for
+from tests.processes import group, kill_group, running
 from tests.servers import free_port, wait_until
 
 
@@ -32,37 +31,6 @@ def sessions(settings: Settings) -> Iterator[sessionmaker[Session]]:
     engine = make_engine(settings)
     yield session_factory(engine)
     engine.dispose()
-
-
-@contextlib.contextmanager
-def serving(settings: Settings, port: int) -> Iterator[tuple[Process, httpx.Client]]:
-    arguments = ["serve", "--port", str(port), "--data-dir", str(settings.data_dir)]
-    address = f"http://127.0.0.1:{port}"
-    with running(settings, "-m", "app.cli", *arguments) as process, httpx.Client(base_url=address) as client:
-        wait_until(lambda: is_ready(client), 60.0, "readiness")
-        yield process, client
-
-
-def is_ready(client: httpx.Client) -> bool:
-    try:
-        return client.get("/health/ready").status_code == 200
-    except httpx.TransportError:
-        return False
-
-
-def submit(client: httpx.Client, document: dict[str, Any]) -> str:
-    answer = client.post("/v1/jobs", json=document)
-    assert answer.status_code == 202, answer.text
-    return answer.headers["Location"]
-
-
-def status(client: httpx.Client, location: str) -> dict[str, Any]:
-    found: dict[str, Any] = client.get(location).raise_for_status().json()
-    return found
-
-
-def wait_for(client: httpx.Client, location: str, state: str) -> None:
-    wait_until(lambda: status(client, location)["status"] == state, 90.0, state)
 
 
 def test_job_by_http_and_a_clean_end(settings: Settings, sessions: sessionmaker[Session]) -> None:

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from benchmarks.validation.quasi_periodic import SEED, drawn
-from engine.bifurcations import bifurcations
-from engine.cycles import energy_starts, find_cycles
-from engine.hybrid import ReducedModel, take
+from engine.cycles.bifurcations import bifurcations
+from engine.cycles.search import energy_starts, find_cycles
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
-from engine.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
 from engine.spec import Line, Model, TorusSearch
-from engine.stability import critical_wind_speeds
+from engine.tori.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
 from tests.builders import hybrid, only, run
-from tests.engine.test_torus_branches import followed
+from tests.engine.integrated_tori import followed
 
 # number in the generator, wind speed [m/s], both frequencies [Hz]
 LINES = [(26, 15.0, (0.21635, 0.20902)), (76, 13.0, (0.1692, 0.1523)), (197, 11.0, (0.2439, 0.2298))]

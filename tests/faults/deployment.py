@@ -12,8 +12,8 @@ from typing import Generic, TypeVar
 
 import httpx
 
-from app.serve import migrate
-from app.settings import Settings
+from app.runtime.settings import Settings
+from app.storage.migration import migrate
 from tests.processes import Process, children, group, pool_children, running
 from tests.servers import free_port, postgres_directory, postgres_running, redis_server, wait_until
 

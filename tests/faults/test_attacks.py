@@ -18,12 +18,12 @@ import pytest
 from sqlalchemy import event, inspect, select
 from sqlalchemy.orm import Session
 
-from app import keys
-from app.auth import Scope
-from app.db import make_engine, session_factory
-from app.errors import MEDIA_TYPE
-from app.serve import migrate
-from app.settings import Settings
+from app.http.problems import MEDIA_TYPE
+from app.runtime.settings import Settings
+from app.security import keys
+from app.security.caller import Scope
+from app.storage.database import make_engine, session_factory
+from app.storage.migration import migrate
 from app.tables import Base, Job
 from tests.app import service
 from tests.documents import short_request

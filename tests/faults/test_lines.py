@@ -10,11 +10,11 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from app.settings import Settings
+from app.runtime.settings import Settings
 from tests.app import service, whole_lines
 from tests.app.whole_lines import Json, assert_answers_every_wind, assert_is_named
 from tests.faults import figures
-from tests.faults.test_restarts import SCALE
+from tests.faults.scale import SCALE
 from worker.execute import run_job
 
 JSON = {"Content-Type": "application/json", **service.ANEW}

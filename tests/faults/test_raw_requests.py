@@ -109,7 +109,10 @@ def test_a_sender_who_leaves_is_no_defect(
     with socket.create_connection((client.base_url.host, client.base_url.port or 80)) as connection:
         lines = (f"Content-Type: {media_type}", "Content-Length: 100000")
         connection.sendall((head("/v1/batches", *lines, method="POST") + "{").encode())
-    wait_until(lambda: [record for record in caplog.records if record.name == "app.access"], what="the request's line")
+    wait_until(
+        lambda: [record for record in caplog.records if record.name == "app.http.request_log"],
+        what="the request's line",
+    )
     assert [record for record in caplog.records if record.levelno >= logging.ERROR] == []
 
 

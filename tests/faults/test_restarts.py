@@ -1,6 +1,5 @@
 """Jobs and a batch while workers are killed, and Redis, PostgreSQL and the API are restarted under them."""
 
-import os
 import random
 import statistics
 import time
@@ -17,14 +16,14 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.client import Client
-from app.db import make_engine, session_factory
-from app.examples import example
+from app.reference.source_lines import example
+from app.storage.database import make_engine, session_factory
 from app.tables import BatchItem, Job, JobEvent, JobEventKind, JobStatus, PointRow
 from tests.faults import figures
 from tests.faults.deployment import Deployment, Part, deployed, kill_some_worker
+from tests.faults.scale import SCALE
 from tests.servers import wait_until
 
-SCALE = float(os.environ.get("FAULTS_SCALE", "1"))  # less than 1 for a quick look
 JOBS, LINES, KILLS = (max(least, round(SCALE * whole)) for whole, least in ((1000, 20), (20_000, 200), (32, 8)))
 SEED = 20261122
 POSTERS = 4

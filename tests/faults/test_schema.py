@@ -29,11 +29,11 @@ from schemathesis.specs.openapi.checks import (
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app import keys
-from app.auth import Scope
-from app.db import make_engine, session_factory
 from app.main import create_app
-from app.settings import Settings
+from app.runtime.settings import Settings
+from app.security import keys
+from app.security.caller import Scope
+from app.storage.database import make_engine, session_factory
 from app.tables import Job
 from tests.app import service
 from tests.documents import short_request

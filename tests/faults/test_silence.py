@@ -12,8 +12,8 @@ import redis
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.client import Client
-from app.queue import dispatch
-from app.settings import Settings
+from app.jobs.dispatch import dispatch
+from app.runtime.settings import Settings
 from app.tables import JobStatus
 from tests.documents import add_job, count_points, history, long_request, look, short_request
 from tests.faults import figures

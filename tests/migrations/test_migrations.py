@@ -10,10 +10,10 @@ from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, Inspector, inspect, text
 
-from app.db import make_engine
-from app.processes import environment
-from app.serve import alembic_config, migrate
-from app.settings import Settings
+from app.runtime.processes import environment
+from app.runtime.settings import Settings
+from app.storage.database import make_engine
+from app.storage.migration import alembic_config, migrate
 from app.tables import Base
 
 
@@ -74,7 +74,7 @@ def test_missing_column_would_be_seen(settings: Settings, engine: Engine) -> Non
 
 
 def test_several_at_once_migrate_once(settings: Settings, engine: Engine) -> None:
-    script = "from app.serve import migrate; from app.settings import get_settings; migrate(get_settings())"
+    script = "from app.serve import migrate; from app.runtime.settings import get_settings; migrate(get_settings())"
     commands = [
         subprocess.Popen([sys.executable, "-c", script], env=environment(settings), stderr=subprocess.PIPE)
         for _ in range(4)

@@ -9,10 +9,11 @@ import pytest
 from alembic import command
 from sqlalchemy import Connection, Engine, MetaData, select, text
 
-from app import convert, results
-from app.db import make_engine, session_factory
-from app.serve import alembic_config, migrate
-from app.settings import Settings
+from app import convert
+from app.runtime.settings import Settings
+from app.storage import stored_results
+from app.storage.database import make_engine, session_factory
+from app.storage.migration import alembic_config, migrate
 from app.tables import PointRow
 
 MODEL = {"model": "hybrid", "loops": 1}
@@ -99,10 +100,10 @@ def test_rows_are_the_same_after_packing_and_unpacking(settings: Settings, engin
     migrate(settings)
     with session_factory(engine)() as session:
         for name in convert.TABLES:
-            assert list(results.rows(session, job_id, name)) == TABLES.get(name, [])
-        assert list(results.orbits(session, job_id)) == [{"point": 0, **TABLES["orbits"][0]}]
-        assert [point["failure"] for point in results.points(session, job_id)] == [None, "It overflowed."]
-        found = session.execute(select(*(getattr(PointRow, name) for name in results.PEAKS))).all()
+            assert list(stored_results.rows(session, job_id, name)) == TABLES.get(name, [])
+        assert list(stored_results.orbits(session, job_id)) == [{"point": 0, **TABLES["orbits"][0]}]
+        assert [point["failure"] for point in stored_results.points(session, job_id)] == [None, "It overflowed."]
+        found = session.execute(select(*(getattr(PointRow, name) for name in stored_results.PEAKS))).all()
     assert sorted(map(tuple, found), key=str) == [(2.403, 1.25, None, None), (None,) * 4]
     with engine.begin() as connection:
         command.downgrade(alembic_config(connection), "0003")

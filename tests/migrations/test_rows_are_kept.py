@@ -12,15 +12,18 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, MetaData, select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import idempotency, keys, leases, tallies, webhooks, workers
-from app.auth import LOCAL, Scope
-from app.db import make_engine
-from app.idempotency import Answer, Kept, new_key
-from app.leases import Failure
-from app.serve import alembic_config
-from app.settings import Settings
+from app.jobs import idempotency, leases, webhooks
+from app.jobs.idempotency import Answer, Kept, new_key
+from app.jobs.leases import Failure
+from app.operation import workers
+from app.runtime.settings import Settings
+from app.security import keys
+from app.security.caller import LOCAL, Scope
+from app.storage import counters
+from app.storage.database import make_engine
+from app.storage.migration import alembic_config
 from app.tables import Base, FailureKind
-from tests.app.test_batches import add_batch, claim, run
+from tests.batch_rows import add_batch, claim, run
 from tests.documents import add_job, create_job, point_result
 
 Rows = dict[str, list[dict[str, Any]]]
@@ -54,7 +57,7 @@ def fill(sessions: sessionmaker[Session], settings: Settings) -> None:
     claim(sessions, _open)
     with sessions.begin() as session:
         webhooks.register(session, LOCAL.owner, "https://a.example/hook", batch_id=batch_id)
-        tallies.fold(session)
+        counters.fold(session)
 
 
 def rows(connection: Connection) -> Rows:

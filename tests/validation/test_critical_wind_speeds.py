@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from engine.hybrid import ReducedModel
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel
 from engine.spec import Analysis, DampingModel, Line, LongitudinalInertia
-from engine.stability import critical_wind_speeds
 from tests.builders import finite_element, hybrid, run, source_line, source_line_at_270
 
 # n, loops, first onset [m/s]; the figures are printed to a thousandth, theory asks for half a percent.

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from engine.arrays import FloatArray
-from engine.describing import explicit_cycles
-from engine.floquet import floquet
-from engine.harmonic import Orbits, balance, half_peak_to_peak, residual, resized, states
-from engine.hybrid import ReducedModel, take
-from engine.integrate import integrate
+from engine.checks.time_integration import integrate
+from engine.cycles.first_harmonic import explicit_cycles
+from engine.cycles.floquet import floquet
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, residual, resized, states
+from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
 from engine.spec import Aerodynamics
 from tests.builders import published, source_line

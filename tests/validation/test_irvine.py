@@ -10,9 +10,9 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from engine.arrays import FloatArray
-from engine.fem import FIELDS, THETA, U, V, W
-from engine.modes import directional_shapes
-from engine.profile import static_profile
+from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
+from engine.mechanics.modes import directional_shapes
+from engine.mechanics.static_profile import static_profile
 from engine.spec import Line
 from tests.builders import discretized, tight_line
 

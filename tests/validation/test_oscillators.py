@@ -5,12 +5,12 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine.arrays import FloatArray
-from engine.floquet import Floquet, floquet
-from engine.harmonic import Orbits, balance, fourier, half_peak_to_peak
-from engine.hybrid import ReducedModel, take
-from engine.integrate import integrate
+from engine.checks.time_integration import integrate
+from engine.cycles.floquet import Floquet, floquet
+from engine.cycles.harmonic_balance import Orbits, balance, fourier, half_peak_to_peak
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
-from engine.stability import critical_wind_speeds
 from tests.builders import Oscillators, hand_made
 
 

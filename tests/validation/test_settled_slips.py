@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from engine.mechanics.static_profile import static_profile
 from engine.outcome import Outcome, Stability
-from engine.profile import static_profile
 from engine.spec import Analysis, Line, Span
 from tests.builders import hybrid, run, source_line
 

@@ -12,10 +12,11 @@ from prometheus_client.parser import text_string_to_metric_families
 from sqlalchemy.orm import Session, sessionmaker
 from standardwebhooks import Webhook
 
-from app import keys, webhooks
-from app.auth import Scope
-from app.db import make_engine, session_factory
-from app.settings import Settings
+from app.jobs import webhooks
+from app.runtime.settings import Settings
+from app.security import keys
+from app.security.caller import Scope
+from app.storage.database import make_engine, session_factory
 from tests.app import service
 from tests.app.lines import SHORT
 from tests.documents import short_request

@@ -7,11 +7,13 @@ import pytest
 from sqlalchemy import update
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import convert, jobs, leases, results
-from app.auth import LOCAL
+from app import convert
 from app.convert import Advance, PointResult
+from app.jobs import job_records, leases
+from app.runtime.settings import Settings
 from app.schemas.placement import EXAMPLE
-from app.settings import Settings
+from app.security.caller import LOCAL
+from app.storage import stored_results
 from app.tables import FailureKind, Job, JobStatus
 from tests.documents import (
     add_job,
@@ -34,7 +36,7 @@ def stopped_while_running(
         future = pool.submit(execute, sessions, settings, job_id, "here")
         wait_until(lambda: look(sessions, job_id).progress > 0.0, seconds, "progress")
         with sessions.begin() as session:
-            jobs.cancel(session, LOCAL, job_id)
+            job_records.cancel(session, LOCAL, job_id)
         future.result(seconds)
 
 
@@ -43,7 +45,7 @@ def test_job_is_computed_and_stored(sessions: sessionmaker[Session], settings: S
     run_job(settings, job_id, "here")
     expected = [item for item in convert.run(short_request()) if isinstance(item, PointResult)]
     with sessions() as session:
-        assert list(results.rows(session, job_id, "limit_cycles")) == expected[0].tables["limit_cycles"]
+        assert list(stored_results.rows(session, job_id, "limit_cycles")) == expected[0].tables["limit_cycles"]
     job = look(sessions, job_id)
     assert (job.status, job.engine_version) == (JobStatus.SUCCESSFUL, expected[0].engine_version)
 

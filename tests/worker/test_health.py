@@ -2,7 +2,7 @@ import os
 import time
 from pathlib import Path
 
-from app.settings import Settings
+from app.runtime.settings import Settings
 from worker.health import is_alive, show_life
 
 

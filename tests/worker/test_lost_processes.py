@@ -9,10 +9,11 @@ from uuid import UUID
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import jobs, results
-from app.auth import LOCAL
-from app.queue import dispatch, open_queue
-from app.settings import Settings
+from app.jobs import job_records
+from app.jobs.dispatch import dispatch, open_queue
+from app.runtime.settings import Settings
+from app.security.caller import LOCAL
+from app.storage import stored_results
 from app.tables import FailureKind, JobStatus
 from tests.documents import add_job, count_points, history, long_request, look, short_request
 from tests.processes import Process, busy_child, children, group, kill_group, pool_children, running_worker
@@ -49,7 +50,7 @@ def assert_finished_once(sessions: sessionmaker[Session], job_id: UUID) -> None:
     assert history(sessions, job_id) == FINISHED_AT_SECOND_ATTEMPT
     assert count_points(sessions, job_id) == POINTS
     with sessions() as session:
-        found = [row["span.horizontal_tension_n"] for row in results.rows(session, job_id, "frequencies")]
+        found = [row["span.horizontal_tension_n"] for row in stored_results.rows(session, job_id, "frequencies")]
     (axis,) = long_request(POINTS)["study"]["axes"]
     assert found == [tension for tension in axis["values"] for _ in range(FREQUENCY_ROWS)]
 
@@ -210,7 +211,7 @@ def test_duplicates_are_harmless_and_a_running_job_can_be_cancelled(
         assert wait_for_end(deployed, job_id) is JobStatus.SUCCESSFUL
         wait_for_progress(deployed, stopped)
         with deployed.begin() as session:
-            jobs.cancel(session, LOCAL, stopped)
+            job_records.cancel(session, LOCAL, stopped)
         assert wait_for_end(deployed, stopped) is JobStatus.DISMISSED
         with open_queue(deployment) as queue:
             wait_until(queue.is_empty, what="an empty queue")

@@ -5,11 +5,11 @@ from uuid import UUID, uuid4
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import batches
-from app.auth import LOCAL
-from app.batches import Chunk
-from app.queue import dispatch, dispatch_chunks
-from app.settings import Settings
+from app.batches import batch_records
+from app.batches.batch_records import Chunk
+from app.jobs.dispatch import dispatch, dispatch_chunks
+from app.runtime.settings import Settings
+from app.security.caller import LOCAL
 from app.tables import Job, JobStatus
 from tests.documents import add_job, look, short_request
 from tests.processes import running_worker
@@ -24,12 +24,14 @@ def add_batch(sessions: sessionmaker[Session]) -> list[UUID]:
     request = short_request()
     chunks = [Chunk(uuid4(), number, 1) for number in range(1, CHUNKS + 1)]
     with sessions.begin() as session:
-        batch_id = batches.begin(session, LOCAL, request["analysis"])
+        batch_id = batch_records.begin(session, LOCAL, request["analysis"])
         items = [
             {"batch_id": batch_id, "number": c.part, "chunk_id": c.id, "document": request["line"]} for c in chunks
         ]
-        batches.add_items(session, [{**item, "reference": None, "asset_id": None, "faults": None} for item in items])
-        batches.accept(session, LOCAL, batch_id, chunks, 0, anew=True)
+        batch_records.add_items(
+            session, [{**item, "reference": None, "asset_id": None, "faults": None} for item in items]
+        )
+        batch_records.accept(session, LOCAL, batch_id, chunks, 0, anew=True)
     return [chunk.id for chunk in chunks]
 
 

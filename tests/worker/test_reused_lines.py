@@ -10,11 +10,12 @@ import pytest
 from sqlalchemy import event, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import keys, reuse
-from app.auth import LOCAL, Scope
 from app.convert import ENGINE_VERSION
-from app.examples import example
-from app.settings import Settings
+from app.jobs import reuse
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
+from app.security import keys
+from app.security.caller import LOCAL, Scope
 from app.tables import PointRow
 from tests.app import service
 from tests.app.lines import SHORT, changed

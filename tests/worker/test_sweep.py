@@ -3,9 +3,9 @@ from pathlib import Path
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases
-from app.queue import open_queue
-from app.settings import Settings
+from app.jobs import leases
+from app.jobs.dispatch import open_queue
+from app.runtime.settings import Settings
 from app.tables import JobStatus
 from tests.documents import add_job, look
 from tests.servers import free_port

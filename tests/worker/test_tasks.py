@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from app.processes import ONE_BLAS_THREAD
+from app.runtime.processes import ONE_BLAS_THREAD
 
 
 def printed(script: str) -> str:
@@ -18,7 +18,7 @@ def test_a_job_finds_everything_loaded() -> None:
     script = """
 import sys
 from app import convert
-from app.examples import example
+from app.reference.source_lines import example
 from worker.tasks import load
 load()
 before = set(sys.modules)

@@ -9,9 +9,9 @@ import pandas as pd
 import pytest
 
 from app.client import Client, JobFailed, Refused, ServiceError
-from app.examples import example
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
 from app.schemas import Analysis, Line
-from app.settings import Settings
 from tests.app import service
 from tests.app.lines import changed
 from tests.documents import short_request

@@ -8,7 +8,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 import pytest
 
 from app.client import Client, ServiceError
-from app.examples import example
+from app.reference.source_lines import example
 from app.schemas.answers import JobDocument
 from app.schemas.fields import example_of
 from tests.servers import free_port

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app import convert
-from app.faults import BadInput, Fault
+from app.schemas.faults import BadInput, Fault
 from tests.app.lines import FULL_LINE, changed
 
 

@@ -4,8 +4,8 @@ from typing import Any
 import pytest
 
 from app import convert, schemas
-from app.examples import example
-from app.faults import BadInput
+from app.reference.source_lines import example
+from app.schemas.faults import BadInput
 
 A_Y, A_Z, A_M = (0.2, -0.1667, -4.0547, 8.3581), (1.1, 0.8605, 0.8325, 1.7815), (-0.1, -0.7272, 0.2935, 5.9704)
 

@@ -5,7 +5,7 @@ import pytest
 
 from app import schemas
 from app.convert.assemble import SoundParts, gather
-from app.examples import example
+from app.reference.source_lines import example
 from engine import spec
 from tests.app.lines import COEFFICIENTS, FULL_LINE, changed
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from app import convert
-from app.examples import example
+from app.reference.source_lines import example
 from app.schemas.answers import ResultDocument
 from app.schemas.placement import EXAMPLE
 from app.schemas.rows import PlacedDevice

@@ -4,7 +4,7 @@ import pytest
 
 from app import convert
 from app.convert import Advance, PointResult
-from app.examples import example
+from app.reference.source_lines import example
 from engine.outcome import InvalidSpec
 from tests.app.lines import FULL_LINE, SHORT, changed
 

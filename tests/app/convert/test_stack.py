@@ -6,8 +6,8 @@ import pytest
 import engine.analysis
 from app import convert, schemas
 from app.convert import NumberedLine, PointResult, read_analysis, read_line, run_stack, seconds_a_line
-from app.examples import example
-from app.faults import BadInput
+from app.reference.source_lines import example
+from app.schemas.faults import BadInput
 from engine import spec
 from engine.result import Progress, Result
 from tests.app.lines import FULL_LINE, SHORT, changed, close

@@ -6,7 +6,7 @@ from matplotlib.image import imread
 
 from app import plots
 from app.plots.maps import _quantities, _ticks
-from tests.app.plots.test_studies import NOTHING, study
+from tests.app.plots.drawn_studies import NOTHING, study
 
 AXES = ("span.horizontal_tension_n", "span.length_m")
 

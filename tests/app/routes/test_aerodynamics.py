@@ -2,7 +2,7 @@ import httpx
 import pytest
 
 from app import convert, schemas
-from app.examples import example
+from app.reference.source_lines import example
 from app.routes.reference_documentation import FIT, FIT_REQUEST
 
 ADDRESS = "/v1/aerodynamics/fit"

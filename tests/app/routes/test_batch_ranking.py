@@ -3,11 +3,11 @@ from typing import Any
 import httpx
 import pytest
 
-from app.examples import example
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
 from app.schemas.batch import RankingPage
-from app.settings import Settings
 from tests.app.lines import SHORT, changed
-from tests.app.routes.test_batches import work_off
+from tests.app.routes.worked_off import work_off
 
 TWIN = example("c11-twin")
 LINES = [

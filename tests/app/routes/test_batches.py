@@ -4,22 +4,22 @@ import io
 import json
 from collections.abc import Iterator
 from typing import Any
-from uuid import UUID
 
 import httpx
 import pyarrow.parquet as pq
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases
-from app.examples import example
-from app.export import PARQUET
-from app.leases import Failure
+from app.export.formats import PARQUET
+from app.jobs import leases
+from app.jobs.leases import Failure
 from app.main import create_app
-from app.settings import Settings
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
 from app.tables import FailureKind
 from tests.app import service
 from tests.app.lines import SHORT, changed, close
+from tests.app.routes.worked_off import chunks, work_off
 from worker.execute import run_job
 
 TWIN = example("c11-twin")
@@ -46,18 +46,6 @@ def accepted(client: httpx.Client, lines: list[Any]) -> str:
     answer = post(client, lines)
     assert answer.status_code == 202, answer.text
     return str(answer.headers["location"])
-
-
-def chunks(client: httpx.Client, address: str, status: str = "accepted") -> list[UUID]:
-    query = {"batch_id": address.rpartition("/")[2], "status": status}
-    return [UUID(job["id"]) for job in client.get("/v1/jobs", params=query).json()["jobs"]]
-
-
-def work_off(client: httpx.Client, settings: Settings, address: str) -> dict[str, Any]:
-    for chunk in chunks(client, address):
-        run_job(settings, chunk, "test")
-    status: dict[str, Any] = client.get(address).json()
-    return status
 
 
 def ndjson(client: httpx.Client, address: str) -> list[dict[str, Any]]:

@@ -10,10 +10,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from app.client import Client
-from app.examples import example
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
 from app.schemas import answers
 from app.schemas.placement import EXAMPLE
-from app.settings import Settings
 from tests.app import service
 from worker.execute import run_job
 

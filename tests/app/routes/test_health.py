@@ -10,7 +10,7 @@ from sqlalchemy import text
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.main import create_app
-from app.settings import Settings
+from app.runtime.settings import Settings
 from tests.app import service
 
 

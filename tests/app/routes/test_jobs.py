@@ -7,10 +7,10 @@ from uuid import UUID
 import httpx
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases
-from app.db import make_engine, session_factory
-from app.examples import example
-from app.settings import Settings
+from app.jobs import leases
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
+from app.storage.database import make_engine, session_factory
 from tests.app import service
 from tests.documents import short_request
 

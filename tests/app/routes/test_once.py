@@ -14,11 +14,11 @@ import pytest
 from sqlalchemy import select
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases
-from app.examples import example
-from app.leases import Failure
+from app.jobs import leases
+from app.jobs.leases import Failure
+from app.reference.source_lines import example
 from app.routes.reference_documentation import FIT_REQUESTS
-from app.settings import Settings
+from app.runtime.settings import Settings
 from app.tables import FailureKind, IdempotencyKey
 from tests.app import service
 from tests.app.lines import SHORT

@@ -15,8 +15,8 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.client import Client
-from app.examples import example
-from app.settings import Settings
+from app.reference.source_lines import example
+from app.runtime.settings import Settings
 from app.tables import BatchItem, IdempotencyKey, Job
 from tests.app import service
 from tests.app.lines import SHORT

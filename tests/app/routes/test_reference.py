@@ -1,6 +1,6 @@
 import httpx
 
-from app.field_table import input_fields
+from app.schemas.field_table import input_fields
 from app.schemas.reference import ConductorList, FieldList
 
 

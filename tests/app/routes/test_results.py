@@ -8,12 +8,12 @@ import httpx
 import pyarrow.parquet as pq
 import pytest
 
-from app import leases
-from app.db import make_engine, session_factory
-from app.export import PARQUET
+from app.export.formats import PARQUET
+from app.jobs import leases
+from app.runtime.settings import Settings
 from app.schemas import JobRequest
 from app.schemas.answers import ResultDocument
-from app.settings import Settings
+from app.storage.database import make_engine, session_factory
 from app.tables import FailureKind
 from tests.app import service
 from tests.documents import point_result, short_request

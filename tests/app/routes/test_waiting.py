@@ -11,9 +11,9 @@ import httpx
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
-from app import leases
-from app.leases import Claim, Failure
-from app.settings import Settings
+from app.jobs import leases
+from app.jobs.leases import Claim, Failure
+from app.runtime.settings import Settings
 from app.tables import FailureKind
 from tests.app import service
 from tests.app.lines import SHORT

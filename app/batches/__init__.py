@@ -1,0 +1,1 @@
+"""Many lines under one analysis: intake, records, results line by line, and rankings."""

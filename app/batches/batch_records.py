@@ -1,0 +1,233 @@
+"""Batches as their owner sees them: received in parts, counted, listed, cancelled, resubmitted.
+
+The lines of a batch are worked on in chunks, and a chunk is a job. What state a line is in follows from its chunk and
+from its result, and is written nowhere else. The caller commits the transaction.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import ColumnElement, Select, and_, delete, func, insert, select, tuple_, update
+from sqlalchemy.orm import Session
+from uuid_utils.compat import uuid7
+
+from app.convert import NumberedLine
+from app.jobs import batch_progress
+from app.jobs.job_records import CancelOutcome, input_hash
+from app.runtime import correlation
+from app.security import audit
+from app.security.caller import Caller
+from app.storage import counters
+from app.storage.database import database_time, insert_rows
+from app.tables import AuditAction, Batch, BatchItem, Job, JobEvent, JobEventKind, JobStatus, PointRow
+
+_ABANDONED = timedelta(hours=6)
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Lines of a batch that one message carries: how many there are, and which part of the batch they are."""
+
+    id: UUID
+    part: int
+    lines: int
+
+
+def begin(session: Session, caller: Caller, analysis: dict[str, Any]) -> UUID:
+    """Add a batch that nobody sees until `accept` is called, and return its id."""
+    batch = Batch(id=uuid7(), owner=caller.owner, created_at=database_time(session), analysis=analysis)
+    session.add(batch)
+    session.flush()
+    return batch.id
+
+
+def add_items(session: Session, items: Sequence[dict[str, Any]]) -> None:
+    """Add lines, each a mapping with the columns of `BatchItem`."""
+    if items:
+        insert_rows(session, BatchItem, items)
+
+
+def accept(
+    session: Session,
+    caller: Caller,
+    batch_id: UUID,
+    chunks: Sequence[Chunk],
+    rejected_lines: int,
+    *,
+    anew: bool = False,
+) -> None:
+    """Make a batch visible whose lines are all stored, with its chunks waiting for workers.
+
+    With `anew` they are computed even if their results are stored already.
+    """
+    now = database_time(session)
+    received = update(Batch).where(Batch.id == batch_id).values(received_at=now, rejected_lines=rejected_lines)
+    session.execute(received)
+    _add_chunks(session, caller, batch_id, chunks, now, anew=anew)
+    lines = sum(chunk.lines for chunk in chunks)
+    audit.record(session, caller, AuditAction.BATCH_SUBMITTED, batch_id, f"{lines} lines", at=now)
+
+
+def discard(session: Session, batch_id: UUID) -> None:
+    """Remove a batch that was not accepted, with its lines."""
+    session.execute(delete(Batch).where(Batch.id == batch_id))
+
+
+def discard_abandoned(session: Session) -> int:
+    """Remove batches whose receiver died hours ago, and return how many there were."""
+    abandoned = Batch.created_at < database_time(session) - _ABANDONED
+    statement = delete(Batch).where(Batch.received_at.is_(None), abandoned).returning(Batch.id)
+    return len(session.scalars(statement).all())
+
+
+def get(session: Session, owner: str, batch_id: UUID) -> Batch | None:
+    """Return a batch that is wholly received, or None if the owner has none of that id."""
+    return session.scalars(_of(owner, batch_id)).one_or_none()
+
+
+def page(session: Session, owner: str, after: tuple[datetime, UUID] | None, limit: int) -> list[Batch]:
+    """Return the owner's newest batches, or those that follow `after`, the (created_at, id) of the last."""
+    statement = select(Batch).where(Batch.owner == owner, Batch.received_at.is_not(None))
+    if after is not None:
+        statement = statement.where(tuple_(Batch.created_at, Batch.id) < after)
+    return list(session.scalars(statement.order_by(Batch.created_at.desc(), Batch.id.desc()).limit(limit)))
+
+
+def outcome(session: Session, batch_id: UUID) -> str:
+    """Return what the results of a batch that has ended depend on: its chunks, and how each of them ended."""
+    columns = Job.id, Job.status, Job.engine_version, Job.finished_at, Job.lines, Job.failed_lines
+    statement = select(*columns).where(Job.batch_id == batch_id).order_by(Job.id)
+    return hashlib.sha256(repr(session.execute(statement).all()).encode()).hexdigest()
+
+
+def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
+    """End what is queued at once and ask what is running to stop; remove a batch that has ended, with its results."""
+    if _locked(session, caller.owner, batch_id) is None:
+        return CancelOutcome.MISSING
+    before = batch_progress.counts(session, [batch_id])[batch_id]
+    if not before.accepted + before.running:
+        session.execute(delete(Job).where(Job.batch_id == batch_id))
+        session.execute(delete(Batch).where(Batch.id == batch_id))
+        audit.record(session, caller, AuditAction.BATCH_REMOVED, batch_id)
+        return CancelOutcome.REMOVED
+    # Locked first, so that no chunk can pass from one state to the other between the two changes.
+    still_open = Job.batch_id == batch_id, Job.status.in_((JobStatus.ACCEPTED, JobStatus.RUNNING))
+    session.execute(select(Job.id).where(*still_open).order_by(Job.id).with_for_update())
+    _dismiss_waiting(session, batch_id)
+    running = _ask_running(session, batch_id)
+    audit.record(session, caller, AuditAction.BATCH_CANCELLED, batch_id)
+    return CancelOutcome.REQUESTED if running else CancelOutcome.DISMISSED
+
+
+def resubmit(session: Session, caller: Caller, batch_id: UUID, chunk_lines: int) -> list[UUID]:
+    """Put the lines that failed into new chunks, and return the ids of these; none if nothing has failed.
+
+    Their numbers stay, and what an earlier attempt has stored of the others is not touched.
+    """
+    if _locked(session, caller.owner, batch_id) is None:
+        return []
+    numbers = _failed_numbers(session, batch_id)
+    old = list(session.scalars(select(Job).where(*_has_failures(batch_id))))
+    for job in old:
+        job.lines, job.failed_lines = (job.lines or 0) - (job.failed_lines or 0), 0
+    session.flush()
+    parts = session.scalar(select(func.count()).select_from(Job).where(Job.batch_id == batch_id)) or 0
+    chunks: list[Chunk] = []
+    for first in range(0, len(numbers), chunk_lines):
+        moved = numbers[first : first + chunk_lines]
+        chunks.append(Chunk(uuid7(), parts + len(chunks) + 1, len(moved)))
+        belongs = BatchItem.batch_id == batch_id, BatchItem.number.in_(moved)
+        session.execute(update(BatchItem).where(*belongs).values(chunk_id=chunks[-1].id))
+    _add_chunks(session, caller, batch_id, chunks, database_time(session))
+    if chunks:
+        audit.record(session, caller, AuditAction.BATCH_RESUBMITTED, batch_id, f"{len(numbers)} lines")
+    return [chunk.id for chunk in chunks]
+
+
+def lines_of_chunk(session: Session, job_id: UUID, batch_id: UUID) -> tuple[dict[str, Any], list[NumberedLine]]:
+    """Return what a worker needs for a chunk: the analysis of the batch, and the lines by number."""
+    analysis = session.scalars(select(Batch.analysis).where(Batch.id == batch_id)).one()
+    statement = select(BatchItem.number, BatchItem.document).where(BatchItem.chunk_id == job_id)
+    rows = session.execute(statement.order_by(BatchItem.number))
+    return analysis, [NumberedLine(number, document or {}) for number, document in rows]
+
+
+def _of(owner: str, batch_id: UUID) -> Select[Batch]:
+    return select(Batch).where(Batch.id == batch_id, Batch.owner == owner, Batch.received_at.is_not(None))
+
+
+def _locked(session: Session, owner: str, batch_id: UUID) -> Batch | None:
+    """Return a batch and lock its row, so that two changes of the whole wait for each other."""
+    return session.scalars(_of(owner, batch_id).with_for_update()).one_or_none()
+
+
+def _has_failures(batch_id: UUID) -> tuple[ColumnElement[bool], ...]:
+    ended = Job.status.in_((JobStatus.SUCCESSFUL, JobStatus.FAILED))
+    return Job.batch_id == batch_id, ended, Job.failed_lines > 0
+
+
+def _failed_numbers(session: Session, batch_id: UUID) -> list[int]:
+    """Return the numbers of the lines whose chunk has ended without a result of theirs."""
+    solved = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number, PointRow.failure.is_(None))
+    statement = (
+        select(BatchItem.number)
+        .join(Job, Job.id == BatchItem.chunk_id)
+        .outerjoin(PointRow, solved)
+        .where(BatchItem.batch_id == batch_id, *_has_failures(batch_id), PointRow.job_id.is_(None))
+    )
+    return list(session.scalars(statement.order_by(BatchItem.number)))
+
+
+def _add_chunks(
+    session: Session, caller: Caller, batch_id: UUID, chunks: Sequence[Chunk], now: datetime, *, anew: bool = False
+) -> None:
+    if not chunks:
+        return
+    session.add_all(_as_job(caller, batch_id, chunk, now, anew=anew) for chunk in chunks)
+    session.flush()
+    events = [{"job_id": c.id, "at": now, "kind": JobEventKind.ACCEPTED, "attempt": 0} for c in chunks]
+    session.execute(insert(JobEvent), events)
+
+
+def _as_job(caller: Caller, batch_id: UUID, chunk: Chunk, now: datetime, *, anew: bool) -> Job:
+    document = {"batch_id": str(batch_id), "part": chunk.part, **({"anew": True} if anew else {})}
+    return Job(
+        id=chunk.id,
+        owner=caller.owner,
+        created_at=now,
+        status=JobStatus.ACCEPTED,
+        batch_id=batch_id,
+        document=document,
+        input_hash=input_hash(document),
+        request_id=correlation.request_id(),
+        trace_parent=correlation.trace_parent(),
+        lines=chunk.lines,
+    )
+
+
+def _dismiss_waiting(session: Session, batch_id: UUID) -> None:
+    now = database_time(session)
+    waiting = Job.batch_id == batch_id, Job.status == JobStatus.ACCEPTED
+    statement = update(Job).where(*waiting).values(status=JobStatus.DISMISSED, finished_at=now)
+    dismissed = session.execute(statement.returning(Job.id, Job.attempt)).all()
+    _record(session, dismissed, JobEventKind.DISMISSED, now)
+    counters.add_end(session, JobStatus.DISMISSED, chunk=True, count=len(dismissed))
+
+
+def _ask_running(session: Session, batch_id: UUID) -> bool:
+    """Ask the running chunks to stop; tell whether there are any, asked now or before."""
+    now = database_time(session)
+    running = Job.batch_id == batch_id, Job.status == JobStatus.RUNNING
+    statement = update(Job).where(*running, Job.cancel_requested.is_(False)).values(cancel_requested=True)
+    _record(session, session.execute(statement.returning(Job.id, Job.attempt)), JobEventKind.CANCEL_REQUESTED, now)
+    return session.execute(select(Job.id).where(*running).limit(1)).first() is not None
+
+
+def _record(session: Session, found: Any, kind: JobEventKind, now: datetime) -> None:
+    events = [{"job_id": job_id, "at": now, "kind": kind, "attempt": attempt} for job_id, attempt in found]
+    if events:
+        session.execute(insert(JobEvent), events)

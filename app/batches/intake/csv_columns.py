@@ -1,0 +1,106 @@
+"""CSV columns with dotted field names -> line documents: `span.length_m`, `ice.aerodynamics.vertical.0`, `tags.kv`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from app.schemas.faults import BadInput, Fault, json_pointer, parse_json
+
+_MOST_COLUMNS = 500
+_MOST_TOKENS = 8
+_MOST_ITEMS = 200
+_TEXTS = frozenset({"reference", "name", "asset_id", "tags"})
+
+Path = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """Where the cell of each column belongs in the document of a line."""
+
+    paths: tuple[Path, ...]
+
+    @classmethod
+    def of(cls, header: Sequence[str]) -> "Columns":
+        """Take the names in the header.
+
+        Raises
+        ------
+        BadInput
+            If there is none, or one is empty, comes twice, or lies within another.
+        """
+        if not 1 <= len(header) <= _MOST_COLUMNS:
+            detail = f"a header of 1 to {_MOST_COLUMNS} field names is needed, got {len(header)}"
+            raise BadInput([Fault("/header", "csv_header", detail)])
+        paths = [_path(name.strip()) for name in header]
+        faults = [_fault(place, header[place], why) for place, why in enumerate(_wrong(paths)) if why]
+        if faults:
+            raise BadInput(faults)
+        return cls(tuple(paths))
+
+    def document(self, row: Sequence[str]) -> Any:
+        """Return the document of a row, or a `BadInput` if it has other columns than the header."""
+        if len(row) != len(self.paths):
+            detail = f"the row has {len(row)} cells, the header {len(self.paths)}"
+            return BadInput([Fault("", "csv_row", detail)])
+        document: dict[str | int, Any] = {}
+        for path, cell in zip(self.paths, row, strict=True):
+            if cell.strip():
+                _put(document, path, _value(path, cell))
+        return _with_lists(document)
+
+
+def _path(name: str) -> Path:
+    tokens = name.split(".")
+    if tokens[0] == "tags":  # a key of a tag may hold dots
+        return ("tags", name.partition(".")[2])
+    return tuple(int(token) if token.isdecimal() and token.isascii() else token for token in tokens)
+
+
+def _wrong(paths: Sequence[Path]) -> list[str]:
+    """Say of each column what is wrong with its name; an empty text if nothing is."""
+    seen: dict[Path, int] = {}
+    for path in paths:
+        seen[path] = seen.get(path, 0) + 1
+    inner = {path[:depth] for path in seen for depth in range(1, len(path))}
+    return [_why(path, seen[path], path in inner) for path in paths]
+
+
+def _why(path: Path, times: int, holds_others: bool) -> str:
+    if "" in path or isinstance(path[0], int) or len(path) > _MOST_TOKENS:
+        return "is no dotted field name"
+    if any(isinstance(token, int) and token >= _MOST_ITEMS for token in path):
+        return f"names an item beyond the {_MOST_ITEMS}th"
+    if times > 1:
+        return "comes twice"
+    return "is given whole and in parts" if holds_others else ""
+
+
+def _fault(place: int, name: str, why: str) -> Fault:
+    return Fault(json_pointer(["header", place]), "csv_header", f"column {name[:100]!r} {why}")
+
+
+def _put(document: dict[str | int, Any], path: Path, value: object) -> None:
+    for token in path[:-1]:
+        document = document.setdefault(token, {})
+    document[path[-1]] = value
+
+
+def _value(path: Path, cell: str) -> object:
+    """Return a text as it is; what else is JSON as its value; a word, or what is neither, for the schema to judge."""
+    if path[0] in _TEXTS:
+        return cell
+    try:
+        return parse_json(cell.strip().encode())
+    except BadInput:
+        return cell.strip()
+
+
+def _with_lists(node: Any) -> Any:
+    """Turn what is named by numbers into lists; an item that is left out is null."""
+    if not isinstance(node, dict):
+        return node
+    inner = {key: _with_lists(value) for key, value in node.items()}
+    if inner and all(isinstance(key, int) for key in inner):
+        return [inner.get(number) for number in range(max(inner) + 1)]
+    return {str(key): value for key, value in inner.items()}

@@ -1,0 +1,180 @@
+"""Lines are checked one by one and stored block by block; the batch is seen by others when the last one is stored.
+
+No transaction lasts longer than a block, so that a slow sender holds up nobody.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any
+from uuid import UUID
+
+from pydantic import TypeAdapter, ValidationError
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session, sessionmaker
+from uuid_utils.compat import uuid7
+
+from app import convert, schemas
+from app.batches import batch_records
+from app.batches.batch_records import Chunk
+from app.batches.intake.body_formats import Incoming
+from app.runtime.settings import Settings
+from app.schemas.faults import MOST_FAULTS, BadInput, Fault
+from app.schemas.fields import Label
+from app.security.caller import Caller
+
+_LINES_A_BLOCK = 500
+_FAULTS_A_LINE = 20
+_LABEL: TypeAdapter[str] = TypeAdapter(Label)
+
+
+@dataclass(frozen=True, slots=True)
+class Receipt:
+    """An accepted batch, and its chunks to be sent to the workers."""
+
+    batch_id: UUID
+    chunk_ids: tuple[UUID, ...]
+
+
+@dataclass(slots=True)
+class _Draft:
+    """What is known of a batch while its lines come in."""
+
+    batch_id: UUID
+    analysis: schemas.Analysis
+    chunk_lines: int
+    atomic: bool
+    chunks: list[Chunk] = field(default_factory=list)
+    taken: int = 0
+    rejected: int = 0
+    faults: list[Fault] = field(default_factory=list)
+
+
+def _nothing(*_: object) -> None:
+    """Take no part."""
+
+
+def receive(
+    sessions: sessionmaker[Session],
+    settings: Settings,
+    caller: Caller,
+    incoming: Incoming,
+    on_accept: Callable[[Session, UUID], object] = _nothing,
+    *,
+    atomic: bool,
+) -> Receipt:
+    """Check and store the lines of a batch, and accept it if any of them can be run; an atomic one only if all can.
+
+    `on_accept` takes part in the transaction that accepts the batch; if it raises, the batch is removed.
+
+    Raises
+    ------
+    BadInput
+        If the analysis is at fault, or no line can be run, or one of an atomic batch; nothing is kept then.
+    BodyTooLarge
+        As the lines raise it; nothing is kept then.
+    sqlalchemy.exc.SQLAlchemyError
+        If the database fails; what was stored is removed now or by a later sweep.
+    """
+    analysis = convert.read_analysis(incoming.analysis)
+    with sessions.begin() as session:
+        batch_id = batch_records.begin(session, caller, analysis.model_dump(mode="json", by_alias=True))
+    draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic)
+    try:
+        for block in _blocks(settings, draft, incoming.lines):
+            with sessions.begin() as session:
+                batch_records.add_items(session, block)
+        _refuse_hopeless(draft)
+        with sessions.begin() as session:
+            batch_records.accept(session, caller, batch_id, draft.chunks, draft.rejected, anew=incoming.anew)
+            on_accept(session, batch_id)
+    except BaseException:
+        with suppress(SQLAlchemyError), sessions.begin() as session:
+            batch_records.discard(session, batch_id)
+        raise
+    return Receipt(batch_id, tuple(chunk.id for chunk in draft.chunks))
+
+
+def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:
+    """Return how many lines one message shall carry: about the wanted time of work, and whole stacks of the engine."""
+    lines = max(1, min(settings.most_chunk_lines, round(settings.chunk_seconds / convert.seconds_a_line(analysis))))
+    return lines - lines % convert.STACK if lines > convert.STACK else lines
+
+
+def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Iterator[list[dict[str, Any]]]:
+    """Yield the rows of the lines, some at a time, until there is no use in going on."""
+    while block := list(islice(lines, _LINES_A_BLOCK)):
+        if draft.taken + len(block) > settings.max_batch_lines:
+            raise BadInput([Fault("/lines", "too_long", f"a batch may have {settings.max_batch_lines} lines")])
+        items = [_item(draft, document) for document in block]
+        if draft.atomic and len(draft.faults) >= MOST_FAULTS:
+            return
+        yield items
+
+
+def _item(draft: _Draft, document: object) -> dict[str, Any]:
+    draft.taken += 1
+    reference, faults = None, []
+    line: schemas.Line | None = None
+    try:
+        reference, rest = _split(document)
+        line = convert.read_line(rest, draft.analysis)
+    except BadInput as error:
+        faults = list(error.faults[:_FAULTS_A_LINE])
+    if line is None:
+        draft.rejected += 1
+        room = max(0, MOST_FAULTS - len(draft.faults))
+        draft.faults += [_placed(draft.taken, fault) for fault in faults[:room]]
+    return {
+        "batch_id": draft.batch_id,
+        "number": draft.taken,
+        "chunk_id": _chunk_id(draft) if line is not None else None,
+        "reference": reference,
+        "asset_id": line.asset_id if line is not None else None,
+        "document": line.model_dump(mode="json", by_alias=True) if line is not None else None,
+        "faults": None
+        if line is not None
+        else [{"pointer": fault.pointer, "code": fault.code, "detail": fault.detail} for fault in faults],
+    }
+
+
+def _split(document: object) -> tuple[str | None, object]:
+    """Take the caller's reference from beside the fields of the line.
+
+    Raises
+    ------
+    BadInput
+        If the line could not be read, or the reference is no label.
+    """
+    if isinstance(document, BadInput):
+        raise document
+    if not isinstance(document, dict) or document.get("reference") is None:
+        rest = {k: v for k, v in document.items() if k != "reference"} if isinstance(document, dict) else document
+        return None, rest
+    try:
+        reference = _LABEL.validate_python(document["reference"], strict=True)
+    except ValidationError as error:
+        detail = "must be a text of 1 to 200 characters without control characters"
+        raise BadInput([Fault("/reference", "label", detail)]) from error
+    return reference, {key: value for key, value in document.items() if key != "reference"}
+
+
+def _chunk_id(draft: _Draft) -> UUID:
+    """Return the chunk of the next line, a new one if the last is full."""
+    if not draft.chunks or draft.chunks[-1].lines == draft.chunk_lines:
+        draft.chunks.append(Chunk(uuid7(), len(draft.chunks) + 1, 0))
+    last = draft.chunks[-1]
+    draft.chunks[-1] = Chunk(last.id, last.part, last.lines + 1)
+    return last.id
+
+
+def _placed(number: int, fault: Fault) -> Fault:
+    return Fault(f"/lines/{number - 1}{fault.pointer}", fault.code, f"line {number}: {fault.detail}")
+
+
+def _refuse_hopeless(draft: _Draft) -> None:
+    if not draft.taken:
+        raise BadInput([Fault("/lines", "too_short", "a batch needs at least one line")])
+    if not draft.chunks or (draft.atomic and draft.rejected):
+        raise BadInput(draft.faults)

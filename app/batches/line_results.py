@@ -1,0 +1,122 @@
+"""What came of the lines of a batch, streamed in the order of their numbers, a bounded number in memory at a time."""
+
+from collections.abc import Iterator
+from typing import Any, Literal
+from uuid import UUID
+
+import orjson
+from sqlalchemy import Row, and_, select
+from sqlalchemy.orm import Session
+
+from app import convert
+from app.convert import Table
+from app.storage.stored_results import PEAKS, STATIC, tables_of, unpacked
+from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
+
+BatchTable = Literal[Table, "summary"]
+
+_LINES_A_FETCH = 200
+_LABELS = ("number", "reference", "asset_id")
+_OPEN = (JobStatus.ACCEPTED, JobStatus.RUNNING, JobStatus.DISMISSED)
+_HARTOG = ("den_hartog_coefficient", "den_hartog_unstable")
+
+
+def columns(table: BatchTable) -> list[str]:
+    """Return the names of a table's columns in order."""
+    if table == "summary":
+        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *PEAKS, "engine_version"]
+    return [*_LABELS, *convert.columns(table)]
+
+
+def rows(session: Session, batch_id: UUID, table: BatchTable) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a table; the summary has one for every line, the others those of the lines that have any."""
+    for item in _lines(session, batch_id, unpacking=table != "summary"):
+        if table == "summary":
+            yield _summary(item)
+        elif _is_solved(item):
+            labels = _labels(item)
+            for row in tables_of(item.tables).get(table, ()):
+                yield {**labels, **row}
+
+
+def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
+    """Yield one JSON object a line, with its end, that has everything found of it, or why there is nothing."""
+    for item in _lines(session, batch_id, unpacking=True):
+        # The packed tables are a JSON object already: it is joined to the other members as it stands.
+        head = orjson.dumps({**_labels(item), **_state(item), **_point(item)})
+        yield b"%b,%b\n" % (head[:-1], unpacked(item.tables if _is_solved(item) else None)[1:])
+
+
+def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterator[dict[str, Any]]:
+    """Yield what is wrong with rejected lines: number, reference, and pointer, code and sentence of each fault."""
+    wanted = BatchItem.number, BatchItem.reference, BatchItem.faults
+    rejected = BatchItem.batch_id == batch_id, BatchItem.chunk_id.is_(None)
+    statement = select(*wanted).where(*rejected).order_by(BatchItem.number).limit(most)
+    for number, reference, faults in session.execute(statement.execution_options(yield_per=_LINES_A_FETCH)):
+        for fault in faults or ():
+            yield {"number": number, "reference": reference, **fault}
+
+
+def _lines(session: Session, batch_id: UUID, *, unpacking: bool) -> Iterator[Row[Any]]:
+    """Yield the lines with the state of their chunk and their point, some in memory at a time."""
+    of_line = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number)
+    names = (*STATIC, *_HARTOG, *PEAKS, "warnings", "engine_version", "failure", *(("tables",) if unpacking else ()))
+    statement = (
+        select(BatchItem.number, BatchItem.reference, BatchItem.asset_id, BatchItem.chunk_id, BatchItem.faults)
+        .add_columns(Job.status, Job.failure_kind, Job.failure_detail, PointRow.point)
+        .add_columns(*(getattr(PointRow, name) for name in names))
+        .outerjoin(Job, Job.id == BatchItem.chunk_id)
+        .outerjoin(PointRow, of_line)
+        .where(BatchItem.batch_id == batch_id)
+        .order_by(BatchItem.number)
+        .limit(_LINES_A_FETCH)
+    )
+    last = 0
+    while page := session.execute(statement.where(BatchItem.number > last)).all():
+        yield from page
+        last = page[-1].number
+
+
+def _summary(item: Row[Any]) -> dict[str, Any]:
+    state = _state(item)
+    return {
+        **_labels(item),
+        "status": state["status"],
+        "failure": state["failure"]["detail"] if state["failure"] else None,
+        **{name: getattr(item, name) for name in (*STATIC, *_HARTOG, *PEAKS, "engine_version")},
+    }
+
+
+def _is_solved(item: Row[Any]) -> bool:
+    return item.point is not None and item.failure is None
+
+
+def _labels(item: Row[Any]) -> dict[str, Any]:
+    return {name: getattr(item, name) for name in _LABELS}
+
+
+def _state(item: Row[Any]) -> dict[str, Any]:
+    """Return status and failure of a line, which follow from its chunk and its point."""
+    if item.chunk_id is None:
+        sentence = "; ".join(f"{fault['pointer'] or '/'}: {fault['detail']}" for fault in item.faults)
+        return {"status": "rejected", "failure": {"kind": FailureKind.INPUT.value, "detail": sentence}}
+    if _is_solved(item):
+        return {"status": JobStatus.SUCCESSFUL.value, "failure": None}
+    if item.status in _OPEN:
+        return {"status": item.status.value, "failure": None}
+    if item.failure is not None:
+        failure = {"kind": FailureKind.NO_CONVERGENCE.value, "detail": item.failure}
+    else:
+        failure = {"kind": item.failure_kind.value, "detail": item.failure_detail}
+    return {"status": JobStatus.FAILED.value, "failure": failure}
+
+
+def _point(item: Row[Any]) -> dict[str, Any]:
+    solved = _is_solved(item)
+    hartog = {"coefficient": item.den_hartog_coefficient, "unstable": item.den_hartog_unstable}
+    return {
+        "static": {name: getattr(item, name) for name in STATIC} if solved else None,
+        "den_hartog": hartog if solved else None,
+        "warnings": item.warnings or [],
+        "engine_version": item.engine_version,
+    }

@@ -1,0 +1,1 @@
+"""Answers shared between requests: grouped calls, shared watches, an expiring cache."""

@@ -1,0 +1,39 @@
+"""A request and the number of a point -> the mode shapes of its line, as plain rows for a picture."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from app.convert.run import specification_of_point
+
+_COMPONENTS = ("longitudinal", "vertical", "horizontal", "torsional")
+
+
+def mode_shapes(document: Mapping[str, object], point: int) -> list[dict[str, Any]]:
+    """Return one row for each model, direction and number of loops that a request asks for, at one point of its study.
+
+    A row has `model`, `direction`, `loops`, `position_m` and the four components at these positions, scaled as
+    `engine.models.mode_shapes` says.
+
+    Raises
+    ------
+    ValueError, ArithmeticError
+        If the line of the point is at fault or numerically out of reach.
+    LookupError
+        If there is no such point.
+    """
+    from engine.models.mode_shapes import mode_shapes as compute  # noqa: PLC0415 - the API and `galloping --help` need no solver
+
+    line, analysis = specification_of_point(document, point)
+    found = compute(line, analysis)
+    return [
+        {
+            "model": model.value,
+            "direction": direction,
+            "loops": loops,
+            "position_m": found.position.tolist(),
+            **dict(zip(_COMPONENTS, getattr(found, model.value)[i, j].tolist(), strict=True)),
+        }
+        for model in analysis.models
+        for i, direction in enumerate(_COMPONENTS[1:])
+        for j, loops in enumerate(analysis.loops)
+    ]

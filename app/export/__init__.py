@@ -1,0 +1,1 @@
+"""Result tables as JSON, CSV and Parquet. What the tables hold is decided elsewhere."""

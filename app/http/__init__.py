@@ -1,0 +1,1 @@
+"""HTTP below the routes: problem documents, limits, headers, paging, request log. No lines, no jobs."""

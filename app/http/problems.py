@@ -1,0 +1,245 @@
+"""Every fault as problem details (RFC 9457), whoever finds it: routes, FastAPI, Starlette, the body limit, a defect."""
+
+import logging
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from enum import Enum
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from fastapi.routing import APIRoute
+from sqlalchemy.exc import OperationalError
+from starlette.exceptions import HTTPException
+from starlette.routing import Match
+
+from app import convert
+from app.http.body_limit import BodyLimit, Limit
+from app.http.conditional import Bodiless
+from app.schemas.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer, parse_json
+
+MEDIA_TYPE = "application/problem+json"
+
+_logger = logging.getLogger(__name__)
+
+
+class ProblemKind(Enum):
+    """What can be wrong: slug of its page, status, title and a sentence for the page."""
+
+    INVALID_PARAMETER = ("invalid-parameter", 400, "Invalid parameter", "A query parameter cannot be taken.")
+    UNAUTHENTICATED = ("unauthenticated", 401, "Unauthenticated", "The request needs a key that is known and good.")
+    FORBIDDEN = ("forbidden", 403, "Forbidden", "The key does not have the scope that this method needs.")
+    NOT_FOUND = ("not-found", 404, "Not found", "There is nothing at this address, or no longer.")
+    METHOD_NOT_ALLOWED = ("method-not-allowed", 405, "Method not allowed", "The address does not take this method.")
+    NOT_ACCEPTABLE = ("not-acceptable", 406, "Not acceptable", "None of the media types asked for can be made.")
+    # Those who share a status stand before the one that any other fault of this status is.
+    REQUEST_IN_FLIGHT = (
+        "request-in-flight",
+        409,
+        "Request in flight",
+        "An earlier request with this Idempotency-Key is still at work; its answer comes to who asks again.",
+    )
+    NOT_READY = ("not-ready", 409, "Not ready", "The job has not ended; its status document tells how far it is.")
+    DISMISSED = ("dismissed", 410, "Dismissed", "The job was cancelled and has no results.")
+    TOO_LARGE = ("too-large", 413, "Body too large", "The request body is larger than the operator allows.")
+    UNSUPPORTED_MEDIA_TYPE = (
+        "unsupported-media-type",
+        415,
+        "Unsupported media type",
+        "The body is of another type than taken.",
+    )
+    KEY_REUSED = (
+        "idempotency-key-reused",
+        422,
+        "Idempotency-Key reused",
+        "The Idempotency-Key was used for another request within the last 24 hours.",
+    )
+    INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is no JSON, or fields of it are wrong.")
+    TOO_MANY_REQUESTS = (
+        "too-many-requests",
+        429,
+        "Too many requests",
+        "The quota of the minute is used up; Retry-After says when to go on.",
+    )
+    HEAD_TOO_LARGE = (
+        "head-too-large",
+        431,
+        "Head too large",
+        "The address and the header fields of the request are together too large, or the fields too many.",
+    )
+    INTERNAL = ("internal", 500, "Internal error", "A defect of the service; the operator's log has the details.")
+    UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it depends on; try again later.")
+
+    def __init__(self, slug: str, status: int, title: str, description: str) -> None:
+        """Keep the parts under their names."""
+        self.slug = slug
+        self.status = status
+        self.title = title
+        self.description = description
+
+
+_METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
+_BY_STATUS = {kind.status: kind for kind in ProblemKind}
+
+
+class ProblemError(HTTPException):
+    """Raised by a route to answer with a problem; FastAPI lets it pass wherever it arises."""
+
+    def __init__(
+        self,
+        kind: ProblemKind,
+        detail: str,
+        *,
+        faults: Sequence[Fault] = (),
+        links: Sequence[Mapping[str, str]] = (),
+        headers: Mapping[str, str] | None = None,
+    ) -> None:
+        """Take the kind, a sentence for this occurrence, and what else the document shall hold."""
+        self.kind = kind
+        self.faults = faults
+        self.links = links
+        super().__init__(kind.status, detail, dict(headers) if headers else None)
+
+
+def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequence[Fault] = ()) -> dict[str, Any]:
+    """Return the problem document of one occurrence, with at most `MOST_FAULTS` faults."""
+    listed = [{"pointer": f.pointer, "code": f.code, "detail": f.detail} for f in faults[:MOST_FAULTS]]
+    more = f" Only the first {MOST_FAULTS} of {len(faults)} faults are listed." if len(faults) > MOST_FAULTS else ""
+    return {
+        "type": f"/problems/{kind.slug}",
+        "title": kind.title,
+        "status": kind.status,
+        "detail": detail + more,
+        "instance": instance,
+        "errors": listed,
+    }
+
+
+def install(app: FastAPI, max_body_bytes: Mapping[str, int]) -> None:
+    """Let an application answer every fault with a problem, and limit its bodies by path, "" being all others."""
+    app.add_exception_handler(ProblemError, answer)
+    app.add_exception_handler(Bodiless, _on_bodiless)
+    app.add_exception_handler(HTTPException, _on_http)
+    app.add_exception_handler(RequestValidationError, _on_validation)
+    app.add_exception_handler(OperationalError, _on_database)
+    app.add_exception_handler(Exception, _on_defect)
+    limits = {path: Limit(most_bytes, _too_large(most_bytes)) for path, most_bytes in max_body_bytes.items()}
+    app.add_middleware(BodyLimit, limits=limits, refuse=answer)
+
+
+def _too_large(most_bytes: int) -> ProblemError:
+    detail = f"The body is larger than {most_bytes} bytes."
+    return ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
+
+
+class StrictJsonRoute(APIRoute):
+    """A route whose body is strict JSON: another media type is 415, and every fault of the text is 422."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Put the strict request in the place of the usual one."""
+        handler = super().get_route_handler()
+        takes_body = self.body_field is not None
+
+        async def strict(request: Request) -> Response:
+            if takes_body:
+                _require_json(request)
+            return await handler(_StrictRequest(request.scope, request.receive))
+
+        return strict
+
+
+class _StrictRequest(Request):
+    async def json(self) -> Any:
+        try:
+            return parse_json(await self.body())
+        except BadInput as error:
+            raise ProblemError(ProblemKind.INVALID_DOCUMENT, _count(error.faults), faults=error.faults) from error
+
+
+def _require_json(request: Request) -> None:
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type != "application/json":
+        said = f"The body is {media_type[:100]!r}, not application/json."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Post": "application/json"})
+    encoding = request.headers.get("content-encoding", "identity").strip().lower()
+    if encoding != "identity":
+        said = f"The content encoding {encoding[:100]!r} is taken for batches only."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Encoding": "identity"})
+
+
+def invalid_document(faults: Sequence[Fault]) -> ProblemError:
+    """Return the problem of a body with these faults."""
+    return ProblemError(ProblemKind.INVALID_DOCUMENT, _count(faults), faults=faults)
+
+
+def _count(faults: Sequence[Fault]) -> str:
+    return f"The document has {len(faults)} fault{'s' if len(faults) != 1 else ''}."
+
+
+def _respond(request: Request, problem: ProblemError) -> JSONResponse:
+    document = problem_document(problem.kind, problem.detail, request.url.path[:500], problem.faults)
+    if problem.links:
+        document["links"] = list(problem.links)
+    return JSONResponse(document, problem.status_code, headers=problem.headers, media_type=MEDIA_TYPE)
+
+
+async def answer(request: Request, error: Exception) -> Response:
+    """Answer with a problem that was raised."""
+    assert isinstance(error, ProblemError)
+    return _respond(request, error)
+
+
+async def _on_bodiless(_: Request, error: Exception) -> Response:
+    assert isinstance(error, Bodiless)
+    return Response(status_code=error.status_code, headers=error.headers)
+
+
+async def _on_http(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    kind = _BY_STATUS.get(error.status_code, ProblemKind.INVALID_PARAMETER)
+    headers = {"Allow": _methods(request)} if kind is ProblemKind.METHOD_NOT_ALLOWED else error.headers
+    return _respond(request, ProblemError(kind, kind.description, headers=headers))
+
+
+def _methods(request: Request) -> str:
+    """Return the methods that an address takes; the router itself tells those of the first route there only."""
+
+    def takes(method: str) -> bool:
+        asked = {**request.scope, "method": method}
+        return any(route.matches(asked)[0] is Match.FULL for route in request.app.routes)
+
+    methods = [method for method in _METHODS if takes(method)]
+    return ", ".join(sorted({*methods, "HEAD"} if "GET" in methods else methods))
+
+
+async def _on_validation(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    errors = error.errors()
+    places = {wrong["loc"][0] for wrong in errors}
+    if "path" in places:
+        return _respond(request, ProblemError(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description))
+    if "body" not in places:
+        return _respond(request, ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=faults_of(errors)))
+    faults = faults_of([wrong for wrong in errors if wrong["loc"][0] == "body"], skip=1)
+    return _respond(request, invalid_document(convert.with_further_faults(error.body, faults)))
+
+
+async def _on_database(request: Request, error: Exception) -> Response:
+    return _respond(request, database_fault(error))
+
+
+def database_fault(error: Exception) -> ProblemError:
+    """Return the problem of a database that does not answer, and log it."""
+    _logger.error("the database does not answer: %s", error)
+    return ProblemError(ProblemKind.UNAVAILABLE, "The database does not answer.", headers={"Retry-After": "5"})
+
+
+async def _on_defect(request: Request, error: Exception) -> Response:
+    # Starlette raises the error again after this answer, so that the server logs it with its traceback.
+    return _respond(request, ProblemError(ProblemKind.INTERNAL, ProblemKind.INTERNAL.description))
+
+
+def query_fault(name: str, detail: str) -> ProblemError:
+    """Return the problem of one query parameter."""
+    fault = Fault(json_pointer(["query", name]), "invalid", detail)
+    return ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=[fault])

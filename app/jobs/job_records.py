@@ -1,0 +1,232 @@
+"""Jobs as their owner sees them: made, looked up, listed, cancelled. The caller opens and commits the transaction."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from datetime import datetime
+from enum import StrEnum
+from typing import Any, NamedTuple
+from uuid import UUID
+
+from sqlalchemy import ColumnElement, Select, delete, select, tuple_
+from sqlalchemy.orm import Session, defer, sessionmaker
+from uuid_utils.compat import uuid7
+
+from app.runtime import correlation
+from app.runtime.correlation import Ids
+from app.security import audit
+from app.security.caller import Caller
+from app.storage import counters
+from app.storage.database import database_time, insert_rows
+from app.tables import AuditAction, BatchItem, FailureKind, Job, JobEvent, JobEventKind, JobStatus, JobTag
+
+LABELS = frozenset({"name", "asset_id", "tags"})
+
+
+class CancelOutcome(StrEnum):
+    """What a cancel did: ended a queued job, asked a running one to stop, removed a finished one, or found none."""
+
+    DISMISSED = "dismissed"
+    REQUESTED = "requested"
+    REMOVED = "removed"
+    MISSING = "missing"
+
+
+@dataclass(frozen=True, slots=True)
+class JobFilters:
+    """Which jobs a list holds; None or empty means any, and every tag must match.
+
+    Chunks are only in the list of their batch.
+    """
+
+    status: JobStatus | None = None
+    asset_id: str | None = None
+    tags: Mapping[str, str] = field(default_factory=dict)
+    batch_id: UUID | None = None
+    created_after: datetime | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Submission:
+    """A job that is asked for: by whom, what is to be computed, under which labels, and the ids of the request."""
+
+    caller: Caller
+    document: Mapping[str, Any]
+    name: str | None = None
+    asset_id: str | None = None
+    tags: Mapping[str, str] = field(default_factory=dict)
+    ids: Ids = field(default_factory=correlation.of_this_work)
+
+
+class Tag(NamedTuple):
+    """A label of a job."""
+
+    key: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A job that waits for a worker, before it is stored; the names are those of `Job`."""
+
+    id: UUID
+    owner: str
+    created_at: datetime
+    name: str | None
+    asset_id: str | None
+    document: Mapping[str, Any]
+    input_hash: str
+    request_id: str | None
+    trace_parent: str | None
+    status: JobStatus = JobStatus.ACCEPTED
+    progress: float = 0.0
+    step: str = ""
+    attempt: int = 0
+    cancel_requested: bool = False
+    started_at: datetime | None = None
+    finished_at: datetime | None = None
+    failure_kind: FailureKind | None = None
+    failure_detail: str | None = None
+    engine_version: str | None = None
+    reused_from: UUID | None = None
+    tags: Sequence[Tag] = ()
+
+
+_COLUMNS = tuple(field.name for field in fields(Draft) if field.name != "tags")
+
+
+def draft(asked: Submission, now: datetime) -> Draft:
+    """Return the job of a submission.
+
+    Raises
+    ------
+    ValueError
+        If the document holds NaN or an infinity, which JSON cannot carry.
+    """
+    return Draft(
+        id=uuid7(),
+        owner=asked.caller.owner,
+        created_at=now,
+        name=asked.name,
+        asset_id=asked.asset_id,
+        document=asked.document,
+        input_hash=input_hash(asked.document),
+        request_id=asked.ids.request_id,
+        trace_parent=asked.ids.trace_parent,
+        tags=[Tag(*tag) for tag in sorted(asked.tags.items())],
+    )
+
+
+def insert(session: Session, made: Sequence[tuple[Caller, Draft]]) -> None:
+    """Store jobs with their tags, their first event and the record of who made them: a statement a table.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If the database refuses a row, or fails.
+    """
+    insert_rows(session, Job, [{name: getattr(job, name) for name in _COLUMNS} for _, job in made])
+    tags = [{"job_id": job.id, **tag._asdict()} for _, job in made for tag in job.tags]
+    insert_rows(session, JobTag, tags)
+    kind = JobEventKind.ACCEPTED
+    insert_rows(
+        session, JobEvent, [{"job_id": job.id, "at": job.created_at, "kind": kind, "attempt": 0} for _, job in made]
+    )
+    action = AuditAction.JOB_SUBMITTED
+    audit.record_all(session, [(caller, action, job.id, job.created_at) for caller, job in made])
+
+
+def input_hash(document: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of what a document asks, whatever the order of its fields and the labels of its line.
+
+    Raises
+    ------
+    ValueError
+        If the document holds NaN or an infinity.
+    """
+    line = {name: value for name, value in document.get("line", {}).items() if name not in LABELS}
+    asked = {**document, "line": line} if line else document
+    return hashlib.sha256(canonical(asked).encode()).hexdigest()
+
+
+def canonical(document: Mapping[str, Any]) -> str:
+    """Return a document as the one text that all its forms have.
+
+    Raises
+    ------
+    ValueError
+        If the document holds NaN or an infinity.
+    """
+    return json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def get(session: Session, owner: str, job_id: UUID) -> Job | None:
+    """Return a job with its tags, or None if the owner has none of that id."""
+    return session.scalars(_of(owner, job_id)).one_or_none()
+
+
+def look_up(sessions: sessionmaker[Session], job_ids: Sequence[UUID]) -> list[Job | None]:
+    """Return the jobs of these ids, whoever owns them, with their tags and without their documents."""
+    statement = select(Job).where(Job.id.in_(job_ids)).options(defer(Job.document, raiseload=True))
+    with sessions() as session:
+        found = {job.id: job for job in session.scalars(statement)}
+    return [found.get(job_id) for job_id in job_ids]
+
+
+def page(
+    session: Session, owner: str, filters: JobFilters, after: tuple[datetime, UUID] | None, limit: int
+) -> list[Job]:
+    """Return the owner's newest jobs that pass the filters, or those after the (created_at, id) of another."""
+    statement = select(Job).where(Job.owner == owner, *_conditions(filters))
+    if after is not None:
+        statement = statement.where(tuple_(Job.created_at, Job.id) < after)
+    return list(session.scalars(statement.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit)))
+
+
+def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
+    """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows.
+
+    A chunk that is removed takes its lines out of its batch.
+    """
+    # The row is locked, so that a claim or an end of the job cannot slip in between the look and the change.
+    job = session.scalars(_of(caller.owner, job_id).with_for_update()).one_or_none()
+    if job is None:
+        return CancelOutcome.MISSING
+    if job.status is JobStatus.ACCEPTED:
+        job.status, job.finished_at = JobStatus.DISMISSED, database_time(session)
+        audit.record(session, caller, AuditAction.JOB_CANCELLED, job_id)
+        record(session, job_id, JobEventKind.DISMISSED, attempt=job.attempt)
+        counters.add_end(session, job.status, chunk=job.batch_id is not None)
+        return CancelOutcome.DISMISSED
+    if job.status is JobStatus.RUNNING:
+        if not job.cancel_requested:
+            job.cancel_requested = True
+            audit.record(session, caller, AuditAction.JOB_CANCELLED, job_id)
+            record(session, job_id, JobEventKind.CANCEL_REQUESTED, attempt=job.attempt)
+        return CancelOutcome.REQUESTED
+    session.execute(delete(BatchItem).where(BatchItem.chunk_id == job_id))
+    session.execute(delete(Job).where(Job.id == job_id))
+    audit.record(session, caller, AuditAction.JOB_REMOVED, job_id)
+    return CancelOutcome.REMOVED
+
+
+def record(session: Session, job_id: UUID, kind: JobEventKind, *, attempt: int = 0, detail: str | None = None) -> None:
+    """Add what happened to a job to its events, in the transaction in which it happens."""
+    session.add(JobEvent(job_id=job_id, at=database_time(session), kind=kind, attempt=attempt, detail=detail))
+
+
+def _of(owner: str, job_id: UUID) -> Select[Job]:
+    return select(Job).where(Job.id == job_id, Job.owner == owner)
+
+
+def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
+    equal = {Job.status: filters.status, Job.asset_id: filters.asset_id}
+    conditions = [Job.batch_id.is_(None) if filters.batch_id is None else Job.batch_id == filters.batch_id]
+    conditions += [column == value for column, value in equal.items() if value is not None]
+    if filters.created_after is not None:
+        conditions.append(Job.created_at > filters.created_after)
+    for key, value in filters.tags.items():
+        tagged = select(JobTag.job_id).where(JobTag.key == key, JobTag.value == value)
+        conditions.append(Job.id.in_(tagged))
+    return conditions

@@ -1,0 +1,165 @@
+"""What is stored already is not computed again: results of the same input and engine are copied for the same owner.
+
+They are copied rather than referred to, so that each job keeps its own when another is removed. A job is looked up as
+it is posted, the lines of a batch as a worker takes their chunk. A line by itself is found by what is asked of it,
+whether it was a job or in a batch; a study or a search for places as a whole, by its job.
+"""
+
+import hashlib
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, cast
+from uuid import UUID
+
+import orjson
+from sqlalchemy import ARRAY, ColumnElement, String, Table, and_, bindparam, exists, func, insert, literal, select
+from sqlalchemy.orm import Session
+
+from app.convert import NumberedLine, PointResult
+from app.jobs import job_records
+from app.jobs.job_records import Draft
+from app.storage import counters
+from app.storage.stored_results import PEAKS, STATIC, unpacked
+from app.tables import Job, JobEventKind, JobStatus, PointRow
+
+_LINE_ALONE = {"line", "analysis"}
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Results that are stored: those of a job, or those of one line of a batch under its number in a chunk."""
+
+    job_id: UUID
+    line_number: int | None = None
+
+
+def find(session: Session, asked: Sequence[tuple[str, Mapping[str, Any]]], engine_version: str) -> list[Source | None]:
+    """Return for each owner and document stored results of the same input, labels aside, by this engine version.
+
+    That is one statement for many lines, and one more for each that is found; studies and placements are one each.
+    What is to be copied is locked until the end of the transaction, so that nobody removes it.
+    """
+    hashes = [hash_of(owner, document) for owner, document in asked]
+    wanted = {line_hash for line_hash in hashes if line_hash is not None}
+    known = _known(session, wanted, engine_version) if len(wanted) > 1 else wanted
+    lines = {line_hash: _found_line(session, line_hash, engine_version) for line_hash in known}
+    return [
+        _found_whole(session, owner, document, engine_version) if line_hash is None else lines.get(line_hash)
+        for line_hash, (owner, document) in zip(hashes, asked, strict=True)
+    ]
+
+
+def _known(session: Session, hashes: Collection[str], engine_version: str) -> Collection[str]:
+    """Return those of these hashes under which something is stored; SQLite, in this process, is asked one by one."""
+    if session.get_bind().dialect.name != "postgresql":
+        return hashes
+    listed = bindparam("hashes", list(hashes), type_=ARRAY(String))
+    each = func.unnest(listed).column_valued("asked")
+    there = exists().where(PointRow.input_hash == each, *_usable(engine_version))
+    return set(session.scalars(select(each).where(there)))
+
+
+def _found_line(session: Session, line_hash: str, engine_version: str) -> Source | None:
+    # Whichever is found first: to ask for an order would lead the database from the index on the input to another.
+    statement = select(PointRow.job_id, PointRow.point, PointRow.batch_id).where(
+        PointRow.input_hash == line_hash, *_usable(engine_version)
+    )
+    row = session.execute(statement.limit(1).with_for_update(read=True, key_share=True)).one_or_none()
+    return Source(row.job_id, row.point if row.batch_id is not None else None) if row is not None else None
+
+
+def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engine_version: str) -> Source | None:
+    same = Job.owner == owner, Job.input_hash == job_records.input_hash(document), Job.batch_id.is_(None)
+    usable = Job.status == JobStatus.SUCCESSFUL, Job.engine_version == engine_version
+    statement = select(Job.id).where(*same, *usable).order_by(Job.id).limit(1)
+    job_id = session.scalar(statement.with_for_update(read=True, key_share=True))
+    return Source(job_id) if job_id is not None else None
+
+
+def adopt(job: Draft, source: Source, engine_version: str) -> Draft:
+    """Return a job that ends with the results of another, or of a line; `copy` gives it those once it is stored."""
+    return replace(
+        job,
+        status=JobStatus.SUCCESSFUL,
+        progress=1.0,
+        started_at=job.created_at,
+        finished_at=job.created_at,
+        engine_version=engine_version,
+        reused_from=source.job_id,
+    )
+
+
+def copy(session: Session, job_id: UUID, source: Source) -> None:
+    """Give a job that has adopted results their copy, and note its end."""
+    table = cast(Table, PointRow.__table__)
+    copied, said = [table.c.job_id == source.job_id], f"results of job {source.job_id}"
+    own: dict[str, ColumnElement[Any]] = {"job_id": literal(job_id, table.c.job_id.type)}
+    if source.line_number is not None:
+        copied.append(table.c.point == source.line_number)
+        said = f"results of line {source.line_number} of a batch, in its chunk {source.job_id}"
+        alone: dict[str, Any] = {"point": 0, "axes": {}, "batch_id": None}
+        own |= {name: literal(value, table.c[name].type) for name, value in alone.items()}
+    others = {column.name: column for column in table.columns}
+    columns = {**others, **own}
+    session.execute(insert(table).from_select(list(columns), select(*columns.values()).where(*copied)))
+    job_records.record(session, job_id, JobEventKind.SUCCESSFUL, detail=said)
+    counters.add_end(session, JobStatus.SUCCESSFUL, chunk=False)
+
+
+def hash_of(owner: str, document: Mapping[str, Any]) -> str | None:
+    """Return what the line of a request is found by; None if more is asked than the analysis of one line."""
+    if document.keys() != _LINE_ALONE:
+        return None
+    return _hashing(owner, document["analysis"])(document["line"])
+
+
+def hashes(owner: str, analysis: Mapping[str, Any], lines: Sequence[NumberedLine]) -> dict[int, str]:
+    """Return what each line of an owner is found by, by its number: what is asked of it, labels aside."""
+    of = _hashing(owner, analysis)
+    return {line.number: of(line.document) for line in lines}
+
+
+def _hashing(owner: str, analysis: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], str]:
+    common = hashlib.sha256(orjson.dumps([owner, analysis], option=orjson.OPT_SORT_KEYS))
+
+    def of(line: Mapping[str, Any]) -> str:
+        asked = {name: value for name, value in line.items() if name not in job_records.LABELS}
+        whole = common.copy()
+        whole.update(orjson.dumps(asked, option=orjson.OPT_SORT_KEYS))
+        return whole.hexdigest()
+
+    return of
+
+
+def _usable(engine_version: str) -> tuple[ColumnElement[bool], ...]:
+    return PointRow.failure.is_(None), PointRow.engine_version == engine_version
+
+
+def stored(session: Session, wanted: Mapping[int, str], engine_version: str) -> list[PointResult]:
+    """Return the results of those of these lines that this version of the engine has computed, under their numbers.
+
+    A line that is asked for again and again has as many copies, of which one is read.
+    """
+    same = PointRow.input_hash.in_(set(wanted.values()))
+    place = func.row_number().over(partition_by=PointRow.input_hash).label("place")
+    copies = select(PointRow.job_id, PointRow.point, place).where(same, *_usable(engine_version)).subquery()
+    one = PointRow.job_id == copies.c.job_id, PointRow.point == copies.c.point, copies.c.place == 1
+    found = {row.input_hash: row for row in session.scalars(select(PointRow).join(copies, and_(*one)))}
+    return [_as_result(found[value], number) for number, value in wanted.items() if value in found]
+
+
+def _as_result(row: PointRow, number: int) -> PointResult:
+    return PointResult(
+        point=number,
+        axes={"number": number},
+        static={name: getattr(row, name) for name in STATIC},
+        den_hartog={"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable},
+        peaks={name: getattr(row, name) for name in PEAKS},
+        tables_json=unpacked(row.tables),
+        orbits_json=unpacked(row.orbits),
+        warnings=row.warnings,
+        engine_version=row.engine_version,
+        failure=None,
+        input_hash=row.input_hash,
+        reused=True,
+    )

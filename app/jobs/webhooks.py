@@ -1,0 +1,247 @@
+"""Messages to receivers when jobs and batches end (Standard Webhooks), with a log. The caller commits."""
+
+import base64
+import hashlib
+import hmac
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from enum import StrEnum
+from typing import Any
+from uuid import UUID
+
+import httpx
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+from standardwebhooks import Webhook
+from uuid_utils.compat import uuid7
+
+from app.jobs import batch_progress
+from app.runtime.settings import Settings, cursor_key
+from app.storage import counters
+from app.storage.counters import Name
+from app.storage.database import database_time
+from app.tables import ENDED, Batch, DeliveryState, Job, WebhookDelivery
+
+_ROWS_A_LOOK = 200
+_GROWTH = 5.0
+_GONE = 410
+GIVEN_UP = "given_up"
+
+
+class Outcome(StrEnum):
+    """What comes of an attempt: the receiver takes it, answers something else, or does not answer."""
+
+    DELIVERED = "delivered"
+    REFUSED = "refused"
+    NO_ANSWER = "no_answer"
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """What came of sending once: the status of the answer, or why there is none."""
+
+    status_code: int | None
+    error: str | None = None
+
+    @property
+    def arrived(self) -> bool:
+        """Tell whether the receiver has taken it."""
+        return self.outcome is Outcome.DELIVERED
+
+    @property
+    def outcome(self) -> "Outcome":
+        """Return the kind of the answer."""
+        if self.status_code is None:
+            return Outcome.NO_ANSWER
+        return Outcome.DELIVERED if 200 <= self.status_code < 300 else Outcome.REFUSED
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """What is to be sent, and where."""
+
+    id: UUID
+    owner: str
+    url: str
+    receiver: str
+    payload: str
+    attempt: int
+
+
+class Share:
+    """How many messages are under way, of all, of each owner and to each receiver, and how many may be."""
+
+    def __init__(self, most: int, an_owner: int, a_receiver: int) -> None:
+        """Take the limits."""
+        self._most, self._an_owner, self._a_receiver = most, an_owner, a_receiver
+        self._owners: Counter[str] = Counter()
+        self._receivers: Counter[str] = Counter()
+
+    @property
+    def room(self) -> int:
+        """Return how many more may be under way."""
+        return self._most - self._owners.total()
+
+    def full(self) -> tuple[list[str], list[str]]:
+        """Return the owners and the receivers that may have no more."""
+        owners = [owner for owner, count in self._owners.items() if count >= self._an_owner]
+        return owners, [receiver for receiver, count in self._receivers.items() if count >= self._a_receiver]
+
+    def add(self, owner: str, receiver: str) -> bool:
+        """Count a message unless its owner or its receiver has enough; tell which."""
+        if self._owners[owner] >= self._an_owner or self._receivers[receiver] >= self._a_receiver:
+            return False
+        self._owners[owner] += 1
+        self._receivers[receiver] += 1
+        return True
+
+    def copy(self) -> "Share":
+        """Return another that begins with the same counts."""
+        other = Share(self._most, self._an_owner, self._a_receiver)
+        other._owners.update(self._owners)
+        other._receivers.update(self._receivers)
+        return other
+
+    def remove(self, owner: str, receiver: str) -> None:
+        """Count a message no longer."""
+        self._owners[owner] -= 1
+        self._receivers[receiver] -= 1
+
+
+def secret(settings: Settings, owner: str) -> str:
+    """Return the secret of an owner's webhooks, which follows from the operator's secret (`cursor_secret`).
+
+    Raises
+    ------
+    OSError
+        If the operator's secret can be neither read nor made.
+    """
+    key = hmac.digest(cursor_key(settings), b"webhooks\0" + owner.encode(), hashlib.sha256)
+    return "whsec_" + base64.b64encode(key).decode()
+
+
+def signed_headers(settings: Settings, message: Message, moment: datetime) -> dict[str, str]:
+    """Return the headers by which a receiver knows a message and its sender."""
+    name = f"msg_{message.id.hex}"
+    return {
+        "Content-Type": "application/json",
+        "User-Agent": "galloping-webhooks",
+        "webhook-id": name,
+        "webhook-timestamp": str(int(moment.timestamp())),
+        "webhook-signature": Webhook(secret(settings, message.owner)).sign(name, moment, message.payload),
+    }
+
+
+def register(
+    session: Session, owner: str, url: str, *, job_id: UUID | None = None, batch_id: UUID | None = None
+) -> None:
+    """Note whom to tell when a job or a batch ends."""
+    place = httpx.URL(url)
+    session.add(
+        WebhookDelivery(
+            id=uuid7(),
+            owner=owner,
+            job_id=job_id,
+            batch_id=batch_id,
+            url=url,
+            receiver=f"{place.host}:{place.port or 443}",
+            created_at=database_time(session),
+            state=DeliveryState.WAITING.value,
+            attempts=0,
+            log=[],
+        )
+    )
+
+
+def of(session: Session, *, job_id: UUID | None = None, batch_id: UUID | None = None) -> list[WebhookDelivery]:
+    """Return the deliveries of a job or a batch."""
+    which = WebhookDelivery.job_id == job_id if job_id is not None else WebhookDelivery.batch_id == batch_id
+    return list(session.scalars(select(WebhookDelivery).where(which).order_by(WebhookDelivery.id)))
+
+
+def send_again(session: Session, deliveries: Sequence[WebhookDelivery]) -> None:
+    """Let messages whose time has come be sent once more, with all their attempts before them; the log stays."""
+    for delivery in deliveries:
+        if delivery.payload is not None:
+            delivery.state, delivery.attempts = DeliveryState.PENDING.value, 0
+            delivery.next_attempt_at = database_time(session)
+
+
+def enlist(session: Session) -> int:
+    """Write the messages of the jobs and batches that have ended, and return how many there are."""
+    waiting = select(WebhookDelivery).where(WebhookDelivery.state == DeliveryState.WAITING.value)
+    ended = waiting.join(Job, Job.id == WebhookDelivery.job_id).where(Job.status.in_(ENDED)).limit(_ROWS_A_LOOK)
+    found = list(session.scalars(ended.with_for_update(of=WebhookDelivery, skip_locked=True)))
+    for delivery in found:
+        job = session.get_one(Job, delivery.job_id)
+        _write(session, delivery, "job", _of_job(job))
+    whole = waiting.join(Batch, Batch.id == WebhookDelivery.batch_id).where(Batch.received_at.is_not(None))
+    for delivery in session.scalars(whole.with_for_update(of=WebhookDelivery, skip_locked=True)).all():
+        assert delivery.batch_id is not None
+        counts = batch_progress.counts(session, [delivery.batch_id])[delivery.batch_id]
+        if counts.status in ENDED:
+            lines = {"successful": counts.successful, "failed": counts.failed, "dismissed": counts.dismissed}
+            href = f"/v1/batches/{delivery.batch_id}"
+            data = {"id": str(delivery.batch_id), "status": counts.status.value, "lines": lines, "href": href}
+            _write(session, delivery, "batch", data)
+            found.append(delivery)
+    return len(found)
+
+
+def take_due(session: Session, share: Share, lease_seconds: float) -> list[Message]:
+    """Take messages whose time has come, the oldest first, as far as the share allows beside what is under way.
+
+    When the lease is over, others take what was not noted by then.
+    """
+    now, taken, count = database_time(session), [], share.copy()
+    while count.room > 0 and (found := _oldest_due(session, now, count)):
+        for delivery in found:
+            if count.add(delivery.owner, delivery.receiver):
+                taken.append(delivery)
+                delivery.attempts += 1
+                delivery.next_attempt_at = now + timedelta(seconds=lease_seconds)
+    return [Message(d.id, d.owner, d.url, d.receiver, d.payload or "", d.attempts) for d in taken]
+
+
+def _oldest_due(session: Session, now: datetime, share: Share) -> Sequence[WebhookDelivery]:
+    """Return the oldest messages of those that may be sent: each look passes over who has had enough by the last."""
+    owners, receivers = share.full()
+    due = WebhookDelivery.state == DeliveryState.PENDING.value, WebhookDelivery.next_attempt_at <= now
+    free = WebhookDelivery.owner.not_in(owners), WebhookDelivery.receiver.not_in(receivers)
+    oldest = select(WebhookDelivery).where(*due, *free).order_by(WebhookDelivery.next_attempt_at).limit(share.room)
+    return session.scalars(oldest.with_for_update(skip_locked=True)).all()
+
+
+def note(session: Session, settings: Settings, message: Message, attempt: Attempt) -> None:
+    """Write what came of an attempt into the log, say when the next one is due, if there is one, and count it."""
+    counters.add(session, Name.WEBHOOKS, attempt.outcome.value)
+    delivery = session.get(WebhookDelivery, message.id, with_for_update=True)
+    if delivery is None:  # removed with its job
+        return
+    now = database_time(session)
+    entry = {"at": now.isoformat(), "status_code": attempt.status_code, "error": attempt.error}
+    delivery.log = [*delivery.log, entry]
+    if attempt.arrived:
+        delivery.state = DeliveryState.DELIVERED.value
+    elif attempt.status_code == _GONE or message.attempt >= settings.webhook_attempts:
+        delivery.state = DeliveryState.FAILED.value
+        counters.add(session, Name.WEBHOOKS, GIVEN_UP)
+    else:
+        pause = settings.webhook_retry_seconds * _GROWTH ** (message.attempt - 1)
+        delivery.next_attempt_at = now + timedelta(seconds=pause)
+
+
+def _write(session: Session, delivery: WebhookDelivery, kind: str, data: dict[str, Any]) -> None:
+    now = database_time(session)
+    message = {"type": f"{kind}.{data['status']}", "timestamp": now.isoformat(), "data": data}
+    delivery.payload = json.dumps(message, separators=(",", ":"))
+    delivery.state, delivery.next_attempt_at = DeliveryState.PENDING.value, now
+
+
+def _of_job(job: Job) -> dict[str, Any]:
+    failure = {"kind": job.failure_kind.value, "detail": job.failure_detail} if job.failure_kind else None
+    labels = {"name": job.name, "asset_id": job.asset_id}
+    return {"id": str(job.id), "status": job.status.value, **labels, "failure": failure, "href": f"/v1/jobs/{job.id}"}

@@ -1,0 +1,1 @@
+"""What the operator of a service needs: metrics, status, pruning, and which workers are there."""

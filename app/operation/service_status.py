@@ -1,0 +1,171 @@
+"""The state of the whole service for its operator: database, broker, workers, queues, jobs, leases."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import func, select
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from app.jobs.dispatch import BrokerUnavailable, open_queue
+from app.operation import workers
+from app.runtime.settings import Settings
+from app.storage.database import database_time, make_engine, session_factory
+from app.storage.migration import is_newest
+from app.tables import Job, JobStatus
+
+GOOD = "ok"
+
+
+@dataclass(frozen=True, slots=True)
+class WorkerState:
+    """A worker, how many of its processes are at work, and how long ago it said that it is there."""
+
+    name: str
+    version: str
+    processes: int
+    running: int
+    seen_seconds_ago: float
+    silent: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """Jobs, or chunks of batches: how many there are in each state, and since when the oldest waits for a worker."""
+
+    by_status: dict[JobStatus, int]
+    oldest_waiting_seconds: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Leases:
+    """How many running jobs have a lease, how many of these ran out, and how many waiting jobs have no message yet."""
+
+    held: int
+    expired: int
+    undispatched: int
+
+
+@dataclass(frozen=True, slots=True)
+class Queues:
+    """How many messages wait for a worker."""
+
+    jobs: int
+    chunks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What only the database knows."""
+
+    jobs: Work
+    chunks: Work
+    leases: Leases
+    workers: Sequence[WorkerState]
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """The whole; `queues` and `contents` are None where broker or database do not answer."""
+
+    database: str
+    broker: str
+    queues: Queues | None
+    contents: Contents | None
+
+    def faults(self) -> list[str]:
+        """Return in sentences what needs the operator; none if all is well."""
+        said = [f"The {name} {state}." for name, state in self._parts() if state != GOOD]
+        if self.contents is None:
+            return said
+        here = [worker for worker in self.contents.workers if not worker.silent]
+        if not here:
+            said.append("No worker is there.")
+        said += [
+            f"The worker {w.name} is silent for {w.seen_seconds_ago:.0f} s." for w in self.contents.workers if w.silent
+        ]
+        if self.contents.leases.expired:
+            said.append(f"{self.contents.leases.expired} leases have run out and nobody has taken them back.")
+        return said
+
+    def _parts(self) -> tuple[tuple[str, str], ...]:
+        return ("database", self.database), ("broker", self.broker)
+
+
+def look(settings: Settings) -> Status:
+    """Ask the database and the broker of the settings; whichever does not answer is said so.
+
+    Raises
+    ------
+    OSError
+        If the directory of an SQLite database cannot be made.
+    """
+    engine = make_engine(settings)
+    try:
+        with engine.connect() as connection:
+            database = (
+                GOOD if is_newest(connection) else "has not the newest schema; `galloping migrate` brings it there"
+            )
+        with session_factory(engine, read_only=True)() as session:
+            contents = _contents(session, settings) if database == GOOD else None
+    except SQLAlchemyError:
+        database, contents = "cannot be reached", None
+    finally:
+        engine.dispose()
+    queues = _queues(settings)
+    return Status(database, GOOD if queues else "cannot be reached", queues, contents)
+
+
+def _queues(settings: Settings) -> Queues | None:
+    try:
+        with open_queue(settings) as queue:
+            return Queues(queue.length(), queue.length(chunk=True))
+    except BrokerUnavailable:
+        return None
+
+
+def _contents(session: Session, settings: Settings) -> Contents:
+    now = database_time(session)
+    return Contents(
+        jobs=_work(session, now, chunks=False),
+        chunks=_work(session, now, chunks=True),
+        leases=_leases(session, now),
+        workers=_workers(session, settings, now),
+    )
+
+
+def _work(session: Session, now: datetime, *, chunks: bool) -> Work:
+    kind = Job.batch_id.is_not(None) if chunks else Job.batch_id.is_(None)
+    counted = select(Job.status, func.count(), func.min(Job.created_at)).where(kind).group_by(Job.status)
+    found = {status: (count, oldest) for status, count, oldest in session.execute(counted)}
+    _, oldest = found.get(JobStatus.ACCEPTED, (0, None))
+    waiting = (now - oldest).total_seconds() if oldest else None
+    return Work({status: found.get(status, (0, None))[0] for status in JobStatus}, waiting)
+
+
+def _leases(session: Session, now: datetime) -> Leases:
+    running, waiting = Job.status == JobStatus.RUNNING, Job.status == JobStatus.ACCEPTED
+
+    def count(*conditions: object) -> int:
+        return session.scalar(select(func.count()).select_from(Job).where(*conditions)) or 0  # type: ignore[arg-type]
+
+    return Leases(
+        held=count(running),
+        expired=count(running, Job.lease_expires_at <= now),
+        undispatched=count(waiting, Job.dispatched_at.is_(None)),
+    )
+
+
+def _workers(session: Session, settings: Settings, now: datetime) -> list[WorkerState]:
+    counted = select(Job.lease_owner, func.count()).where(Job.status == JobStatus.RUNNING).group_by(Job.lease_owner)
+    running = {row[0]: row[1] for row in session.execute(counted)}
+    patience = 2.5 * workers.report_seconds(settings)
+    found = []
+    for worker in workers.listed(session):
+        age = (now - worker.seen_at).total_seconds()
+        state = WorkerState(
+            worker.name, worker.version, worker.processes, running.get(worker.name, 0), age, silent=age > patience
+        )
+        found.append(state)
+    return found

@@ -1,0 +1,167 @@
+"""What an operator can set: one typed object, read from `GALLOPING_...` environment variables."""
+
+import os
+import secrets
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, FilePath, SecretStr, field_validator, model_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from app.runtime.weak_secrets import weak_secrets
+
+_PREFIX = "GALLOPING_"
+_SECRET_FILE = "cursor-secret"
+
+Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Count = Annotated[int, Field(ge=1)]
+
+
+def _default_database(data: dict[str, object]) -> str:
+    return f"sqlite:///{data['data_dir']}/galloping.sqlite3"
+
+
+def _default_broker(_: dict[str, object]) -> str:
+    return "filesystem://localhost"
+
+
+def _usable_processors() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class Settings(BaseSettings):
+    """Settings of the service, its workers and the command line; every one has a default that needs no other server.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        If a value is out of its bounds, two contradict each other, or a secret of a deployment could be guessed.
+    """
+
+    model_config = SettingsConfigDict(env_prefix=_PREFIX, frozen=True, extra="ignore", hide_input_in_errors=True)
+
+    data_dir: Path = Field(default=Path("data"), description="Directory of all files of the embedded service")
+    database_url: str = Field(default_factory=_default_database, description="SQLAlchemy address; SQLite or PostgreSQL")
+    broker_url: str = Field(default_factory=_default_broker, description="Celery broker; redis:// or filesystem://")
+    cursor_secret: SecretStr | None = Field(default=None, description="Key that signs cursors; else a file in data_dir")
+    key_cache_seconds: Seconds = Field(default=5.0, description="A revoked key works on for at most so long")
+    reads_per_minute: Count = Field(default=60_000, description="Most GETs of one owner's keys in a minute")
+    changes_per_minute: Count = Field(default=6_000, description="Most other requests of one owner's keys in a minute")
+    strangers_per_minute: Count = Field(default=300, description="Most looks for unremembered keys of one address")
+    max_body_bytes: Count = Field(default=20_000_000, description="Largest request body")
+    max_batch_bytes: Count = Field(default=512_000_000, description="Largest NDJSON or CSV batch, decompressed")
+    max_batch_line_bytes: Count = Field(default=1_000_000, description="Longest text line of an NDJSON or CSV batch")
+    max_batch_lines: Count = Field(default=100_000, description="Most lines of a batch")
+    batches_at_once: Count = Field(default=4, description="Batches that one process takes in at once; others wait")
+    key_lease_seconds: Seconds = Field(default=15.0, description="A key whose batch's receiver died is free after that")
+    chunk_seconds: Seconds = Field(default=2.0, description="Estimated work that one message of a batch carries")
+    most_chunk_lines: Count = Field(default=256, description="Most lines that one message of a batch carries")
+
+    longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait that `Prefer: wait` is granted")
+    watch_seconds: Seconds = Field(default=0.3, description="Between two looks at what clients wait for")
+
+    lease_seconds: Seconds = Field(default=30.0, description="A worker silent for so long has lost its job")
+    heartbeat_seconds: Seconds = Field(default=1.0, description="Between two reports of a worker on its job")
+    max_attempts: Count = Field(default=3, description="Attempts before a job counts as lost with its workers")
+    soft_time_limit_seconds: Seconds = Field(default=3600.0, description="A job that runs longer fails")
+    hard_time_limit_seconds: Seconds = Field(default=3660.0, description="A process that still runs then is killed")
+
+    webhook_private_networks: bool = Field(default=False, description="Webhooks may go to private networks, too")
+    webhook_ca_file: FilePath | None = Field(default=None, description="Authorities that prove webhook receivers")
+    webhook_timeout_seconds: Seconds = Field(default=10.0, description="Longest that sending one webhook takes")
+    webhook_retry_seconds: Seconds = Field(default=5.0, description="First pause between attempts; the next ones grow")
+    webhook_attempts: Count = Field(default=8, description="Attempts before a webhook is given up, after some 27 hours")
+
+    log_level: Literal["debug", "info", "warning", "error"] = Field(default="info", description="Least that is logged")
+    log_format: Literal["json", "text"] = Field(default="json", description="Logs for machines, or for people")
+
+    opentelemetry: bool = Field(default=False, description="Whether requests and jobs are traced")
+
+    api_processes: Count = Field(default=1, description="Processes that answer requests")
+    worker_processes: Count = Field(default_factory=_usable_processors, description="Jobs run at once by one worker")
+    max_jobs_per_process: Count = Field(default=200, description="After so many jobs a process is replaced")
+    shutdown_seconds: Seconds = Field(default=8.0, description="Time that a stopping worker gives to its running jobs")
+    sweep_seconds: Seconds = Field(default=2.0, description="Between two looks for lost leases and unsent jobs")
+    redispatch_seconds: Seconds = Field(default=15.0, description="Unclaimed so long with an empty queue: sent again")
+    broker_timeout_seconds: Seconds = Field(default=1.0, description="Longest wait for one answer of the broker")
+
+    @field_validator("data_dir")
+    @classmethod
+    def _absolute(cls, value: Path) -> Path:
+        return value.expanduser().absolute()
+
+    @field_validator("database_url")
+    @classmethod
+    def _named_driver(cls, value: str) -> str:
+        scheme, separator, rest = value.partition("://")
+        drivers = {"postgresql": "postgresql+psycopg", "postgres": "postgresql+psycopg"}
+        name = drivers.get(scheme, scheme)
+        if name not in {"sqlite", "postgresql+psycopg"} or not separator:
+            raise ValueError("must begin with sqlite:/// or postgresql://")
+        return f"{name}://{rest}"
+
+    @field_validator("broker_url")
+    @classmethod
+    def _known_broker(cls, value: str) -> str:
+        if not value.startswith(("filesystem://", "redis://", "rediss://")):
+            raise ValueError("must begin with redis://, rediss:// or filesystem://")
+        return value
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Settings":
+        if self.hard_time_limit_seconds <= self.soft_time_limit_seconds:
+            raise ValueError("hard_time_limit_seconds must be greater than soft_time_limit_seconds")
+        if self.heartbeat_seconds > self.lease_seconds / 2.0:
+            raise ValueError("heartbeat_seconds must be at most half of lease_seconds")
+        return self
+
+    @model_validator(mode="after")
+    def _guarded(self) -> "Settings":
+        secret = self.cursor_secret.get_secret_value() if self.cursor_secret is not None else None
+        if weak := weak_secrets(self.database_url, self.broker_url, secret):
+            raise ValueError("; ".join(weak))
+        return self
+
+    def environment(self) -> dict[str, str]:
+        """Return the environment variables that give a child process these same settings."""
+        values = self.model_dump(exclude_none=True)
+        plain = {k: v.get_secret_value() if isinstance(v, SecretStr) else str(v) for k, v in values.items()}
+        return {_PREFIX + name.upper(): value for name, value in plain.items()}
+
+
+@cache
+def get_settings() -> Settings:
+    """Return the settings of this process, read from its environment once."""
+    return Settings()
+
+
+def cursor_key(settings: Settings) -> bytes:
+    """Return the key that signs cursors: the one that is set, else one made once and kept in a private file.
+
+    Raises
+    ------
+    OSError
+        If the file can be neither read nor made.
+    """
+    if settings.cursor_secret is not None:
+        return settings.cursor_secret.get_secret_value().encode()
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    path = settings.data_dir / _SECRET_FILE
+    if not path.exists():
+        _keep_secret(path)
+    return path.read_bytes()
+
+
+def _keep_secret(path: Path) -> None:
+    """Write a random secret so that several processes at once agree on one: linking a finished file is atomic."""
+    draft = path.with_name(f"{path.name}.{os.getpid()}.{secrets.token_hex(4)}")
+    descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(descriptor, "w") as file:
+        file.write(secrets.token_urlsafe(32))
+    try:
+        path.hardlink_to(draft)
+    except FileExistsError:
+        pass  # another process was first, and its secret is as good
+    finally:
+        draft.unlink()

@@ -1,0 +1,51 @@
+"""Traces by OpenTelemetry, for those who ask for them: a span for each request, and under it one for its job."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from opentelemetry import propagate, trace
+
+from app.runtime.correlation import Ids
+from app.runtime.settings import Settings
+
+_FLUSH_SECONDS = 2.0
+
+
+def configure(settings: Settings, process: str) -> None:
+    """Send this process's spans to the collector of `OTEL_EXPORTER_OTLP_ENDPOINT`, if the settings ask for it.
+
+    Raises
+    ------
+    ImportError
+        If they do, and the extra `galloping[opentelemetry]` is not installed.
+    """
+    if not settings.opentelemetry:
+        return
+    # Optional, and slow to load.
+    from opentelemetry.exporter.otlp.proto.http.trace_exporter import OTLPSpanExporter  # noqa: PLC0415
+    from opentelemetry.sdk.resources import Resource  # noqa: PLC0415
+    from opentelemetry.sdk.trace import TracerProvider  # noqa: PLC0415
+    from opentelemetry.sdk.trace.export import BatchSpanProcessor  # noqa: PLC0415
+
+    provider = TracerProvider(resource=Resource.create({"service.name": f"galloping-{process}"}))
+    provider.add_span_processor(BatchSpanProcessor(OTLPSpanExporter(), schedule_delay_millis=1000))
+    trace.set_tracer_provider(provider)
+
+
+def finish(**_: object) -> None:
+    """Send the spans that wait still, as a process ends; a collector that is away is waited for shortly."""
+    flush = getattr(trace.get_tracer_provider(), "force_flush", None)
+    if flush is not None:  # the library's own time for this is not kept to
+        thread = threading.Thread(target=flush, name="last-spans", daemon=True)
+        thread.start()
+        thread.join(_FLUSH_SECONDS)
+
+
+@contextmanager
+def job_span(ids: Ids) -> Iterator[None]:
+    """Work on a job within a span under that of the request that made it; without a provider this does nothing."""
+    parent = propagate.extract({"traceparent": ids.trace_parent} if ids.trace_parent else {})
+    known: dict[str, str | int] = {"job.id": ids.job_id or "", "job.attempt": ids.attempt or 0}
+    with trace.get_tracer("galloping").start_as_current_span("job", parent, attributes=known):
+        yield

@@ -1,0 +1,53 @@
+"""The record of who changed what, written in the transaction of the change."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from uuid import UUID
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+from uuid_utils.compat import uuid7
+
+from app.security.caller import Caller
+from app.storage.database import database_time, insert_rows
+from app.tables import AuditAction, AuditEvent
+
+OPERATOR = Caller("operator", frozenset())
+"""Who works on the machine itself, by the command line."""
+
+
+def record(
+    session: Session,
+    caller: Caller,
+    action: AuditAction,
+    subject: UUID | None = None,
+    detail: str | None = None,
+    *,
+    at: datetime | None = None,
+) -> None:
+    """Add what a caller does to the record; without a moment it is done now."""
+    made_by = {"owner": caller.owner, "key_id": caller.key_id}
+    session.add(
+        AuditEvent(
+            id=uuid7(), at=at or database_time(session), action=action, subject=subject, detail=detail, **made_by
+        )
+    )
+
+
+def record_all(session: Session, done: Sequence[tuple[Caller, AuditAction, UUID, datetime]]) -> None:
+    """Add what several callers did, each to a subject at a moment, in one statement."""
+    events = [
+        {"id": uuid7(), "at": at, "owner": caller.owner, "key_id": caller.key_id, "action": action, "subject": subject}
+        for caller, action, subject, at in done
+    ]
+    insert_rows(session, AuditEvent, events)
+
+
+def latest(session: Session, owner: str | None, since: datetime | None, limit: int) -> Sequence[AuditEvent]:
+    """Return the newest events, the newest first; of one owner, or since a moment, if these are given."""
+    statement = select(AuditEvent).order_by(AuditEvent.id.desc()).limit(limit)
+    if owner is not None:
+        statement = statement.where(AuditEvent.owner == owner)
+    if since is not None:
+        statement = statement.where(AuditEvent.at >= since)
+    return session.scalars(statement).all()

@@ -1,0 +1,170 @@
+"""The gate before the API: who asks, whether they may, and how often. What is not named as open needs a key."""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from functools import partial
+from urllib.parse import urlsplit
+
+from fastapi import Request
+from sqlalchemy.exc import OperationalError, SQLAlchemyError
+from sqlalchemy.orm import Session, sessionmaker
+from starlette import types
+
+from app.coalescing.expiring_cache import Memo
+from app.http import problems
+from app.http.problems import ProblemError, ProblemKind
+from app.runtime.loopback import is_loopback
+from app.runtime.settings import Settings
+from app.security import keys
+from app.security.caller import LOCAL, Caller, Scope
+from app.security.quotas import Meter, Quota, Standing
+
+_OPEN = ("/docs", "/health", "/openapi.json", "/problems")
+_FORWARDED = (b"forwarded", b"x-forwarded-for")
+_NEEDED = {"GET": Scope.READ, "POST": Scope.SUBMIT, "PUT": Scope.SUBMIT, "PATCH": Scope.SUBMIT, "DELETE": Scope.CANCEL}
+
+Headers = Mapping[bytes, bytes]
+
+
+class Gate:
+    """ASGI middleware: lets those through who have a key with the right scope and keep to their quota.
+
+    A service without any key is open to its own machine, to nobody else, and meters nobody. Who came through stands in
+    the request's state as `caller`.
+    """
+
+    def __init__(
+        self,
+        app: types.ASGIApp,
+        settings: Settings,
+        readers: sessionmaker[Session],
+        writers: sessionmaker[Session],
+        meter: Meter,
+    ) -> None:
+        """Wrap an application."""
+        self.app = app
+        self._meter = meter
+        self._callers = Memo(partial(_look_up, readers, writers), settings.key_cache_seconds)
+        self._unguarded: Memo[str, bool] = Memo(lambda _: _is_unguarded(readers), settings.key_cache_seconds)
+        self._reads = Quota("reads", settings.reads_per_minute)
+        self._changes = Quota("changes", settings.changes_per_minute)
+        self._strangers = Quota("strangers", settings.strangers_per_minute)
+
+    async def __call__(self, scope: types.Scope, receive: types.Receive, send: types.Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http" or is_open(scope["path"].removeprefix(scope.get("root_path", ""))):
+            await self.app(scope, receive, send)
+            return
+        try:
+            caller, standing = await self._admit(scope)
+        except ProblemError as problem:
+            answer = await problems.answer(Request(scope), problem)
+            await answer(scope, receive, send)
+            return
+        scope.setdefault("state", {})["caller"] = caller
+        await self.app(scope, receive, _telling(standing, send) if standing is not None else send)
+
+    async def _admit(self, scope: types.Scope) -> tuple[Caller, Standing | None]:
+        """Return who asks, and what is left of their quota if they have one.
+
+        Raises
+        ------
+        ProblemError
+            401, 403 or 429 if they may not; 503 if the database does not tell.
+        """
+        try:
+            caller = await self._caller(scope, dict(scope["headers"]))
+        except OperationalError as error:
+            raise problems.database_fault(error) from error
+        needed = _NEEDED.get(scope["method"])
+        if needed is not None and needed not in caller.scopes:
+            said = f"The key lacks the scope {needed}."
+            raise _refused(ProblemKind.FORBIDDEN, said, error="insufficient_scope", scope=needed)
+        if caller.key_id is None:
+            return caller, None
+        return caller, await self._take(self._reads if needed is Scope.READ else self._changes, caller.owner)
+
+    async def _caller(self, scope: types.Scope, headers: Headers) -> Caller:
+        text = _bearer(headers)
+        if text is None:
+            if _asks_from_here(scope, headers) and await self._unguarded.ask(""):
+                return LOCAL
+            said = "Send a key as Authorization: Bearer; a service without keys answers its own machine only."
+            raise _refused(ProblemKind.UNAUTHENTICATED, said)
+        digest = keys.digest_of(text)
+        if not self._callers.knows(digest):
+            # What is not remembered costs a look at the database, so whoever makes many of those is slowed down.
+            await self._take(self._strangers, str((scope.get("client") or ("",))[0]))
+        caller = await self._callers.ask(digest)
+        if caller is None:
+            said = "The key is unknown, revoked or expired."
+            raise _refused(ProblemKind.UNAUTHENTICATED, said, error="invalid_token")
+        return caller
+
+    async def _take(self, quota: Quota, client: str) -> Standing:
+        standing = await self._meter.take(quota, client)
+        if standing.left is None:
+            said = f"{quota.most} requests of this kind a minute are allowed; go on in {standing.reset_seconds} s."
+            headers = {"Retry-After": str(standing.reset_seconds), **standing.fields}
+            raise ProblemError(ProblemKind.TOO_MANY_REQUESTS, said, headers=headers)
+        return standing
+
+
+def is_open(path: str) -> bool:
+    """Tell whether an address needs no key."""
+    return any(path == open_path or path.startswith(f"{open_path}/") for open_path in _OPEN)
+
+
+def _bearer(headers: Headers) -> str | None:
+    kind, _, text = headers.get(b"authorization", b"").decode("latin-1").partition(" ")
+    return text.strip() if kind.lower() == "bearer" else None
+
+
+def _asks_from_here(scope: types.Scope, headers: Headers) -> bool:
+    """Tell whether a request comes from this machine and is meant for it.
+
+    Neither a proxy on this machine may pass on what comes from elsewhere, nor a page in a browser on this machine reach
+    the service by a name of its own that leads here (rebinding of DNS names).
+    """
+    server, client = (str((scope.get(end) or ("",))[0]) for end in ("server", "client"))
+    forwarded = any(name in headers for name in _FORWARDED)
+    return is_loopback(server) and is_loopback(client) and is_loopback(_host(headers)) and not forwarded
+
+
+def _host(headers: Headers) -> str:
+    try:
+        return urlsplit(f"//{headers.get(b'host', b'').decode('latin-1')}").hostname or ""
+    except ValueError:
+        return ""
+
+
+def _refused(kind: ProblemKind, said: str, **parameters: str) -> ProblemError:
+    """Return the problem of a request that may not pass, with the challenge of RFC 6750."""
+    challenge = ", ".join(f'{name}="{value}"' for name, value in {"realm": "galloping", **parameters}.items())
+    return ProblemError(kind, said, headers={"WWW-Authenticate": f"Bearer {challenge}"})
+
+
+def _telling(standing: Standing, send: types.Send) -> types.Send:
+    """Add the standing of a quota to the answer."""
+    fields = [(name.lower().encode(), value.encode()) for name, value in standing.fields.items()]
+
+    async def send_telling(message: types.Message) -> None:
+        if message["type"] == "http.response.start":
+            message["headers"] = [*message["headers"], *fields]
+        await send(message)
+
+    return send_telling
+
+
+def _look_up(readers: sessionmaker[Session], writers: sessionmaker[Session], digest: str) -> Caller | None:
+    with readers() as session:
+        caller, use_to_record = keys.present(session, digest)
+    if use_to_record:
+        with suppress(SQLAlchemyError), writers.begin() as session:  # a database that is full still lets callers read
+            keys.record_use(session, digest)
+    return caller
+
+
+def _is_unguarded(readers: sessionmaker[Session]) -> bool:
+    with readers() as session:
+        return not keys.any_exist(session)

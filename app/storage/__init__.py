@@ -1,0 +1,1 @@
+"""The database: connections, migrations, stored results, counters. What a job may do is in `app.jobs`."""

@@ -1,0 +1,166 @@
+"""Engines and sessions for SQLite and PostgreSQL, and the clock that both sides of a lease read."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
+from sqlite3 import Connection as SQLiteConnection
+from typing import Any, cast
+
+import orjson
+import psycopg
+from psycopg.sql import SQL, Identifier
+from psycopg.types.json import Json
+from sqlalchemy import (
+    JSON,
+    ColumnElement,
+    Connection,
+    Engine,
+    NullPool,
+    Table,
+    create_engine,
+    event,
+    insert,
+    make_url,
+    select,
+)
+from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
+from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.sql.functions import func
+
+from app.runtime.settings import Settings
+from app.tables import Base, UtcDateTime
+
+_BUSY_SECONDS = 30.0
+_THREADS = 40
+_IMPATIENT: dict[str, Any] = {"connect_timeout": 2, "options": "-c statement_timeout=2000"}
+_POSTGRESQL = make_url("postgresql+psycopg://").get_dialect()()
+_CLOCK = "time by the database's clock"
+
+
+def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
+    """Make an engine for the database of the settings; the directory of an SQLite file is made if it is missing.
+
+    SQLite: write-ahead log, foreign keys, a busy timeout, and every transaction begins as a writer (`BEGIN IMMEDIATE`)
+    unless its session comes from `session_factory(..., read_only=True)`: a reader that turns into a writer midway
+    would fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use.
+    An impatient engine is for looks whether the database is there: it connects anew for each, and gives up soon.
+
+    Raises
+    ------
+    OSError
+        If the directory cannot be made.
+    """
+    url = make_url(settings.database_url)
+    if url.get_backend_name() != "sqlite":
+        if impatient:
+            return create_engine(url, poolclass=NullPool, connect_args=_IMPATIENT)
+        # Enough for every thread of the API: what overflows a pool is closed after each use and opened anew.
+        pool = {"pool_size": _THREADS, "max_overflow": 0}
+        return create_engine(url, pool_pre_ping=True, connect_args={"connect_timeout": 10}, **pool)
+    if url.database:
+        Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+    engine = create_engine(url, connect_args={"timeout": _IMPATIENT["connect_timeout"] if impatient else _BUSY_SECONDS})
+    event.listen(engine, "connect", _prepare_sqlite)
+    event.listen(engine, "begin", _begin_sqlite)
+    return engine
+
+
+def session_factory(engine: Engine, *, read_only: bool = False) -> sessionmaker[Session]:
+    """Make a factory of sessions whose objects stay readable after the commit.
+
+    A session that only reads should come from a `read_only` factory: on SQLite it then neither waits for a writer nor
+    holds one up, however long it streams; on PostgreSQL the server refuses writes in it.
+    """
+    bind = engine.execution_options(read_only=True, **_read_only_options(engine)) if read_only else engine
+    return sessionmaker(bind, expire_on_commit=False)
+
+
+def database_time(session: Session) -> datetime:
+    """Return the time in UTC by the database's clock, which workers on machines with differing clocks share.
+
+    A server is asked once a transaction, which is short.
+    """
+    if session.get_bind().dialect.name != "postgresql":
+        return datetime.now(UTC)
+    asked_in, moment = session.info.get(_CLOCK, (None, None))
+    if asked_in is None or asked_in is not session.get_transaction():
+        moment = session.execute(select(func.clock_timestamp(type_=UtcDateTime))).scalar_one()
+        session.info[_CLOCK] = session.get_transaction(), moment
+    found: datetime = moment
+    return found
+
+
+def database_moment(session: Session) -> datetime | ColumnElement[datetime]:
+    """Return `database_time` for a statement that writes it: a server reads its clock there and need not be asked."""
+    if session.get_bind().dialect.name != "postgresql":
+        return database_time(session)
+    return func.clock_timestamp(type_=UtcDateTime)
+
+
+def insert_rows(session: Session, kind: type[Base], records: Sequence[Mapping[str, Any]]) -> None:
+    """Insert any number of rows in one statement: by binary COPY on PostgreSQL, at a quarter of the time of INSERTs.
+
+    All of them name the same columns; what they do not name is null, or what the database itself puts there.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If the database refuses a row, or fails.
+    """
+    table = cast(Table, kind.__table__)
+    if not records:
+        return
+    if session.get_bind().dialect.name != "postgresql":
+        session.execute(insert(table), records)
+        return
+    names = tuple(records[0])
+    as_json = {column.name for column in table.columns if isinstance(column.type, JSON)}
+    statement, types = _copying(table, names)
+    cursor: Any = session.connection().connection.cursor()
+    with _as_sqlalchemy_errors(), cursor, cursor.copy(statement) as copy:
+        copy.set_types(types)  # a value in binary does not say what it is
+        for record in records:
+            copy.write_row([_as_json(record[n]) if n in as_json else record[n] for n in names])
+
+
+@cache
+def _copying(table: Table, names: tuple[str, ...]) -> tuple[bytes, tuple[str, ...]]:
+    """Return the statement for these columns, and PostgreSQL's names of their types."""
+    columns = SQL(", ").join(map(Identifier, names))
+    statement = SQL("COPY {} ({}) FROM STDIN (FORMAT BINARY)").format(Identifier(table.name), columns).as_bytes()
+    types = (table.columns[name].type.compile(dialect=_POSTGRESQL) for name in names)
+    return statement, tuple(text.partition("(")[0].lower() for text in types)
+
+
+def _as_json(value: object) -> Json | None:
+    return None if value is None else Json(value, orjson.dumps)
+
+
+@contextmanager
+def _as_sqlalchemy_errors() -> Iterator[None]:
+    """Let callers see one family of errors, whichever way the rows go."""
+    try:
+        yield
+    except psycopg.IntegrityError as error:
+        raise IntegrityError(None, None, error) from error
+    except psycopg.OperationalError as error:
+        raise OperationalError(None, None, error) from error
+    except psycopg.Error as error:
+        raise DBAPIError(None, None, error) from error
+
+
+def _read_only_options(engine: Engine) -> dict[str, Any]:
+    return {"postgresql_readonly": True} if engine.dialect.name == "postgresql" else {}
+
+
+def _prepare_sqlite(connection: SQLiteConnection, _: object) -> None:
+    connection.isolation_level = None  # the driver must not begin transactions by itself: _begin_sqlite does
+    for pragma in ("journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON"):
+        connection.execute(f"PRAGMA {pragma}").close()
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    reads = connection.get_execution_options().get("read_only", False)
+    connection.exec_driver_sql("BEGIN" if reads else "BEGIN IMMEDIATE")

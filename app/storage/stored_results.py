@@ -1,0 +1,119 @@
+"""Results in SQL: one row a point, stored with the end of a job, unpacked into the flat rows of the contract."""
+
+import threading
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+from uuid import UUID
+
+import orjson
+import zstandard
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.convert import TABLES, Table
+from app.storage.database import insert_rows
+from app.tables import PointRow
+
+if TYPE_CHECKING:
+    from app.convert import PointResult
+
+STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m", "twist_rad")
+PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
+NO_TABLES = orjson.dumps({name: [] for name in TABLES})
+_POINTS_A_FETCH = 100
+_OWN = threading.local()
+_LEVEL = 1  # higher levels take longer and save nothing on rows of numbers
+
+
+def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"], batch_id: UUID | None = None) -> None:
+    """Add everything that was found at these points of a job, or lines of a batch's chunk, in one statement.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If a point is stored already.
+    """
+    if points_found:
+        place = {"job_id": job_id, "batch_id": batch_id}
+        compressor = zstandard.ZstdCompressor(level=_LEVEL)
+        insert_rows(session, PointRow, [{**place, **_as_columns(point, compressor)} for point in points_found])
+
+
+def unpacked(packed: bytes | None) -> bytes:
+    """Return the JSON text of a packed column; that of tables without rows for a point that failed."""
+    return NO_TABLES if packed is None else _unpacker().decompress(packed)
+
+
+def _unpacker() -> zstandard.ZstdDecompressor:
+    """Return the unpacker of this thread: to make one for each text takes as long as to unpack it."""
+    if not hasattr(_OWN, "unpacker"):
+        _OWN.unpacker = zstandard.ZstdDecompressor()
+    unpacker: zstandard.ZstdDecompressor = _OWN.unpacker
+    return unpacker
+
+
+def tables_of(packed: bytes | None) -> dict[Table, list[dict[str, Any]]]:
+    """Return the rows that a packed column holds, by the name of their table."""
+    found: dict[Table, list[dict[str, Any]]] = orjson.loads(unpacked(packed))
+    return found
+
+
+def axes(session: Session, job_id: UUID) -> list[str]:
+    """Return the parameters that the job's study varies, which are the first columns of every row; none without one."""
+    found = session.execute(select(PointRow.axes).where(PointRow.job_id == job_id).limit(1)).scalar_one_or_none()
+    return list(found or ())
+
+
+def rows(session: Session, job_id: UUID, table: Table) -> Iterator[dict[str, Any]]:
+    """Stream the rows of one table in the order of the points; the values of the study's axes come first in each."""
+    statement = select(PointRow.axes, PointRow.tables).where(PointRow.job_id == job_id).order_by(PointRow.point)
+    for point_axes, packed in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):
+        for row in tables_of(packed).get(table, ()):
+            yield {**point_axes, **row}
+
+
+def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
+    """Stream the points: number, axes, static state, Den Hartog's coefficient, warnings, engine version, failure."""
+    static = [getattr(PointRow, name) for name in STATIC]
+    hartog = PointRow.den_hartog_coefficient, PointRow.den_hartog_unstable
+    said = PointRow.warnings, PointRow.engine_version, PointRow.failure
+    statement = select(PointRow.point, PointRow.axes, *static, *hartog, *said).where(PointRow.job_id == job_id)
+    for row in session.execute(statement.order_by(PointRow.point).execution_options(yield_per=_POINTS_A_FETCH)):
+        solved = row.horizontal_tension_n is not None
+        found = {"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable}
+        yield {
+            "point": row.point,
+            "axes": row.axes,
+            "static": {name: getattr(row, name) for name in STATIC} if solved else None,
+            "den_hartog": found if row.den_hartog_coefficient is not None else None,
+            "warnings": row.warnings,
+            "engine_version": row.engine_version,
+            "failure": row.failure,
+        }
+
+
+def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
+    """Stream the orbits: point, cycle (number of the row among the point's limit cycles), and Fourier coefficients."""
+    packed = PointRow.job_id == job_id, PointRow.orbits.is_not(None)
+    statement = select(PointRow.point, PointRow.orbits).where(*packed).order_by(PointRow.point)
+    for point, found in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):
+        for orbit in orjson.loads(unpacked(found)):
+            yield {"point": point, **orbit}
+
+
+def _as_columns(point: "PointResult", compressor: zstandard.ZstdCompressor) -> dict[str, Any]:
+    failed = point.failure is not None
+    return {
+        "point": point.point,
+        "axes": point.axes,
+        **{name: point.static.get(name) for name in STATIC},
+        "den_hartog_coefficient": point.den_hartog.get("coefficient"),
+        "den_hartog_unstable": point.den_hartog.get("unstable"),
+        "warnings": point.warnings,
+        "engine_version": point.engine_version,
+        "failure": point.failure,
+        **{name: point.peaks.get(name) for name in PEAKS},
+        "tables": None if failed else compressor.compress(point.tables_json),
+        "orbits": None if failed else compressor.compress(point.orbits_json),
+        "input_hash": point.input_hash,
+    }

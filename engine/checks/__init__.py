@@ -1,0 +1,1 @@
+"""What tests limit cycles from outside the harmonic balance: direct integration, measures of confidence."""

@@ -1,0 +1,128 @@
+"""Direct integration of the reduced equations, as the check a user can ask for. Theory section 7.5."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from engine.arrays import FloatArray
+from engine.cycles.harmonic_balance import Orbits, states
+from engine.models.aerodynamic_load import force
+from engine.models.reduced_model import ReducedModel
+from engine.outcome import Outcome
+
+SAMPLES = 64  # a cycle
+PERIOD_SAMPLES = 192  # of the one period that is measured: they leave 1e-4 of the amplitude
+BLOCK = 50  # cycles between two looks at the amplitude
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """Where direct integration ended.
+
+    extremes: (m, 2), smallest and largest of each co-ordinate over the last block; state: (2 m,), (q, q') at the end;
+    cycles: number integrated; outcome: LIMIT_REACHED if the amplitude still moved; history: (samples, m), the last
+    block.
+    """
+
+    extremes: FloatArray
+    state: FloatArray
+    cycles: int
+    outcome: Outcome
+    history: FloatArray
+
+    @property
+    def amplitude(self) -> FloatArray:
+        """Half of the peak-to-peak of each co-ordinate, (m,)."""
+        return np.asarray(0.5 * (self.extremes[:, 1] - self.extremes[:, 0]))
+
+
+def integrate(
+    model: ReducedModel, wind_speed: float, start: FloatArray, *, change: float = 1e-4, longest: int = 20_000
+) -> Settled:
+    """Integrate until the amplitude of every co-ordinate moves less than a fraction over a block of 50 cycles.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        A single one, without leading axes.
+    wind_speed : float
+        [m/s].
+    start : (2 m,)
+        q and q'.
+    change : float
+        Fraction of the largest amplitude of a co-ordinate in two successive blocks.
+    longest : int
+        Number of cycles after which the integration stops.
+
+    Returns
+    -------
+    Settled
+    """
+    period = 2.0 * np.pi / _slowest(model)
+    times = np.linspace(0.0, BLOCK * period, BLOCK * SAMPLES + 1)
+    state, before = start, np.full(model.mass.shape[-1], np.inf)
+    for block in range(1, longest // BLOCK + 1):
+        history = _advance(model, wind_speed, state, times)
+        state = history[-1]
+        m = before.size
+        extremes = np.stack([history[:, :m].min(axis=0), history[:, :m].max(axis=0)], axis=-1)
+        amplitude = 0.5 * (extremes[:, 1] - extremes[:, 0])
+        if not np.isfinite(amplitude).all():
+            break
+        if (np.abs(amplitude - before) <= change * amplitude).all():
+            return Settled(extremes, state, block * BLOCK, Outcome.CONVERGED, history[:, :m])
+        before = amplitude
+    return Settled(extremes, state, block * BLOCK, Outcome.LIMIT_REACHED, history[:, :m])
+
+
+def held_amplitude(model: ReducedModel, orbit: Orbits, periods: int) -> FloatArray:
+    """Integrate from a cycle for some of its periods and measure the last one.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        A single one, without leading axes.
+    orbit : Orbits
+        Of one cycle.
+    periods : int
+
+    Returns
+    -------
+    (m,)
+        Half of the peak-to-peak of each co-ordinate.
+    """
+    m = model.mass.shape[-1]
+    wind, period = float(orbit.wind_speed[0]), 2.0 * np.pi / float(orbit.angular_frequency[0])
+    start = states(orbit, np.zeros(1))[0, 0] * np.repeat([1.0, wind], m)
+    return np.asarray(0.5 * np.ptp(last_period(model, wind, start, last_times(period, periods)), axis=0))
+
+
+def last_times(period: float, periods: int) -> FloatArray:
+    """Return the times of samples of the last one of some periods [s]."""
+    return np.asarray(period * (periods - 1.0 + np.arange(PERIOD_SAMPLES + 1) / PERIOD_SAMPLES))
+
+
+def last_period(model: ReducedModel, wind_speed: float, start: FloatArray, times: FloatArray) -> FloatArray:
+    """Integrate from (q, q') at time 0 and return q at some later times: (times, m)."""
+    return _advance(model, wind_speed, start, np.append(0.0, times))[1:, : model.mass.shape[-1]]
+
+
+def _slowest(model: ReducedModel) -> float:
+    rates = np.linalg.eigvals(np.linalg.solve(model.mass, model.stiffness)).real
+    return float(np.sqrt(rates.min()))
+
+
+def _advance(model: ReducedModel, wind_speed: float, state: FloatArray, times: FloatArray) -> FloatArray:
+    m = model.mass.shape[-1]
+    inverse = np.linalg.inv(model.mass)
+    stiffness, damping = inverse @ model.stiffness, inverse @ model.damping
+
+    def rate(_: float, y: FloatArray) -> FloatArray:
+        q, velocity = y[:m], y[m:]
+        load = force(model.load, np.concatenate([q, velocity / wind_speed])[None])[0]
+        acceleration = wind_speed**2 * (inverse @ load) - stiffness @ q - damping @ velocity
+        return np.concatenate([velocity, acceleration])
+
+    result = solve_ivp(rate, (0.0, times[-1]), state, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-10)
+    return np.asarray(result.y.T)

@@ -1,0 +1,1 @@
+"""Limit cycles: first harmonic, harmonic balance, Floquet multipliers, branches, bifurcations, search."""

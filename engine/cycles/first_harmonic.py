@@ -1,0 +1,268 @@
+"""Explicit first-harmonic limit cycles of the published closure. Theory section 7.1.
+
+The load depends on one scalar alpha' = alpha_0 + R cos(w t) and so acts as gains. With them the characteristic
+polynomial is affine in known polynomials, and an imaginary pair asks its even and its odd part to vanish together: the
+odd part is quadratic in w^2, which leaves one scalar equation in R, solved for all members side by side.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
+from engine.kernels import compiled
+from engine.models.aerodynamic_load import force
+from engine.models.critical_wind_speeds import at_wind, state_matrices
+from engine.models.reduced_model import ReducedModel, take
+
+LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
+GRID = 40
+HALVINGS = 14
+ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
+
+
+@dataclass(frozen=True, slots=True)
+class FirstHarmonic:
+    """Explicit cycles q = mean + Re(amplitude exp(i w t)) of a stack of models.
+
+    member: (cycles,), index of the model; angular_frequency: (cycles,) [rad/s]; angle: (cycles,), R [rad];
+    mean: (cycles, 3); amplitude: (cycles, 3), complex.
+    """
+
+    member: IntArray
+    angular_frequency: FloatArray
+    angle: FloatArray
+    mean: FloatArray
+    amplitude: ComplexArray
+
+
+@dataclass(frozen=True, slots=True)
+class _Scalar:
+    """The scalar problem of each member: gains act through U^2 B_j, alpha' is read by a form in q and q'.
+
+    polynomials: (members, 4, 7), coefficients in s/scale of det Z and of r adj(Z) U^2 B_j; static: (members, 3),
+    alpha_0 per unit of each mean load; scale: (members,) [rad/s].
+    """
+
+    polynomials: FloatArray
+    static: FloatArray
+    scale: FloatArray
+
+
+def explicit_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
+    """Find every first-harmonic cycle of each model.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Three degrees of freedom under the published closure, leading axis (members,).
+    wind_speed : (members,)
+        [m/s].
+
+    Returns
+    -------
+    FirstHarmonic
+    """
+    scalar = _scalar_problem(model, wind_speed)
+    angle = np.concatenate([[0.0], np.geomspace(1e-4, LARGEST_ANGLE, GRID - 1)])
+    angles = np.broadcast_to(angle, (wind_speed.size, GRID))
+    even, _ = _even_part(scalar, np.arange(wind_speed.size)[:, None], angles)
+    known = np.isfinite(even)
+    changes = known[:, 1:] & known[:, :-1] & (np.sign(even[:, 1:]) != np.sign(even[:, :-1]))
+    member, cell, root = np.nonzero(changes | (known[:, 1:] ^ known[:, :-1]))
+    left, right = _real_part(scalar, member, root, angle[cell], angle[cell + 1])
+    ends = [np.sign(_branch(scalar, member, root, end)) for end in (left, right)]
+    bracket = ends[0] * ends[1] < 0.0
+    member, root, sign = member[bracket], root[bracket], ends[0][bracket]
+    refined = _bisected(
+        lambda middle: np.sign(_branch(scalar, member, root, middle)) == sign, left[bracket], right[bracket]
+    )
+    return _cycles(model, wind_speed, scalar, member, root, 0.5 * (refined[0] + refined[1]))
+
+
+def _scalar_problem(model: ReducedModel, wind_speed: FloatArray) -> _Scalar:
+    """Interpolate the characteristic polynomials on a circle and solve the statics."""
+    square = wind_speed[:, None] ** 2
+    vectors = square[..., None] * model.load.table[:, 0].swapaxes(-1, -2)
+    frequency = np.sqrt(np.abs(np.diagonal(model.stiffness, axis1=-2, axis2=-1)))
+    frequency /= np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))
+    scale = np.exp(np.log(frequency).mean(axis=-1))
+    points = np.exp(2j * np.pi * np.arange(ORDER + 1) / (ORDER + 1))
+    s = points * scale[:, None]
+    dynamic = _dynamic_stiffness(model, s)
+    reader = _reader(model, wind_speed, s)
+    response = np.linalg.solve(dynamic, np.swapaxes(vectors, -1, -2)[:, None].astype(np.complex128))
+    determinant = np.linalg.det(dynamic)
+    numerators = determinant[..., None] * (reader[..., None, :] @ response)[..., 0, :]
+    values = np.concatenate([determinant[..., None], numerators], axis=-1)
+    coefficients = np.fft.fft(values, axis=1).real / (ORDER + 1)
+    at_rest = np.linalg.solve(model.stiffness, np.swapaxes(vectors, -1, -2))
+    form = model.load.forms[:, 0, 0, : model.mass.shape[-1]]
+    return _Scalar(coefficients.swapaxes(-1, -2), (form[:, None, :] @ at_rest)[:, 0], scale)
+
+
+def _dynamic_stiffness(model: ReducedModel, s: ComplexArray) -> ComplexArray:
+    """Return Z(s) = M s^2 + C s + K: (members, points, 3, 3)."""
+    laplace = s[..., None, None]
+    return np.asarray(model.mass[:, None] * laplace**2 + model.damping[:, None] * laplace + model.stiffness[:, None])
+
+
+def _reader(model: ReducedModel, wind_speed: FloatArray, s: ComplexArray) -> ComplexArray:
+    """Return the row r(s) with alpha' = r(s) q, eq. (A16): (members, points, 3)."""
+    m = model.mass.shape[-1]
+    form = model.load.forms[:, None, 0, 0]
+    return np.asarray(form[..., :m] + form[..., m:] * (s / wind_speed[:, None])[..., None])
+
+
+def _mean_angle(static: FloatArray, angle: FloatArray) -> FloatArray:
+    """Solve the statics of alpha_0 under an oscillation of amplitude R, by Newton's method from zero."""
+    g_1, g_2, g_3 = (static[..., j] for j in range(3))
+    half = 0.5 * angle**2
+    alpha = np.zeros_like(angle)
+    for _ in range(6):
+        value = g_1 * alpha + g_2 * (alpha**2 + half) + g_3 * (alpha**3 + 3.0 * alpha * half) - alpha
+        slope = g_1 + 2.0 * g_2 * alpha + 3.0 * g_3 * (alpha**2 + half) - 1.0
+        step = value / np.where(slope == 0.0, np.inf, slope)
+        alpha = alpha - np.minimum(np.maximum(step, -0.5), 0.5)
+    return np.asarray(alpha)
+
+
+def _gains(alpha: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return the factors of B_1, B_2, B_3 in the gain N: (..., 3)."""
+    return np.stack([np.ones_like(alpha), 2.0 * alpha, 3.0 * alpha**2 + 0.75 * angle**2], axis=-1)
+
+
+def _even_part(scalar: _Scalar, member: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the even part of the polynomial at both roots w^2 of its odd part, and those roots: (..., 2) each."""
+    if compiled.AVAILABLE:
+        return compiled.even_part(scalar.polynomials, scalar.static, member, angle)
+    gains = _gains(_mean_angle(scalar.static[member], angle), angle)
+    factors = np.concatenate([np.ones((*angle.shape, 1)), -gains], axis=-1)
+    p = (factors[..., None, :] @ scalar.polynomials[member])[..., 0, :]
+    discriminant = p[..., 3] ** 2 - 4.0 * p[..., 5] * p[..., 1]
+    root = np.sqrt(np.where(discriminant >= 0.0, discriminant, np.nan))
+    far = p[..., 3] + np.copysign(root, p[..., 3])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        both = np.stack([2.0 * p[..., 1] / far, far / (2.0 * p[..., 5])], axis=-1)
+        square = np.where(both > 0.0, both, np.nan)
+        even = p[..., 0, None] - square * (p[..., 2, None] - square * (p[..., 4, None] - square * p[..., 6, None]))
+    return even, square
+
+
+def _branch(scalar: _Scalar, member: IntArray, root: IntArray, angle: FloatArray) -> FloatArray:
+    """Return the even part at one of the two roots of the odd part: (brackets,)."""
+    return np.asarray(_even_part(scalar, member, angle)[0][np.arange(member.size), root])
+
+
+def _real_part(
+    scalar: _Scalar, member: IntArray, root: IntArray, left: FloatArray, right: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Cut each cell to where the root of the odd part is real and positive: pairs of roots may be born inside."""
+    known = [np.isfinite(_branch(scalar, member, root, end)) for end in (left, right)]
+    low, high = _bisected(
+        lambda middle: np.isfinite(_branch(scalar, member, root, middle)) == known[0], left.copy(), right.copy()
+    )
+    return np.where(known[0], left, high), np.where(known[1], right, low)
+
+
+def _bisected(
+    like_left: Callable[[FloatArray], BoolArray], left: FloatArray, right: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Halve brackets; cells of the grid are a third of the angle wide, so that 14 times leave 2e-5 of it."""
+    for _ in range(HALVINGS):
+        middle = 0.5 * (left + right)
+        same = like_left(middle)
+        left, right = np.where(same, middle, left), np.where(same, right, middle)
+    return left, right
+
+
+def _cycles(
+    model: ReducedModel,
+    wind_speed: FloatArray,
+    scalar: _Scalar,
+    member: IntArray,
+    root: IntArray,
+    angle: FloatArray,
+) -> FirstHarmonic:
+    _, square = _even_part(scalar, member, angle)
+    frequency = np.sqrt(square[np.arange(member.size), root]) * scalar.scale[member]
+    alpha = _mean_angle(scalar.static[member], angle)
+    vectors = wind_speed[member, None, None] ** 2 * model.load.table[member, 0].swapaxes(-1, -2)
+    gain = (_gains(alpha, angle)[:, None] @ vectors)[:, 0]
+    dynamic = _dynamic_stiffness(take(model, member), _complex(1j * frequency[:, None]))[:, 0]
+    amplitude = np.linalg.solve(dynamic, (gain * angle[:, None])[..., None].astype(np.complex128))[..., 0]
+    mean_load = np.stack([alpha, alpha**2 + 0.5 * angle**2, alpha**3 + 1.5 * alpha * angle**2], axis=-1)
+    mean = np.linalg.solve(model.stiffness[member], (mean_load[:, None] @ vectors)[:, 0, :, None])[..., 0]
+    return FirstHarmonic(member, frequency, angle, mean, _complex(amplitude))
+
+
+def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
+    """Guess a cycle along every unstable mode of any model from the energy of one period.
+
+    Along q = R Re(v exp(i w t)) the wind's work less the damping's is p_1 R^2 + p_3 R^4 for a cubic load; the even
+    powers do no work. The guess is the R where it vanishes.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,), any number of degrees of freedom.
+    wind_speed : (members,)
+        [m/s].
+
+    Returns
+    -------
+    FirstHarmonic
+        With mean zero; angle is NaN.
+    """
+    matrices = at_wind(state_matrices(model), wind_speed)
+    values = eigenvalues(matrices)
+    member, mode = np.nonzero(
+        (values.real > 0.0) & (values.imag > 1e-9 * np.abs(values).max(axis=-1, initial=0.0)[:, None])
+    )
+    m = model.mass.shape[-1]
+    weight = 1.0 / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
+    frequency = values.imag[member, mode]
+    shape = _complex(_modes(matrices[member], values[member, mode]) * weight)
+    linear, cubic = _work(take(model, member), wind_speed[member], frequency, shape)
+    grows = (linear > 0.0) & (cubic < 0.0)
+    size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
+    chosen = np.flatnonzero(grows)
+    amplitude = _complex(size[chosen, None] * shape[chosen])
+    none = np.full(chosen.size, np.nan)
+    return FirstHarmonic(member[chosen], frequency[chosen], none, np.zeros((chosen.size, m)), amplitude)
+
+
+def _modes(matrices: FloatArray, values: ComplexArray) -> ComplexArray:
+    """Return the co-ordinates of unit length of the eigenvectors to eigenvalues (k,) of matrices (k, 2 m, 2 m): (k, m).
+
+    Of y' = A y with y = (q, q'), by two steps of inverse iteration beside each eigenvalue, exact enough for a guess.
+    """
+    m = matrices.shape[-1] // 2
+    beside = values[:, None, None] * (1.0 + 1e-9)
+    pencil = beside**2 * np.eye(m) - beside * matrices[:, m:, m:] - matrices[:, m:, :m]
+    vector = np.ones((values.size, m, 1), dtype=np.complex128)
+    for _ in range(2):
+        vector = np.linalg.solve(pencil, vector)
+        vector /= np.linalg.norm(vector, axis=1, keepdims=True)
+    return _complex(vector[..., 0])
+
+
+def _complex(values: AnyArray) -> ComplexArray:
+    return np.asarray(values, dtype=np.complex128)
+
+
+def _work(
+    model: ReducedModel, wind_speed: FloatArray, frequency: FloatArray, shape: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return p_1 and p_3, from the work at two amplitudes on samples that resolve the fourth harmonic."""
+    phase = np.exp(2j * np.pi * np.arange(10) / 10.0)[:, None]
+    q = (shape[:, None] * phase).real
+    velocity = (1j * frequency[:, None, None] * shape[:, None] * phase).real
+    drag = (velocity @ model.damping * velocity).sum(axis=-1).mean(axis=-1)
+    state = np.concatenate([q, velocity / wind_speed[:, None, None]], axis=-1)
+    work = [
+        wind_speed**2 * (force(model.load, r * state) * r * velocity).sum(axis=-1).mean(axis=-1) for r in (1.0, 2.0)
+    ]
+    cubic = (work[1] - 4.0 * work[0]) / 12.0
+    return work[0] - cubic - drag, cubic

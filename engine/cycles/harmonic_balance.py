@@ -1,0 +1,270 @@
+"""Harmonic balance of the reduced models: periodic solutions with H harmonics. Theory section 7.2.
+
+Co-efficients of each co-ordinate stand in the order mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The load is a
+cubic polynomial of (q, q'/U), so 4 H + 2 samples in time give its first H harmonics without aliasing.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from engine.arrays import FloatArray, IntArray, merged
+from engine.kernels import compiled
+from engine.models.aerodynamic_load import force, force_gradient
+from engine.models.reduced_model import ReducedModel, take
+from engine.numerics.newton import Options, Solution, newton
+
+
+@dataclass(frozen=True, slots=True)
+class Orbits:
+    """Periodic motions of a stack of models.
+
+    coefficients: (cycles, m, 2 H + 1); angular_frequency: (cycles,) [rad/s]; wind_speed: (cycles,) [m/s].
+    """
+
+    coefficients: FloatArray
+    angular_frequency: FloatArray
+    wind_speed: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Basis:
+    """Fourier basis on 4 H + 2 samples of one period.
+
+    values, slopes: (samples, 2 H + 1), the basis and its derivative by tau; projection: (2 H + 1, samples), least
+    squares from samples to coefficients; derivative: (2 H + 1, 2 H + 1), coefficients of the derivative by tau.
+    """
+
+    values: FloatArray
+    slopes: FloatArray
+    projection: FloatArray
+    derivative: FloatArray
+
+
+@lru_cache
+def basis(harmonics: int) -> Basis:
+    """Make the Fourier basis of H harmonics."""
+    samples = 4 * harmonics + 2
+    tau = 2.0 * np.pi * np.arange(samples) / samples
+    values = fourier(tau, harmonics)
+    derivative = np.zeros((2 * harmonics + 1, 2 * harmonics + 1))
+    order = np.arange(1, harmonics + 1)
+    derivative[2 * order - 1, 2 * order] = order
+    derivative[2 * order, 2 * order - 1] = -order
+    weight = np.full(2 * harmonics + 1, 2.0 / samples)
+    weight[0] = 1.0 / samples
+    return Basis(values, values @ derivative, weight[:, None] * values.T, derivative)
+
+
+def fourier(tau: FloatArray, harmonics: int) -> FloatArray:
+    """Evaluate 1, cos tau, sin tau, ..., cos H tau, sin H tau: tau.shape + (2 H + 1,)."""
+    angle = tau[..., None] * np.arange(1, harmonics + 1)
+    waves = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(*tau.shape, 2 * harmonics)
+    return np.concatenate([np.ones((*tau.shape, 1)), waves], axis=-1)
+
+
+def states(orbits: Orbits, tau: FloatArray) -> FloatArray:
+    """Return (q, q'/U) at phases tau (samples,): (cycles, samples, 2 m)."""
+    harmonics = orbits.coefficients.shape[-1] // 2
+    made = basis(harmonics)
+    values = fourier(tau, harmonics)
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None, None]
+    q = orbits.coefficients @ values.T
+    velocity = rate * (orbits.coefficients @ (values @ made.derivative).T)
+    return np.concatenate([q, velocity], axis=1).swapaxes(-1, -2)
+
+
+def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Return the harmonics of M q'' + C q' + K q - U^2 f: (cycles, m, 2 H + 1), generalized force."""
+    made = basis(orbits.coefficients.shape[-1] // 2)
+    load = force(model.load, _sampled(orbits, made))
+    square = orbits.wind_speed[:, None, None] ** 2
+    return _linear_part(model, orbits, made) - square * (made.projection @ load).swapaxes(-1, -2)
+
+
+def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Differentiate the residual by the coefficients and by w: (cycles, m (2 H + 1), m (2 H + 1) + 1).
+
+    Each block of two co-ordinates is linear in M_ij, C_ij, K_ij and the samples of the load's gradient, so one product
+    with a constant matrix makes all blocks.
+    """
+    made = basis(orbits.coefficients.shape[-1] // 2)
+    cycles, m, size = orbits.coefficients.shape
+    gradient = force_gradient(model.load, _sampled(orbits, made))
+    omega = orbits.angular_frequency[:, None, None]
+    speed = orbits.wind_speed[:, None, None]
+    samples = np.moveaxis(gradient, 1, -1)
+    linear = np.stack([omega**2 * model.mass, omega * model.damping, model.stiffness], axis=-1)
+    parts = [linear, -((speed**2)[..., None]) * samples[:, :, :m], -((speed * omega)[..., None]) * samples[:, :, m:]]
+    flat = np.concatenate(parts, axis=-1).reshape(cycles * m * m, -1 if cycles else 0)
+    blocks = (flat @ _block_basis(size // 2)).reshape(cycles, m, m, size, size)
+    by_coefficients = blocks.swapaxes(2, 3).reshape(cycles, m * size, m * size)
+    slope = orbits.coefficients @ made.derivative.T
+    by_omega = 2.0 * omega * model.mass @ (slope @ made.derivative.T) + model.damping @ slope
+    velocity = (orbits.coefficients @ made.slopes.T).swapaxes(-1, -2)[..., None] * speed[..., None]
+    by_omega -= (made.projection @ (gradient[..., m:] @ velocity)[..., 0]).swapaxes(-1, -2)
+    return np.concatenate([by_coefficients, merged(by_omega, -2)[..., None]], axis=-1)
+
+
+def wind_slopes(model: ReducedModel, orbits: Orbits) -> FloatArray:
+    """Differentiate the residual by the wind speed, the co-ordinates held: (cycles, m, 2 H + 1)."""
+    made = basis(orbits.coefficients.shape[-1] // 2)
+    m = model.mass.shape[-1]
+    state = _sampled(orbits, made)
+    speed = orbits.wind_speed[:, None, None]
+    by_rate = (force_gradient(model.load, state)[..., m:] @ state[..., m:, None])[..., 0]
+    return np.asarray((made.projection @ (speed * by_rate - 2.0 * speed * force(model.load, state))).swapaxes(-1, -2))
+
+
+def balance(
+    model: ReducedModel, member: IntArray, start: Orbits, options: Options | None = None
+) -> tuple[Orbits, Solution]:
+    """Solve the harmonic balance from many starts at once.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    member : (cycles,)
+        The model of each start.
+    start : Orbits
+        The phase of each solution is that of its start: <q - q_start, dq_start/dtau> = 0 in the mass.
+    options : Options, optional
+
+    Returns
+    -------
+    Orbits
+        The solutions, also where Newton's method did not converge.
+    Solution
+        How it went; a start that fell to the equilibrium counts as not converged.
+    """
+    _, m, size = start.coefficients.shape
+    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
+    given = merged(start.coefficients, -2)
+    reference = merged(weight[..., None] ** 2 * (start.coefficients @ basis(size // 2).derivative.T), -2)
+    norm = np.sqrt(np.einsum("cms,cm->c", start.coefficients**2, weight**2))
+    scale = np.repeat(norm[:, None] / weight, size, axis=-1) / np.sqrt(m * size)
+    scale = np.concatenate([scale, start.angular_frequency[:, None] / np.sqrt(m * size)], axis=-1)
+    x = np.concatenate([given, start.angular_frequency[:, None]], axis=-1)
+
+    def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
+        here = take(model, member[active])
+        orbits = _unpacked(x, m, start.wind_speed[active])
+        rows = merged(residual(here, orbits), -2)
+        drift = np.einsum("cx,cx->c", reference[active], x[:, :-1] - given[active])
+        phase = np.concatenate([reference[active], np.zeros((active.size, 1))], axis=-1)
+        matrix = np.concatenate([jacobian(here, orbits), phase[:, None]], axis=1)
+        return np.concatenate([rows, drift[:, None]], axis=-1), matrix
+
+    options = options or Options()
+    if compiled.AVAILABLE:
+        solution = compiled.solved_balances(model, member, start.wind_speed, reference, (x, scale, options))
+    else:
+        solution = newton(system, x, scale, options)
+    return _unpacked(solution.x, m, start.wind_speed), solution
+
+
+def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[FloatArray, FloatArray]:
+    """Return residuals and all their slopes at once, for members (cycles,) of a stack of models.
+
+    Returns
+    -------
+    (cycles, n), (cycles, n, n + 2)
+        With n = m (2 H + 1); slopes by the coefficients, by w and by the wind speed.
+    """
+    if compiled.AVAILABLE:
+        return compiled.balance_slopes(
+            model, member, (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
+        )
+    here = take(model, member)
+    by_wind = merged(wind_slopes(here, orbits), -2)[..., None]
+    return merged(residual(here, orbits), -2), np.concatenate([jacobian(here, orbits), by_wind], axis=-1)
+
+
+def whole_size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
+    """Return the root of sum M_ii |q_i|^2 over coefficients (cycles, m, 2 H + 1), the mean among them: (cycles,)."""
+    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
+
+
+def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return the root of sum M_ii |q_i|^2 over the oscillating harmonics: (cycles,)."""
+    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    return np.asarray(np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight)))
+
+
+def first_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return the largest amplitude along the span of the angle of attack in the first harmonic: (k,) [rad]."""
+    forms = model.load.angle[member]
+    m = orbits.coefficients.shape[1]
+    cosine, sine = orbits.coefficients[:, :, 1], orbits.coefficients[:, :, 2]
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None]
+    states = np.stack([np.concatenate([cosine, rate * sine], -1), np.concatenate([sine, -rate * cosine], -1)], axis=-1)
+    if m == 0 or forms.shape[1] == 0:
+        return np.zeros(member.size)
+    return np.asarray(np.sqrt(np.square(forms @ states).sum(axis=-1).max(axis=-1)))
+
+
+def resized(orbits: Orbits, harmonics: int) -> Orbits:
+    """Cut or pad the coefficients to a number of harmonics."""
+    size = 2 * harmonics + 1
+    kept = orbits.coefficients[..., :size]
+    padded = np.zeros((*kept.shape[:-1], size))
+    padded[..., : kept.shape[-1]] = kept
+    return Orbits(padded, orbits.angular_frequency, orbits.wind_speed)
+
+
+def pick(orbits: Orbits, index: IntArray) -> Orbits:
+    """Pick or repeat orbits of a stack."""
+    return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
+
+
+def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
+    """Return half of the peak-to-peak of Fourier series (..., 2 H + 1): (...).
+
+    The extremes on a grid of 16 samples a harmonic are refined by the parabola through three samples.
+    """
+    harmonics = coefficients.shape[-1] // 2
+    samples = 16 * harmonics + 16
+    values = coefficients @ fourier(2.0 * np.pi * np.arange(samples) / samples, harmonics).T
+    return np.asarray(0.5 * (_peak(values) + _peak(-values)))
+
+
+def _peak(values: FloatArray) -> FloatArray:
+    top = values.argmax(axis=-1)[..., None]
+    left, middle, right = (
+        np.take_along_axis(values, (top + shift) % values.shape[-1], axis=-1)[..., 0] for shift in (-1, 0, 1)
+    )
+    bend = left - 2.0 * middle + right
+    return np.asarray(
+        middle - np.where(bend < 0.0, (right - left) ** 2 / (8.0 * np.where(bend < 0.0, bend, -1.0)), 0.0)
+    )
+
+
+@lru_cache
+def _block_basis(harmonics: int) -> FloatArray:
+    """Return the blocks of the Jacobian per unit of w^2 M, w C, K and of each sample of the gradient, flattened."""
+    made = basis(harmonics)
+    linear = np.stack([made.derivative @ made.derivative, made.derivative, np.eye(2 * harmonics + 1)])
+    by_value = np.einsum("as,sb->sab", made.projection, made.values)
+    by_slope = np.einsum("as,sb->sab", made.projection, made.slopes)
+    return merged(np.concatenate([linear, by_value, by_slope]), -2)
+
+
+def _sampled(orbits: Orbits, made: Basis) -> FloatArray:
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None, None]
+    q = orbits.coefficients @ made.values.T
+    return np.concatenate([q, rate * (orbits.coefficients @ made.slopes.T)], axis=1).swapaxes(-1, -2)
+
+
+def _linear_part(model: ReducedModel, orbits: Orbits, made: Basis) -> FloatArray:
+    omega = orbits.angular_frequency[:, None, None]
+    slope = orbits.coefficients @ made.derivative.T
+    bend = slope @ made.derivative.T
+    result = omega**2 * model.mass @ bend + omega * model.damping @ slope + model.stiffness @ orbits.coefficients
+    return np.asarray(result)
+
+
+def _unpacked(x: FloatArray, m: int, wind_speed: FloatArray) -> Orbits:
+    return Orbits(x[:, :-1].reshape(x.shape[0], m, (x.shape[1] - 1) // m), x[:, -1], wind_speed)

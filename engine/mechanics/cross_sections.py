@@ -1,0 +1,199 @@
+"""What a span consists of along its length: mesh, quadrature points and the properties that hold at each of them.
+
+Ice, spoilers and the wind profile change at given positions. Every integral is taken piece by piece between those
+positions, so that a boundary inside an element is integrated exactly on both sides (theory section 3).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from engine.arrays import FloatArray
+from engine.mechanics.coefficients import fit_measured
+from engine.mechanics.static_profile import StaticProfile, arc_position, horizontal_position
+from engine.spec import Aerodynamics, AirflowSpoiler, Line, ice_properties
+
+PIECE_POINTS = 5  # exact to degree 9: cubic loads of quadratic shapes, times a shape
+
+
+@dataclass(frozen=True, slots=True)
+class Sections:
+    """Properties at the quadrature points of each element, shape (lines, elements, points) unless said otherwise.
+
+    local is the element co-ordinate in [-1, 1] and local_weight its quadrature weight (0 on padding);
+    mass [kg/m] and first_moment (..., 2) = m (e_y, e_z) [kg] of a sub-conductor; wind_factor phi;
+    aerodynamics (..., 3, 4): rows vertical, horizontal, torsional, columns a_i0 to a_i3 of a sub-conductor.
+    fitted_range (lines,): the smallest range of the fits on the line [rad], infinite where none is known; twist:
+    static twist by which moments and coefficients are turned already [rad].
+    """
+
+    local: FloatArray
+    local_weight: FloatArray
+    mass: FloatArray
+    first_moment: FloatArray
+    wind_factor: FloatArray
+    aerodynamics: FloatArray
+    fitted_range: FloatArray
+    twist: FloatArray
+
+
+def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
+    """Lay quadrature points between all boundaries of each line and evaluate the properties there.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        All with the same number of elements.
+    profile : StaticProfile
+        Of the same lines.
+
+    Returns
+    -------
+    Sections
+    """
+    elements = lines[0].span.elements
+    edges = _piece_edges(lines, profile, elements)
+    abscissae, weights = gauss_rule(PIECE_POINTS)
+    width = np.diff(edges, axis=-1)[..., None]
+    local = edges[..., :-1, None] + 0.5 * width * (abscissae + 1.0)
+    shape = (len(lines), elements, -1)
+    local = local.reshape(shape)
+    position = _positions(profile, local)
+    values = [_line_properties(line, x) for line, x in zip(lines, position, strict=True)]
+    return Sections(
+        local=local,
+        local_weight=np.broadcast_to(0.5 * width * weights, (*width.shape[:-1], PIECE_POINTS)).reshape(shape),
+        mass=np.stack([v[0] for v in values]),
+        first_moment=np.stack([v[1] for v in values]),
+        wind_factor=np.stack([v[2] for v in values]),
+        aerodynamics=np.stack([v[3] for v in values]),
+        fitted_range=np.array([_fitted_range(line) for line in lines]),
+        twist=np.zeros(local.shape),
+    )
+
+
+def turned(lines: Sequence[Line], profile: StaticProfile, made_of: Sections, twist: FloatArray) -> Sections:
+    """Turn untwisted sections: the first moments as vectors, and coefficients with a table fitted at the local angle.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+    profile : StaticProfile
+    made_of : Sections
+        Without twist.
+    twist : (lines, elements, points)
+        Static twist [rad].
+
+    Returns
+    -------
+    Sections
+
+    Raises
+    ------
+    InvalidSpec
+        If a table does not reach around the local angle.
+    """
+    position = _positions(profile, made_of.local)
+    stack = zip(lines, position, twist, strict=True)
+    return replace(
+        turned_moments(made_of, twist), aerodynamics=np.stack([_aerodynamics(line, x, turn) for line, x, turn in stack])
+    )
+
+
+def turned_moments(made_of: Sections, twist: FloatArray) -> Sections:
+    """Turn the first moments of untwisted sections, and leave the coefficients as they are."""
+    moment_y, moment_z = made_of.first_moment[..., 0], made_of.first_moment[..., 1]
+    c, s = np.cos(twist), np.sin(twist)
+    moment = np.stack([moment_y * c - moment_z * s, moment_y * s + moment_z * c], axis=-1)
+    return replace(made_of, first_moment=moment, twist=twist)
+
+
+def _positions(profile: StaticProfile, local: FloatArray) -> FloatArray:
+    """Return the horizontal positions of points given by their co-ordinates in the elements [m]."""
+    elements = local.shape[1]
+    arc = (np.arange(elements)[:, None] + 0.5 * (local + 1.0)) * (profile.arc_length[:, None, None] / elements)
+    return horizontal_position(profile, arc)
+
+
+@lru_cache
+def gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
+    """Return abscissae and weights of Gauss-Legendre quadrature on [-1, 1]."""
+    abscissae, weights = np.polynomial.legendre.leggauss(points)
+    return abscissae, weights
+
+
+def boundaries(line: Line) -> list[float]:
+    """Return the positions strictly inside the span where a property or the wind's slope changes [m]."""
+    stretches = [(s.start, s.stop) for s in line.ice.segments]
+    stretches += [(d.start, d.stop) for d in line.devices if isinstance(d, AirflowSpoiler)]
+    marks = {mark for stretch in stretches for mark in stretch} | {position for position, _ in line.wind.profile}
+    return sorted(mark for mark in marks if 0.0 < mark < line.span.length)
+
+
+def _piece_edges(lines: Sequence[Line], profile: StaticProfile, elements: int) -> FloatArray:
+    """Return the local co-ordinates of the piece boundaries, (lines, elements, pieces + 1), padded by empty pieces."""
+    marks = [np.array(boundaries(line)) for line in lines]
+    most = max(m.size for m in marks)
+    padded = np.stack([np.append(m, [x.span.length] * (most - m.size)) for m, x in zip(marks, lines, strict=True)])
+    scaled = arc_position(profile, padded) * (elements / profile.arc_length[:, None])
+    local = np.clip(2.0 * (scaled[:, None, :] - np.arange(elements)[:, None]) - 1.0, -1.0, 1.0)
+    inside = (np.abs(local) < 1.0).sum(axis=-1).max(initial=0)
+    ends = np.full((len(lines), elements, 1), 1.0)
+    # A mark outside an element was clipped to one of its ends: those pieces are empty, and the surplus is dropped.
+    inner = np.sort(np.where(np.abs(local) < 1.0, local, 1.0), axis=-1)[..., :inside]
+    return np.concatenate([-ends, inner, ends], axis=-1)
+
+
+def _line_properties(line: Line, position: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    e_y, e_z, base = ice_properties(line, line.ice)
+    mass = np.full(position.shape, base)
+    moment = np.broadcast_to(base * np.array([e_y, e_z]), (*position.shape, 2)).copy()
+    for segment in line.ice.segments:
+        here = (position >= segment.start) & (position < segment.stop)
+        e_y, e_z, iced = ice_properties(line, segment)
+        mass[here] = iced
+        moment[here] = iced * np.array([e_y, e_z])
+    for device in line.devices:
+        if isinstance(device, AirflowSpoiler):
+            mass[(position >= device.start) & (position < device.stop)] += device.mass
+    return mass, moment, _wind_factor(line, position), _aerodynamics(line, position, np.zeros(position.shape))
+
+
+def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatArray:
+    """Return the coefficients at positions [m], a spoiler's before a segment's before the span's: (..., 3, 4)."""
+    stretches = [(s.start, s.stop, s.aerodynamics) for s in line.ice.segments if s.aerodynamics is not None]
+    stretches += [(d.start, d.stop, d.aerodynamics) for d in line.devices if isinstance(d, AirflowSpoiler)]
+    result = np.empty((*position.shape, 3, 4))
+    for start, stop, aerodynamics in [(-np.inf, np.inf, line.ice.aerodynamics), *stretches]:
+        here = (position >= start) & (position < stop)
+        result[here] = _at_local_angle(aerodynamics, twist[here])
+    return result
+
+
+def _at_local_angle(aerodynamics: Aerodynamics, twist: FloatArray) -> FloatArray:
+    """Return coefficients at points of the given twist [rad]; without a table they hold for the section at rest."""
+    if aerodynamics.measured is None or not twist.any():
+        return _table(aerodynamics)
+    return np.stack([_table(fit_measured(aerodynamics.measured, turn)) for turn in twist.tolist()])
+
+
+def _wind_factor(line: Line, position: FloatArray) -> FloatArray:
+    if not line.wind.profile:
+        return np.ones(position.shape)
+    marks, factors = zip(*line.wind.profile, strict=True)
+    return np.asarray(np.interp(position, marks, factors))
+
+
+def _table(aerodynamics: Aerodynamics) -> FloatArray:
+    at_rest = aerodynamics.at_rest or (0.0, 0.0, 0.0)
+    rows = (aerodynamics.vertical, aerodynamics.horizontal, aerodynamics.torsional)
+    return np.array([(a_0, *row) for a_0, row in zip(at_rest, rows, strict=True)])
+
+
+def _fitted_range(line: Line) -> float:
+    on_segments = [s.aerodynamics for s in line.ice.segments if s.aerodynamics is not None]
+    on_devices = [d.aerodynamics for d in line.devices if isinstance(d, AirflowSpoiler)]
+    ranges = [a.fitted_range for a in (line.ice.aerodynamics, *on_segments, *on_devices)]
+    return min((r for r in ranges if r is not None), default=np.inf)

@@ -1,0 +1,268 @@
+"""Finite element matrices of the bundle on its reference curve. Theory section 3, paper section 3.
+
+Three-node isoparametric cable elements; four freedoms a node in the order U, V, W, Theta; node-major numbering. The
+rigid cross-section (3) lets the sums over sub-conductors be taken once, so their number costs nothing.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray
+from engine.mechanics.cross_sections import Sections, gauss_rule
+from engine.mechanics.static_profile import GRAVITY, StaticProfile, arc_position, coordinates
+from engine.spec import AirflowSpoiler, DetuningPendulum, Line, Spacer
+
+FIELDS = 4
+U, V, W, THETA = range(FIELDS)
+STIFFNESS_POINTS = 2  # three would lock the membrane strain of the curved element
+
+
+@dataclass(frozen=True, slots=True)
+class Matrices:
+    """Stiffness and mass of a stack of lines on all freedoms, and the interpolation that made them.
+
+    stiffness, mass: (lines, freedoms, freedoms), freedoms = 4 (2 elements + 1), symmetric; end springs included,
+    constraints not. fixed: (lines, freedoms), True where a support holds the freedom. interpolation:
+    (lines, elements, points, 3), values of the element's shape functions at the points of `Sections`; weight:
+    (lines, elements, points) = ds of each point [m].
+    """
+
+    stiffness: FloatArray
+    mass: FloatArray
+    fixed: BoolArray
+    interpolation: FloatArray
+    weight: FloatArray
+
+
+def matrices(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -> Matrices:
+    """Assemble K and M of theory section 3 for lines with the same number of elements.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+    profile : StaticProfile
+    made_of : Sections
+
+    Returns
+    -------
+    Matrices
+    """
+    interpolation, weight = mass_points(lines, profile, made_of)
+    at = strain_points(lines, profile)
+    density = elastic_density(lines, at, bundle_sums(lines)[:, :, None, None])
+    stiffness = assemble(quadratic_form(at.slopes, at.weight, density))
+    stiffness += assemble(quadratic_form(interpolation, weight, _ice_stiffness_density(lines, made_of)))
+    for line, here, values, device in mounted(lines, profile):
+        gravity = -GRAVITY * _device_inertia(device)[W, THETA]
+        stiffness[line, here, here] += np.kron(np.outer(values, values), np.diag([0.0, 0.0, 0.0, gravity]))
+    add_end_springs(lines, profile, stiffness)
+    mass = mass_matrix(lines, profile, made_of)
+    return Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
+
+
+def mass_matrix(
+    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, twist: FloatArray | None = None
+) -> FloatArray:
+    """Assemble M, with cross-sections and devices turned by a static twist (lines, nodes) [rad] if there is one."""
+    interpolation, weight = mass_points(lines, profile, made_of)
+    sums = bundle_sums(lines)[:, :, None, None] if twist is None else turned_sums(lines, made_of.twist)
+    mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, made_of, sums)))
+    for line, here, values, device in mounted(lines, profile):
+        turn = 0.0 if twist is None else float(values @ twist[line, here.start // FIELDS : here.stop // FIELDS])
+        mass[line, here, here] += np.kron(np.outer(values, values), _device_inertia(device, turn))
+    return mass
+
+
+def mass_points(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -> tuple[FloatArray, FloatArray]:
+    """Return the shape functions at the points of the sections, (lines, elements, points, 3), and their ds [m]."""
+    interpolation, derivative = shape_functions(made_of.local)
+    metric = derivative @ element_nodes(profile, lines[0].span.elements)
+    return interpolation, made_of.local_weight * np.linalg.norm(metric, axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class StrainPoints:
+    """Quadrature points of the strains.
+
+    values: (points, 3) and slopes: (lines, elements, points, 3), shape functions and their derivatives by s; weight:
+    (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z'); tension: T [N] there.
+    """
+
+    values: FloatArray
+    slopes: FloatArray
+    weight: FloatArray
+    direction: FloatArray
+    tension: FloatArray
+
+
+def strain_points(lines: Sequence[Line], profile: StaticProfile) -> StrainPoints:
+    """Lay the points at which the strains are integrated."""
+    abscissae, weights = gauss_rule(STIFFNESS_POINTS)
+    values, derivative = shape_functions(abscissae)
+    metric = derivative @ element_nodes(profile, lines[0].span.elements)
+    jacobian = np.linalg.norm(metric, axis=-1)
+    direction = metric / jacobian[..., None]
+    tension = profile.horizontal_tension[:, None, None] / direction[..., 0]
+    return StrainPoints(values, derivative / jacobian[..., None], weights * jacobian, direction, tension)
+
+
+def shape_functions(local: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return values and local derivatives of the quadratic shape functions, each local.shape + (3,)."""
+    values = [0.5 * local * (local - 1.0), 1.0 - local**2, 0.5 * local * (local + 1.0)]
+    slopes = [local - 0.5, -2.0 * local, local + 0.5]
+    return np.stack(values, axis=-1), np.stack(slopes, axis=-1)
+
+
+def bundle_sums(lines: Sequence[Line]) -> FloatArray:
+    """Return n, sum y, sum z, sum y^2, sum z^2 and sum y z over the sub-conductors: (6, lines)."""
+    sums = []
+    for line in lines:
+        y, z = np.array(line.bundle.positions).T
+        sums.append((y.size, y.sum(), z.sum(), y @ y, z @ z, y @ z))
+    return np.array(sums, dtype=np.float64).T
+
+
+def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
+    """Return the `bundle_sums` of cross-sections turned by angles (lines, elements, points) [rad]: (6, ...)."""
+    n, s_y, s_z, s_yy, s_zz, s_yz = bundle_sums(lines)[:, :, None, None]
+    c, s = np.cos(angle), np.sin(angle)
+    one = np.ones_like(angle)
+    y_y = c**2 * s_yy - 2.0 * c * s * s_yz + s**2 * s_zz
+    y_z = c * s * (s_yy - s_zz) + (c**2 - s**2) * s_yz
+    return np.stack([n * one, c * s_y - s * s_z, s * s_y + c * s_z, y_y, s_yy + s_zz - y_y, y_z])
+
+
+def element_nodes(profile: StaticProfile, elements: int) -> FloatArray:
+    """Return the node positions of each element, (lines, elements, 3 nodes, 3 co-ordinates)."""
+    arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, 2 * elements + 1)
+    first = 2 * np.arange(elements)[:, None] + np.arange(3)
+    return coordinates(profile, arc)[:, first]
+
+
+def quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray) -> FloatArray:
+    """Integrate values_a density_ij values_b over each element: (lines, elements, 12, 12)."""
+    weighted = values[..., :, None] * weight[..., None, None]
+    pairs = np.swapaxes(values[..., None] * weighted.swapaxes(-1, -2), -3, -1)
+    flat = pairs.reshape(*pairs.shape[:-3], 9, pairs.shape[-1]) @ density.reshape(*density.shape[:-2], FIELDS**2)
+    blocks = flat.reshape(*flat.shape[:-2], 3, 3, FIELDS, FIELDS)
+    return np.asarray(blocks.swapaxes(-3, -2).reshape(*flat.shape[:-2], 12, 12))
+
+
+def elastic_density(lines: Sequence[Line], at: StrainPoints, sums: FloatArray) -> FloatArray:
+    """Return D with density (U', V', W', Theta') D (U', V', W', Theta')^T: (lines, elements, points, 4, 4).
+
+    The strain of sub-conductor i is b.(U', V', W') + (z' y_i - y' z_i) Theta' with b = (x', y', z'), eqs. (3), (7). D
+    is linear in the sums, those of `bundle_sums` with axes for elements and points.
+    """
+    n, s_y, s_z, s_yy, s_zz, s_yz = sums
+    slopes, tension = at.direction, at.tension
+    rigidity = _per_line(lines, [line.conductor.axial_rigidity for line in lines])
+    coupling = _per_line(lines, [line.conductor.axial_torsional_coupling for line in lines])
+    torsional = _per_line(lines, [line.conductor.torsional_rigidity for line in lines])
+    y, z = slopes[..., 1], slopes[..., 2]
+    lever = z * s_y - y * s_z
+    density = np.zeros((*tension.shape, FIELDS, FIELDS))
+    density[..., :THETA, :THETA] = (n * rigidity)[..., None, None] * slopes[..., :, None] * slopes[..., None, :]
+    density[..., :THETA, THETA] = slopes * (rigidity * lever + n * coupling)[..., None]
+    density[..., THETA, THETA] = rigidity * (z**2 * s_yy - 2.0 * y * z * s_yz + y**2 * s_zz)
+    density[..., THETA, THETA] += 2.0 * coupling * lever + n * torsional + tension * (s_yy + s_zz)
+    for translation in (U, V, W):
+        density[..., translation, translation] += n * tension
+    density[..., V, THETA] -= tension * s_z
+    density[..., W, THETA] += tension * s_y
+    density[..., THETA, :THETA] = density[..., :THETA, THETA]
+    return density
+
+
+def _mass_density(lines: Sequence[Line], made_of: Sections, bundle: FloatArray) -> FloatArray:
+    """Return R with kinetic energy density 1/2 (U, V, W, Theta)' R (U, V, W, Theta)'^T, eqs. (A1)-(A4)."""
+    n, s_y, s_z, s_yy, s_zz, _ = bundle
+    inertia = _per_line(lines, [line.conductor.polar_inertia for line in lines])
+    mass, moment_y, moment_z = made_of.mass, made_of.first_moment[..., 0], made_of.first_moment[..., 1]
+    density = np.zeros((*mass.shape, FIELDS, FIELDS))
+    for translation in (U, V, W):
+        density[..., translation, translation] = n * mass
+    density[..., V, THETA] = density[..., THETA, V] = -(mass * s_z + n * moment_z)
+    density[..., W, THETA] = density[..., THETA, W] = mass * s_y + n * moment_y
+    density[..., THETA, THETA] = mass * (s_yy + s_zz) + 2.0 * (moment_y * s_y + moment_z * s_z) + n * inertia
+    return density
+
+
+def _ice_stiffness_density(lines: Sequence[Line], made_of: Sections) -> FloatArray:
+    """Return the density of K_ice, eq. (A9): the eccentric weight above the centre takes stiffness from Theta."""
+    density = np.zeros((*made_of.mass.shape, FIELDS, FIELDS))
+    count = _per_line(lines, [len(line.bundle.positions) for line in lines])
+    density[..., THETA, THETA] = -count * GRAVITY * made_of.first_moment[..., 0]
+    return density
+
+
+def _per_line(lines: Sequence[Line], values: Sequence[float]) -> FloatArray:
+    return np.array(values, dtype=np.float64).reshape(len(lines), 1, 1)
+
+
+def assemble(element: FloatArray) -> FloatArray:
+    """Add element matrices (lines, elements, 12, 12) to (lines, freedoms, freedoms); neighbours share one node."""
+    count, elements = element.shape[:2]
+    freedoms = FIELDS * (2 * elements + 1)
+    total = np.zeros((count, freedoms, freedoms))
+    for e in range(elements):
+        here = slice(2 * FIELDS * e, 2 * FIELDS * e + 3 * FIELDS)
+        total[:, here, here] += element[:, e]
+    return total
+
+
+def held_freedoms(profile: StaticProfile, freedoms: int) -> BoolArray:
+    """Tell which freedoms the supports hold: (lines, freedoms)."""
+    fixed = np.zeros((profile.arc_length.size, freedoms), dtype=np.bool_)
+    fixed[:, [V, W, THETA, -FIELDS + V, -FIELDS + W, -FIELDS + THETA]] = True
+    fixed[:, [U, -FIELDS + U]] = np.isinf(profile.end_stiffness)
+    return fixed
+
+
+def add_end_springs(lines: Sequence[Line], profile: StaticProfile, stiffness: FloatArray) -> None:
+    """Add the springs that hold U at both ends to K (lines, freedoms, freedoms), in place."""
+    count = np.array([len(line.bundle.positions) for line in lines])
+    springs = np.where(np.isinf(profile.end_stiffness), 0.0, profile.end_stiffness)
+    stiffness[:, U, U] += count * springs[:, 0]
+    stiffness[:, -FIELDS + U, -FIELDS + U] += count * springs[:, 1]
+
+
+def mounted(
+    lines: Sequence[Line], profile: StaticProfile
+) -> Iterator[tuple[int, slice, FloatArray, Spacer | DetuningPendulum]]:
+    """Yield line, freedoms of the element, shape-function values (3,) and device of every device at a point."""
+    for i, line in enumerate(lines):
+        for device in line.devices:
+            if not isinstance(device, AirflowSpoiler):
+                first, values = interpolation_at(profile, i, line.span.elements, device.position)
+                yield i, slice(FIELDS * first, FIELDS * (first + 3)), values, device
+
+
+def interpolation_at(profile: StaticProfile, line: int, elements: int, position: float) -> tuple[int, FloatArray]:
+    """Return the first node and the shape-function values (3,) of the element at a horizontal position [m]."""
+    whole = arc_position(profile, np.full((profile.arc_length.size, 1), position))[line, 0]
+    scaled = whole / profile.arc_length[line] * elements
+    element = min(int(scaled), elements - 1)
+    values, _ = shape_functions(np.array(2.0 * (scaled - element) - 1.0))
+    return 2 * element, values
+
+
+def device_offset(device: Spacer | DetuningPendulum, turn: float = 0.0) -> tuple[float, float]:
+    """Return (y, z) [m] of a device's mass, its cross-section turned by an angle [rad]; a spacer is centred."""
+    if isinstance(device, Spacer):
+        return 0.0, 0.0
+    angle = device.angle - turn
+    return -device.arm * math.cos(angle), device.arm * math.sin(angle)
+
+
+def _device_inertia(device: Spacer | DetuningPendulum, turn: float = 0.0) -> FloatArray:
+    """Return the 4 x 4 inertia of a device on (U, V, W, Theta)."""
+    y, z = device_offset(device, turn)
+    inertia = np.diag([device.mass] * FIELDS)
+    inertia[THETA, THETA] = device.polar_inertia if isinstance(device, Spacer) else device.mass * device.arm**2
+    inertia[V, THETA] = inertia[THETA, V] = -device.mass * z
+    inertia[W, THETA] = inertia[THETA, W] = device.mass * y
+    return inertia

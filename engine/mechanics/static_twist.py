@@ -1,0 +1,234 @@
+"""Static twist: cross-sections turned by eccentric ice and pendulums until the torsional stiffness holds them.
+
+The section is rigid and may turn by any angle: sub-conductor i stands at (eta_i, zeta_i), which is (y_i, z_i) turned
+by Theta, so that V_i' = V' - zeta_i Theta' and W_i' = W' + eta_i Theta'. The energy is that of theory section 3 with
+turned positions,
+
+    Pi = 1/2 int g^T D(Theta) g ds + end springs + n int m g (e_y cos Theta - e_z sin Theta) ds + the same of devices,
+
+g = (U', V', W', Theta'). The weight at the bare centres does no work: what it gains, the tension of the catenary takes,
+since (T y')' = m g. In D, T (V_i'^2 + W_i'^2) becomes T r_i^2 Theta'^2 at any twist. At zero twist the second
+derivative is K of section 3 with its gravity term -n m g e_y; as there, the strain is the linear part of (7).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
+from engine.mechanics.cross_sections import Sections, turned, turned_moments
+from engine.mechanics.finite_elements import (
+    FIELDS,
+    THETA,
+    Matrices,
+    add_end_springs,
+    assemble,
+    device_offset,
+    elastic_density,
+    held_freedoms,
+    mass_matrix,
+    mass_points,
+    mounted,
+    strain_points,
+    turned_sums,
+)
+from engine.mechanics.static_profile import GRAVITY, StaticProfile
+from engine.numerics.newton import Options, newton
+from engine.spec import Line
+
+FIRST_GUESS = 0.1  # rad at mid-span
+OPTIONS = Options(tolerance=1e-9, largest_step=0.25, iterations=100)
+
+
+@dataclass(frozen=True, slots=True)
+class TwistedState:
+    """Static state of a stack of lines under eccentric weight: a minimum of the energy.
+
+    displacement: (lines, freedoms), U, V, W [m] and Theta [rad] of each node, NaN where none was found; outcome:
+    (lines,) of Outcome.
+    """
+
+    displacement: FloatArray
+    outcome: ObjectArray
+
+    @property
+    def angle(self) -> FloatArray:
+        """The twist of each node, (lines, nodes) [rad]."""
+        return self.displacement[:, THETA::FIELDS]
+
+
+def twisted_state(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -> TwistedState:
+    """Find the twisted static state of each line by Newton's method, led downhill to a minimum of the energy.
+
+    Directions of negative stiffness enter by its absolute value, so that steps go down; the search begins on the side
+    to which the weight turns the untwisted section.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        All with the same number of elements.
+    profile : StaticProfile
+    made_of : Sections
+        Without twist.
+
+    Returns
+    -------
+    TwistedState
+    """
+    nodes = 2 * lines[0].span.elements + 1
+    held = held_freedoms(profile, FIELDS * nodes)
+    start = np.zeros((len(lines), FIELDS * nodes))
+    gradient, _ = energy_derivatives(lines, profile, made_of, start)
+    side = np.where(gradient[:, THETA::FIELDS].sum(axis=1) > 0.0, -1.0, 1.0)
+    start[:, THETA::FIELDS] = FIRST_GUESS * side[:, None] * np.sin(np.pi * np.linspace(0.0, 1.0, nodes))
+
+    def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
+        few = [lines[i] for i in active]
+        gradient, tangent = energy_derivatives(few, _pick(profile, active), _pick(made_of, active), x)
+        return np.where(held[active], 0.0, gradient), _downhill(_held(tangent, held[active]))
+
+    solution = newton(system, np.where(held, 0.0, start), np.ones_like(start), OPTIONS)
+    displacement = np.where(solution.converged[:, None], np.where(held, 0.0, solution.x), np.nan)
+    return TwistedState(displacement, solution.outcome)
+
+
+def twisted_matrices(
+    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, state: TwistedState
+) -> tuple[Sections, Matrices]:
+    """Linearize about the twisted state: sections and matrices as seen from there.
+
+    A line whose state was not found keeps its untwisted sections and matrices.
+
+    Raises
+    ------
+    InvalidSpec
+        If a table of coefficients does not reach around the local angle.
+    """
+    displacement = np.nan_to_num(state.displacement)
+    angle = displacement[:, THETA::FIELDS]
+    interpolation, weight = mass_points(lines, profile, made_of)
+    here = turned(lines, profile, made_of, at_mass_points(interpolation, angle))
+    _, stiffness = energy_derivatives(lines, profile, made_of, displacement)
+    mass = mass_matrix(lines, profile, here, angle)
+    return here, Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
+
+
+def energy_derivatives(
+    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, displacement: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Differentiate the energy Pi once and twice by the displacements.
+
+    Parameters
+    ----------
+    lines, profile, made_of
+        Sections without twist.
+    displacement : (lines, freedoms)
+
+    Returns
+    -------
+    gradient : (lines, freedoms)
+    tangent : (lines, freedoms, freedoms)
+    """
+    springs = np.zeros((*displacement.shape, displacement.shape[-1]))
+    add_end_springs(lines, profile, springs)
+    force, stiffness = _strain_energy(lines, profile, displacement)
+    moment, gravity = _ice_energy(lines, profile, made_of, displacement[:, THETA::FIELDS])
+    gradient = (springs @ displacement[..., None])[..., 0] + force + moment
+    tangent = springs + stiffness + gravity
+    for line, here, values, device in mounted(lines, profile):
+        y, z = device_offset(device, float(values @ displacement[line, here][THETA::FIELDS]))
+        weight = device.mass * GRAVITY
+        gradient[line, here][THETA::FIELDS] -= weight * z * values
+        tangent[line, here, here][THETA::FIELDS, THETA::FIELDS] -= weight * y * np.outer(values, values)
+    return gradient, tangent
+
+
+def _strain_energy(
+    lines: Sequence[Line], profile: StaticProfile, displacement: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Differentiate 1/2 int g^T D(Theta) g ds, with D' and D'' from the derivatives of the turned sums."""
+    at = strain_points(lines, profile)
+    elements, points = at.weight.shape[1:]
+    reader = np.zeros((len(lines), elements, points, FIELDS + 1, 3, FIELDS))
+    for field in range(FIELDS):
+        reader[..., field, :, field] = at.slopes
+    reader[..., FIELDS, :, THETA] = at.values
+    reader = reader.reshape(*reader.shape[:-2], 3 * FIELDS)
+    read = (reader @ _by_element(displacement, FIELDS)[:, :, None, :, None])[..., 0]
+    strain, angle = read[..., :FIELDS], read[..., FIELDS]
+    sums = turned_sums(lines, angle)
+    first, second = _slope(sums), _slope(_slope(sums))
+    stress, turning, bending = (
+        (elastic_density(lines, at, s) @ strain[..., None])[..., 0] for s in (sums, first, second)
+    )
+    force = np.concatenate([stress, 0.5 * (strain * turning).sum(axis=-1, keepdims=True)], axis=-1)
+    density = np.zeros((*angle.shape, FIELDS + 1, FIELDS + 1))
+    density[..., :FIELDS, :FIELDS] = elastic_density(lines, at, sums)
+    density[..., :FIELDS, FIELDS] = density[..., FIELDS, :FIELDS] = turning
+    density[..., FIELDS, FIELDS] = 0.5 * (strain * bending).sum(axis=-1)
+    weighted = at.weight[..., None, None] * reader
+    gradient = (force[..., None, :] @ weighted)[..., 0, :].sum(axis=2)
+    tangent = (reader.swapaxes(-1, -2) @ density @ weighted).sum(axis=2)
+    return _assembled_vector(gradient), assemble(tangent)
+
+
+def _slope(sums: FloatArray) -> FloatArray:
+    """Differentiate `turned_sums` by the angle; linear, so that it serves any derivative of them too."""
+    _, s_y, s_z, s_yy, s_zz, s_yz = sums
+    return np.stack([np.zeros_like(s_y), -s_z, s_y, -2.0 * s_yz, 2.0 * s_yz, s_yy - s_zz])
+
+
+def _ice_energy(
+    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, angle: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Differentiate n int m g (e_y cos Theta - e_z sin Theta) ds."""
+    interpolation, weight = mass_points(lines, profile, made_of)
+    moment = turned_moments(made_of, at_mass_points(interpolation, angle)).first_moment
+    count = np.array([len(line.bundle.positions) for line in lines])[:, None, None]
+    load = -GRAVITY * (count * weight)[..., None] * moment
+    values = interpolation[..., None] * np.eye(FIELDS)[THETA]
+    flat = values.reshape(*values.shape[:-2], 3 * FIELDS)
+    gradient = (load[..., 1, None] * flat).sum(axis=2)
+    tangent = (flat * load[..., :1]).swapaxes(-1, -2) @ flat
+    return _assembled_vector(gradient), assemble(tangent)
+
+
+def at_mass_points(interpolation: FloatArray, nodal: FloatArray) -> FloatArray:
+    """Interpolate nodal values (lines, nodes) to the points of the sections: (lines, elements, points)."""
+    return np.asarray((interpolation @ _by_element(nodal, 1)[..., None])[..., 0])
+
+
+def _by_element(values: FloatArray, fields_a_node: int) -> FloatArray:
+    """Return what belongs to each element of values (lines, freedoms): (lines, elements, 3 nodes' freedoms)."""
+    elements = (values.shape[1] // fields_a_node - 1) // 2
+    first = 2 * fields_a_node * np.arange(elements)[:, None]
+    return np.asarray(values[:, first + np.arange(3 * fields_a_node)])
+
+
+def _assembled_vector(element: FloatArray) -> FloatArray:
+    """Add element vectors (lines, elements, 12) to (lines, freedoms)."""
+    lines, elements, size = element.shape
+    total = np.zeros((lines, FIELDS * (2 * elements + 1)))
+    for e in range(elements):
+        total[:, 2 * FIELDS * e : 2 * FIELDS * e + size] += element[:, e]
+    return total
+
+
+def _held(tangent: FloatArray, held: BoolArray) -> FloatArray:
+    """Cut held freedoms off from the rest, with a stiffness of one."""
+    free = ~held
+    return np.asarray(tangent * (free[:, :, None] & free[:, None, :]) + held[:, :, None] * np.eye(held.shape[1]))
+
+
+def _downhill(tangent: FloatArray) -> FloatArray:
+    """Take the absolute values of the eigenvalues where some are negative: (lines, freedoms, freedoms)."""
+    values, vectors = np.linalg.eigh(tangent)
+    absolute = (vectors * np.abs(values)[:, None, :]) @ vectors.swapaxes(-1, -2)
+    return np.where(values[:, :1, None] > 0.0, tangent, absolute)
+
+
+def _pick(stack: Any, index: IntArray) -> Any:
+    """Pick lines of a stack of profiles or sections."""
+    return replace(stack, **{field.name: getattr(stack, field.name)[index] for field in fields(stack)})

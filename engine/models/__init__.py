@@ -1,0 +1,1 @@
+"""Reduced models: aerodynamic load, hybrid and finite element model, critical wind speeds. No limit cycles."""

@@ -1,0 +1,261 @@
+"""Quasi-steady aerodynamic load as cubic polynomials. Theory section 5, paper eqs. (A11)-(A19).
+
+Whatever fills it, a load is one table of monomials and coefficients that every solver reads: divided by U^2 it depends
+on the generalized co-ordinates q and on q'/U alone, so integrals along the span are taken once per line.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from engine.arrays import FloatArray, merged
+from engine.mechanics.cross_sections import Sections
+from engine.numerics import polynomial
+from engine.spec import AerodynamicModel, Line
+
+VERTICAL, HORIZONTAL, TORSIONAL = range(3)
+
+
+@dataclass(frozen=True, slots=True)
+class PolynomialLoad:
+    """Generalized load divided by U^2: a sum over points of cubic polynomials in linear forms of (q, q'/U).
+
+    forms: (..., points, local variables, 2 m), table: (..., points, m, monomials), for m generalized co-ordinates;
+    slopes: (..., points, m, local variables, lower monomials), the table differentiated. One point suffices where the
+    integral along the span was taken beforehand (hybrid model). angle: (..., points', 2 m), the linear form of the
+    angle of attack at points along the span [rad].
+    """
+
+    forms: FloatArray
+    table: FloatArray
+    slopes: FloatArray
+    angle: FloatArray
+
+
+def polynomial_load(forms: FloatArray, table: FloatArray, angle: FloatArray) -> PolynomialLoad:
+    """Make a load and differentiate its table once."""
+    return PolynomialLoad(forms, table, polynomial.slopes(table), angle)
+
+
+def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
+    """Evaluate the load divided by U^2.
+
+    Parameters
+    ----------
+    load : PolynomialLoad
+        Of leading axes (...,).
+    state : (..., samples, 2 m)
+        q and q'/U.
+
+    Returns
+    -------
+    (..., samples, m)
+    """
+    terms = polynomial.powers(_local(load, state))
+    table = load.table.swapaxes(-1, -2)
+    return np.asarray(merged(terms, -2) @ merged(table, -3, -2))
+
+
+def force_gradient(load: PolynomialLoad, state: FloatArray) -> FloatArray:
+    """Differentiate the load divided by U^2 by (q, q'/U): (..., samples, m, 2 m) at state (..., samples, 2 m)."""
+    local = _local(load, state)
+    terms = np.concatenate([np.ones((*local.shape[:-1], 1)), polynomial.powers(local, 2)], axis=-1)
+    points, outputs, variables, lower = load.slopes.shape[-4:]
+    by_point = load.slopes.reshape(*load.slopes.shape[:-4], points, outputs * variables, lower)
+    gradients = np.moveaxis(terms, -3, -2) @ by_point.swapaxes(-1, -2)
+    samples = gradients.shape[-2]
+    gradients = gradients.reshape(*gradients.shape[:-1], outputs, variables)
+    gradients = np.moveaxis(gradients, -4, -2).reshape(*gradients.shape[:-4], samples, outputs, points * variables)
+    return np.asarray(gradients @ merged(load.forms, -3, -2)[..., None, :, :])
+
+
+def _local(load: PolynomialLoad, state: FloatArray) -> FloatArray:
+    """Return the local variables (..., samples, points, local variables)."""
+    values = state @ merged(load.forms, -3, -2).swapaxes(-1, -2)
+    return np.asarray(values.reshape(*values.shape[:-1], *load.forms.shape[-3:-1]))
+
+
+def span_load(
+    lines: Sequence[Line], made_of: Sections, weight: FloatArray, fields: FloatArray, model: AerodynamicModel
+) -> PolynomialLoad:
+    """Set up the load point by point along the span for any set of shapes.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+    made_of : Sections
+    weight : (lines, elements, points)
+        ds of each point [m].
+    fields : (lines, groups, m, 3, elements, points)
+        V, W [1] and Theta [rad/m or 1] of each generalized co-ordinate.
+    model : AerodynamicModel
+
+    Returns
+    -------
+    PolynomialLoad
+        Of leading axes (lines, groups), with every quadrature point as a point.
+    """
+    points = merged(fields, -2)
+    diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
+    factor = made_of.wind_factor.reshape(len(lines), 1, -1)
+    coefficients = made_of.aerodynamics.reshape(len(lines), 1, -1, 3, 4)
+    angle = _angle_forms(points, diameter, factor)
+    if model is AerodynamicModel.PUBLISHED:
+        forms, local = angle[..., None, :], coefficients[..., 1:]
+    else:
+        forms, local = _wind_forms(points, diameter, factor), relative_wind_table(coefficients)
+    strength = 0.5 * diameter * factor**2 * weight.reshape(len(lines), 1, -1)
+    strength = (
+        strength * np.array([line.wind.air_density * len(line.bundle.positions) for line in lines])[:, None, None]
+    )
+    arm = np.concatenate([np.ones((len(lines), 1, 1, 2)), diameter[..., None]], axis=-1)
+    outputs = np.moveaxis(points, -1, 2) * (strength[..., None] * arm)[..., None, :]
+    return polynomial_load(forms, outputs @ local, angle)
+
+
+def _angle_forms(points: FloatArray, diameter: FloatArray, factor: FloatArray) -> FloatArray:
+    """Return the linear form of alpha in (q, q'/U), eq. (16): (lines, groups, points, 2 m)."""
+    v, theta = points[..., VERTICAL, :], points[..., TORSIONAL, :]
+    rates = -(v + 0.5 * diameter[..., None] * theta) / factor[..., None, :]
+    return np.moveaxis(np.concatenate([theta, rates], axis=2), -1, 2)
+
+
+def _wind_forms(points: FloatArray, diameter: FloatArray, factor: FloatArray) -> FloatArray:
+    """Return the forms of Theta, (V' + d Theta'/2)/(U phi) and W'/(U phi): (lines, groups, points, 3, 2 m)."""
+    v, w, theta = (points[..., i, :] for i in range(3))
+    rise = (v + 0.5 * diameter[..., None] * theta) / factor[..., None, :]
+    none = np.zeros_like(theta)
+    rows = [(theta, none), (none, rise), (none, w / factor[..., None, :])]
+    return np.stack([np.moveaxis(np.concatenate(row, axis=2), -1, 2) for row in rows], axis=-2)
+
+
+def relative_wind_table(coefficients: FloatArray) -> FloatArray:
+    """Expand the load of the relative wind to third order. Theory section 5.
+
+    Parameters
+    ----------
+    coefficients : (..., 3, 4)
+        a_i0 to a_i3, i = y, z, theta.
+
+    Returns
+    -------
+    (..., 3, 19)
+        Tables in (Theta, v, w) with v = (V' + d Theta'/2)/(U phi) and w = W'/(U phi), per 1/2 rho d (U phi)^2.
+    """
+    basis = _relative_wind_basis()
+    flat = coefficients.reshape(*coefficients.shape[:-2], 12) @ basis.reshape(12, -1)
+    return np.asarray(flat.reshape(*coefficients.shape[:-2], 3, basis.shape[-1]))
+
+
+@lru_cache
+def _relative_wind_basis() -> FloatArray:
+    """Return the load per coefficient a_ij: (3, 4, 3 load components, monomials)."""
+    theta, v, w = (_variable(i) for i in range(3))
+    one: _Series = {(): 1.0}
+    cube_of_v = _scale(_product(v, _product(v, v)), -1.0 / 3.0)
+    slope = _product(v, _sum(one, _sum(w, _product(w, w))))
+    angle = _sum(theta, _scale(_sum(slope, cube_of_v), -1.0))
+    pressure = _sum(_sum(one, _scale(w, -2.0)), _sum(_product(w, w), _product(v, v)))
+    cosine = _sum(one, _scale(_product(theta, theta), -0.5))
+    sine = _sum(theta, _scale(_product(theta, _product(theta, theta)), -1.0 / 6.0))
+    basis = np.zeros((3, 4, 3, len(polynomial.monomials(3))))
+    power = pressure
+    for j in range(4):
+        along, across = _table_of(_product(power, cosine)), _table_of(_product(power, sine))
+        basis[VERTICAL, j, VERTICAL], basis[VERTICAL, j, HORIZONTAL] = along, across
+        basis[HORIZONTAL, j, HORIZONTAL], basis[HORIZONTAL, j, VERTICAL] = along, -across
+        basis[TORSIONAL, j, TORSIONAL] = _table_of(power)
+        power = _product(power, angle)
+    return basis
+
+
+_Series = dict[tuple[int, ...], float]
+
+
+def _variable(index: int) -> _Series:
+    return {(index,): 1.0}
+
+
+def _product(a: _Series, b: _Series) -> _Series:
+    result: _Series = {}
+    for left, x in a.items():
+        for right, y in b.items():
+            if len(left) + len(right) <= polynomial.DEGREE:
+                key = tuple(sorted(left + right))
+                result[key] = result.get(key, 0.0) + x * y
+    return result
+
+
+def _sum(a: _Series, b: _Series) -> _Series:
+    return {key: a.get(key, 0.0) + b.get(key, 0.0) for key in a.keys() | b.keys()}
+
+
+def _scale(a: _Series, factor: float) -> _Series:
+    return {key: factor * value for key, value in a.items()}
+
+
+def _table_of(a: _Series) -> FloatArray:
+    """Return the table without the constant: the load is counted from its value at rest."""
+    return np.array([a.get(m, 0.0) for m in polynomial.monomials(3)])
+
+
+def integrated(load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
+    """Take the integral of a load along the span once, over the components of (q, q'/U) that it depends on.
+
+    Parameters
+    ----------
+    load : PolynomialLoad
+        With many points.
+    active : sequence of int
+        Indices into the 2 m components; the forms must vanish for all others.
+
+    Returns
+    -------
+    PolynomialLoad
+        With one point whose local variables are the active components.
+    """
+    table = polynomial.substitute(load.table, load.forms[..., list(active)])
+    select = np.eye(load.forms.shape[-1])[list(active)]
+    forms = np.broadcast_to(select, (*table.shape[:-2], 1, *select.shape))
+    return polynomial_load(forms, table[..., None, :, :], load.angle)
+
+
+def published_load(
+    lines: Sequence[Line], made_of: Sections, weight: FloatArray, fields: FloatArray, arc_length: FloatArray
+) -> PolynomialLoad:
+    """Set up the published closure (A14)-(A17) with f_wtheta in C_z (theory section 5): one scalar alpha'.
+
+    Parameters are those of `span_load`; fields (lines, groups, 3, 3, elements, points) holds f_v, f_w, f_theta on its
+    diagonal and arc_length is L (lines,) [m]. A varying wind enters by means weighted with f_theta^2, which makes the
+    closure an approximation that serves as a start only.
+    """
+    count = len(lines)
+    f_v, f_w, f_theta = (fields[..., i, i, :, :].reshape(count, fields.shape[1], -1) for i in range(3))
+    ds = weight.reshape(count, 1, -1)
+    factor = made_of.wind_factor.reshape(count, 1, -1)
+    f_vtheta = 2.0 / arc_length[:, None] * (f_v * f_theta * ds).sum(axis=-1)  # (A15)
+    f_wtheta = 2.0 / arc_length[:, None] * (f_w * f_theta * ds).sum(axis=-1)
+    speed = 2.0 / arc_length[:, None] * (f_theta**2 * factor * ds).sum(axis=-1)
+    exponents = np.arange(2, 5)
+    shape_powers = f_theta[..., None] ** exponents * (ds * factor**2)[..., None]
+    coefficients = made_of.aerodynamics.reshape(count, -1, 3, 4)[..., 1:]
+    integrals = np.einsum("lpij,lgpj->lgij", coefficients, shape_powers)  # (A17)
+    diameter = np.array([line.conductor.diameter for line in lines])[:, None]
+    density = np.array([line.wind.air_density * len(line.bundle.positions) for line in lines])[:, None]
+    projection = np.stack([f_vtheta, f_wtheta, np.broadcast_to(diameter, f_vtheta.shape)], axis=-1)
+    table = (0.5 * density * diameter)[..., None, None] * projection[..., None] * integrals
+    form = np.zeros((*f_vtheta.shape, 6))
+    form[..., TORSIONAL] = 1.0
+    form[..., 3 + VERTICAL] = -f_vtheta / speed  # (A16)
+    form[..., 3 + TORSIONAL] = -0.5 * diameter / speed
+    points = merged(fields, -2)
+    angle = _angle_forms(points, diameter[..., None], factor)
+    return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)
+
+
+def take_load(load: PolynomialLoad, index: Any) -> PolynomialLoad:
+    """Pick or repeat loads along the leading axes."""
+    return PolynomialLoad(*(getattr(load, field.name)[index] for field in fields(load)))

@@ -1,0 +1,59 @@
+"""The finite element model: several modes a direction, with the exact load. Theory section 7.4."""
+
+import numpy as np
+
+from engine.arrays import FloatArray
+from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
+from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
+from engine.models.aerodynamic_load import span_load, take_load
+from engine.models.discretization import Discretization
+from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
+from engine.spec import Analysis, DampingModel
+
+TRANSVERSE = (V, W, THETA)
+
+
+def finite_element_model(
+    made: Discretization, modes: FullModes, shapes: DirectionalShapes, analysis: Analysis
+) -> ReducedModel:
+    """Reduce to the full modes of several loops a direction, with the exact load; leading axis (lines,).
+
+    Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
+    2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi. Theory section 7.4.
+    """
+    vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
+    values = modes.eigenvalues.reshape(vectors.shape[:2])
+    nodes = vectors.shape[-1] // FIELDS
+    nodal = vectors.reshape(*vectors.shape[:2], nodes, FIELDS)[..., list(TRANSVERSE)].swapaxes(-1, -2)
+    at = at_points(made.matrices, nodal)
+    load = span_load(made.lines, made.sections, made.matrices.weight, at[:, None], analysis.aerodynamic_model)
+    unstable = np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
+    return ReducedModel(
+        mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
+        damping=_modal_damping(made, vectors, shapes, modes.loops),
+        stiffness=diagonal_matrices(values),
+        load=take_load(load, (slice(None), 0)),
+        shapes=nodal,
+        direction=np.repeat(np.arange(3), len(modes.loops)),
+        statically_unstable=unstable,
+    )
+
+
+def _modal_damping(
+    made: Discretization, vectors: FloatArray, shapes: DirectionalShapes, loops: tuple[int, ...]
+) -> FloatArray:
+    constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in made.lines])
+    picked = [shapes.loops.index(k) for k in loops]
+    own, first = shapes.angular_frequency[:, picked], shapes.angular_frequency[:, [shapes.loops.index(1)]]
+    rate = 2.0 * damping_ratios(made.lines)[:, None] * np.nan_to_num(np.where(constant[:, None, None], first, own))
+    damping = np.zeros((*vectors.shape[:2], vectors.shape[1]))
+    for i, own_fields in enumerate(((U, V), (W,), (THETA,))):
+        # Only the mass of the direction itself: the momentum that eccentric ice lends to the others is not damped.
+        own_field = np.isin(np.arange(vectors.shape[-1]) % FIELDS, own_fields)
+        mass = made.matrices.mass * (own_field[:, None] & own_field)
+        psi = np.swapaxes(shapes.nodal[:, picked], -1, -2).reshape(vectors.shape[0], len(loops), -1) * own_field
+        momentum = psi @ mass
+        own_mass = np.einsum("lkf,lkf->lk", momentum, psi)
+        share = vectors @ momentum.swapaxes(-1, -2)
+        damping += (share * (rate[..., i] / own_mass)[:, None, :]) @ share.swapaxes(-1, -2)
+    return damping

@@ -1,0 +1,58 @@
+"""Reduced models of either kind: M q'' + C q' + K q = U^2 f(q, q'/U). Theory section 4."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.models.aerodynamic_load import PolynomialLoad, take_load
+from engine.spec import Line
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedModel:
+    """M q'' + C q' + K q = U^2 f(q, q'/U) for a stack of models with m generalized co-ordinates.
+
+    mass, damping, stiffness: (..., m, m); load: f, of the same leading axes; shapes: (..., m, 3, nodes), the fields V,
+    W, Theta of each co-ordinate; direction: (m,), the direction of each co-ordinate (0 vertical, 1 horizontal,
+    2 torsional); statically_unstable: (...), True where the stiffness is not positive: damping there has no meaning.
+    """
+
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+    load: PolynomialLoad
+    shapes: FloatArray
+    direction: IntArray
+    statically_unstable: BoolArray
+
+
+def lowest_frequency(model: ReducedModel) -> FloatArray:
+    """Return the root of the smallest |K_ii / M_ii| of each model: (members,) [rad/s]."""
+    square = np.diagonal(model.stiffness, axis1=-2, axis2=-1) / np.diagonal(model.mass, axis1=-2, axis2=-1)
+    return np.asarray(np.sqrt(np.abs(square).min(axis=-1)))
+
+
+def take(model: ReducedModel, index: Any) -> ReducedModel:
+    """Pick or repeat models along the leading axes; index is any numpy index of those axes."""
+    return ReducedModel(
+        mass=model.mass[index],
+        damping=model.damping[index],
+        stiffness=model.stiffness[index],
+        load=take_load(model.load, index),
+        shapes=model.shapes[index],
+        direction=model.direction,
+        statically_unstable=model.statically_unstable[index],
+    )
+
+
+def damping_ratios(lines: Sequence[Line]) -> FloatArray:
+    """Return zeta of the vertical, horizontal and torsional direction of each line, eq. (11): (lines, 3)."""
+    return np.array([(d.vertical_ratio, d.horizontal_ratio, d.torsional_ratio) for d in (x.damping for x in lines)])
+
+
+def diagonal_matrices(values: FloatArray) -> FloatArray:
+    """Return diagonal matrices (..., n, n) of diagonals (..., n)."""
+    return values[..., None] * np.eye(values.shape[-1])

@@ -1,0 +1,1 @@
+"""Newton's method, continuation and polynomials: mathematics that knows nothing of lines."""

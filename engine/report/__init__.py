@@ -1,0 +1,1 @@
+"""Result rows out of arrays, one module named after each table. Nothing is solved here."""

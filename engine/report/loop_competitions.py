@@ -1,0 +1,112 @@
+"""Which cycle survives where several numbers of loops are unstable at once. Theory section 7.3.
+
+A cycle of one number of loops that is stable alone is balanced again in the model in which the others may move too; its
+Floquet multipliers there tell whether they grow out of small disturbances.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from engine.arrays import ComplexArray, FloatArray, IntArray
+from engine.cycles.floquet import judged, monodromy
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, oscillation_size
+from engine.models.discretization import Discretization, observation
+from engine.models.reduced_model import ReducedModel
+from engine.outcome import Outcome, Stability
+from engine.report.rows import Found
+from engine.result import LoopCompetitionRow
+
+FINENESS = 2  # times the steps of the Floquet integration: multipliers near one decide
+SAME_SIZE = 2.0  # ratio of sizes beyond which the balance has left the cycle for another motion
+
+
+def loop_competitions(
+    made: Discretization, joint: ReducedModel, hybrid: Found, loops: Sequence[int]
+) -> list[list[LoopCompetitionRow]]:
+    """Hold every stable cycle of the hybrid model against the other loops; a list a line.
+
+    Parameters
+    ----------
+    made : Discretization
+    joint : ReducedModel
+        Of these loops together, leading axis (lines,).
+    hybrid : Found
+        Of these loops one by one.
+    loops : sequence of int
+
+    Returns
+    -------
+    list of lists of LoopCompetitionRow
+    """
+    rows: list[list[LoopCompetitionRow]] = [[] for _ in made.lines]
+    cycles = hybrid.cycles
+    usable = ~joint.statically_unstable[hybrid.line[cycles.member]]
+    alone = np.flatnonzero((cycles.floquet.stability == Stability.STABLE) & usable)
+    if len(loops) < 2 or alone.size == 0:
+        return rows
+    member = cycles.member[alone]
+    line, column = hybrid.line[member], np.searchsorted(np.sort(loops), hybrid.loops[member, 0])
+    column = np.argsort(loops)[column]
+    start = _embedded(cycles.orbits, alone, column, len(loops))
+    orbits, solution = balance(joint, line, start)
+    ratio = oscillation_size(joint, line, orbits) / oscillation_size(joint, line, start)
+    held = solution.converged & (ratio < SAME_SIZE) & (ratio > 1.0 / SAME_SIZE)
+    multiplier, vector, error = _leading(monodromy(joint, line, orbits, FINENESS))
+    verdict = judged(np.abs(multiplier), error)
+    energy = _energy_by_loops(joint, line, vector, len(loops))
+    for i, cycle in enumerate(alone.tolist()):
+        own = int(loops[column[i]])
+        seen = observation(made, joint.shapes[line[i]], own).T @ orbits.coefficients[i]
+        vertical, horizontal, torsional = half_peak_to_peak(seen).tolist()
+        decided = bool(held[i]) and verdict[i] is not Stability.UNKNOWN
+        rows[line[i]].append(
+            LoopCompetitionRow(
+                loops=own,
+                wind_speed_m_per_s=float(cycles.orbits.wind_speed[cycle]),
+                branch=int(cycles.branch[cycle]),
+                stability=verdict[i] if held[i] else Stability.UNKNOWN,
+                growing_loops=int(loops[int(energy[i].argmax())]) if decided else None,
+                growth_per_cycle=float(np.abs(multiplier[i])) if decided else None,
+                vertical_m=vertical if held[i] else None,
+                horizontal_m=horizontal if held[i] else None,
+                torsional_rad=torsional if held[i] else None,
+                outcome=Outcome.CONVERGED if held[i] else Outcome.NO_CONVERGENCE,
+            )
+        )
+    return rows
+
+
+def _embedded(orbits: Orbits, picked: IntArray, column: IntArray, count: int) -> Orbits:
+    """Put cycles of one number of loops into the co-ordinates of all, the others at rest."""
+    own = orbits.coefficients[picked]
+    coefficients = np.zeros((picked.size, 3, count, own.shape[-1]))
+    coefficients[np.arange(picked.size), :, column] = own
+    flat = coefficients.reshape(picked.size, 3 * count, -1)
+    return Orbits(flat, orbits.angular_frequency[picked], orbits.wind_speed[picked])
+
+
+def _leading(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+    """Return the largest multiplier beside the trivial one, its vector, and the error of the trivial one."""
+    cycles, size, _ = matrices.shape
+    multiplier = np.full(cycles, np.nan, dtype=np.complex128)
+    vector = np.zeros((cycles, size), dtype=np.complex128)
+    error = np.full(cycles, np.nan)
+    known = np.flatnonzero(np.isfinite(matrices).all(axis=(-1, -2)))
+    values, vectors = np.linalg.eig(matrices[known])
+    row = np.arange(known.size)
+    trivial = np.abs(values - 1.0).argmin(axis=-1)
+    error[known] = np.abs(values[row, trivial] - 1.0)
+    modulus = np.abs(values)
+    modulus[row, trivial] = -1.0
+    largest = modulus.argmax(axis=-1)
+    multiplier[known], vector[known] = values[row, largest], vectors[row, :, largest]
+    return multiplier, vector, error
+
+
+def _energy_by_loops(joint: ReducedModel, line: IntArray, vector: ComplexArray, count: int) -> FloatArray:
+    """Return sum M_ii |x_i|^2 of a disturbance (q, q'/w) by its number of loops: (cycles, loops)."""
+    mass = np.diagonal(joint.mass, axis1=-2, axis2=-1)[line]
+    m = mass.shape[-1]
+    energy = mass * (np.abs(vector[:, :m]) ** 2 + np.abs(vector[:, m:]) ** 2)
+    return np.asarray(energy.reshape(line.size, 3, count).sum(axis=1))

@@ -1,0 +1,144 @@
+"""Reduced models as functions of a field of the line: polynomials between values at which they were made.
+
+A model is a smooth function of lengths, tensions, damping ratios and the like. Nine values a panel and a check between
+them give it everywhere in the panel; where that does not hold the panel is halved, down to what has no meaning.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from math import prod
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.models.aerodynamic_load import PolynomialLoad
+from engine.models.reduced_model import ReducedModel, take
+
+NODES = 9  # values a panel
+HALVINGS = 6
+ACCURACY = 1e-9  # relative error of each part of the model between the values
+SMALLEST = 1e-6  # of the largest number of an array: smaller ones are measured by it
+CHECKED = (-0.93, 0.11, 0.76)  # places in a panel from -1 to 1 where the polynomial is held against the model
+
+Made = Callable[[FloatArray], ReducedModel | None]
+"""Makes models, leading axes (values, columns), or nothing where one of the values has no line."""
+
+_NODES = np.cos(np.pi * np.arange(NODES) / (NODES - 1))
+_WEIGHTS = np.where(np.arange(NODES) % 2 == 0, 1.0, -1.0) * np.where(np.isin(np.arange(NODES), (0, NODES - 1)), 0.5, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class FieldModels:
+    """Models over a range of values of a field.
+
+    like: one model a column, for what does not vary; low, high: (panels,), ends of the panels in rising order; parts:
+    (panels, nodes, columns, numbers), the numbers of the models at the nodes; defined: (panels, columns).
+    """
+
+    like: ReducedModel
+    low: FloatArray
+    high: FloatArray
+    parts: FloatArray
+    defined: BoolArray
+
+    def at(self, values: FloatArray, column: IntArray) -> tuple[ReducedModel, BoolArray]:
+        """Return the models at values (k,) in columns (k,), and which of them have a meaning.
+
+        Beyond the range the polynomials of the last panels go on.
+        """
+        panel = np.clip(np.searchsorted(self.high, values), 0, self.high.size - 1)
+        place = (2.0 * values - self.low[panel] - self.high[panel]) / (self.high[panel] - self.low[panel])
+        numbers = np.einsum("kn,knx->kx", _lagrange(place), self.parts[panel, :, column])
+        return _unpacked(take(self.like, column), numbers), self.defined[panel, column] & np.isfinite(values)
+
+
+def field_models(made: Made, low: float, high: float) -> FieldModels:
+    """Make the models over a range of values.
+
+    Parameters
+    ----------
+    made : callable
+    low, high : float
+        Both ends must have a line.
+
+    Returns
+    -------
+    FieldModels
+    """
+    like = made(np.array([low, high]))
+    if like is None:
+        raise ValueError("the field has no line at an end of its range")
+    panels: list[tuple[float, float, FloatArray, BoolArray]] = []
+    waiting = [(low, high, HALVINGS)]
+    while waiting:
+        left, right, halvings = waiting.pop()
+        numbers, good = _panel(made, left, right)
+        if numbers is not None and (good.all() or halvings == 0):
+            panels.append((left, right, numbers, good))
+        elif halvings == 0:
+            columns = like.mass.shape[1]
+            nothing = np.tile(_packed(take(like, 0))[None], (NODES, 1, 1))
+            panels.append((left, right, nothing, np.zeros(columns, dtype=np.bool_)))
+        else:
+            middle = 0.5 * (left + right)
+            waiting += [(middle, right, halvings - 1), (left, middle, halvings - 1)]
+    lows, highs, parts, defined = zip(*panels, strict=True)
+    return FieldModels(take(like, 0), np.array(lows), np.array(highs), np.stack(parts), np.stack(defined))
+
+
+def _panel(made: Made, low: float, high: float) -> tuple[FloatArray | None, BoolArray]:
+    """Return the numbers at the nodes of a panel and in which columns they give the models between them."""
+    places = np.concatenate([_NODES, CHECKED])
+    models = made(0.5 * (low + high) + 0.5 * (high - low) * places)
+    if models is None:
+        return None, np.zeros(0, dtype=np.bool_)
+    numbers = _packed(models)
+    between = np.einsum("cn,nkx->ckx", _lagrange(np.array(CHECKED)), numbers[:NODES])
+    size = np.abs(numbers).max(axis=(0, 1))
+    for here, _ in _slices(models):
+        size[here] = np.maximum(size[here], SMALLEST * size[here].max(initial=1e-300))
+    error = np.abs(between - numbers[NODES:]) / size
+    good = (error.max(axis=(0, 2)) < ACCURACY) & ~models.statically_unstable.any(axis=0)
+    return numbers[:NODES], np.asarray(good)
+
+
+def _lagrange(place: FloatArray) -> FloatArray:
+    """Return the weights of the nodes at places (k,) by the barycentric formula: (k, nodes)."""
+    gap = place[:, None] - _NODES
+    hit = gap == 0.0
+    share = _WEIGHTS / np.where(hit, 1.0, gap)
+    share = np.where(hit.any(axis=1, keepdims=True), hit, share)
+    return np.asarray(share / share.sum(axis=1, keepdims=True))
+
+
+_OWN = ("mass", "damping", "stiffness", "shapes")
+_OF_LOAD = tuple(field.name for field in fields(PolynomialLoad))
+
+
+def _arrays(model: ReducedModel) -> list[FloatArray]:
+    own: list[FloatArray] = [getattr(model, name) for name in _OWN]
+    return own + [getattr(model.load, name) for name in _OF_LOAD]
+
+
+def _packed(model: ReducedModel) -> FloatArray:
+    """Write all numbers of models as rows: (..., numbers)."""
+    lead = model.statically_unstable.shape
+    return np.concatenate([array.reshape(*lead, -1) for array in _arrays(model)], axis=-1)
+
+
+def _slices(model: ReducedModel) -> list[tuple[slice, int]]:
+    """Return the place of each array in a row, and its length."""
+    lead = model.statically_unstable.ndim
+    lengths = [prod(array.shape[lead:]) for array in _arrays(model)]
+    ends = np.cumsum(lengths).tolist()
+    return [(slice(end - length, end), length) for end, length in zip(ends, lengths, strict=True)]
+
+
+def _unpacked(like: ReducedModel, numbers: FloatArray) -> ReducedModel:
+    """Read rows (k, numbers) as models (k,) shaped like others."""
+    arrays = [
+        numbers[:, here].reshape(array.shape) for (here, _), array in zip(_slices(like), _arrays(like), strict=True)
+    ]
+    mass, damping, stiffness, shapes = arrays[: len(_OWN)]
+    load = PolynomialLoad(*arrays[len(_OWN) :])
+    return ReducedModel(mass, damping, stiffness, load, shapes, like.direction, like.statically_unstable)

@@ -1,0 +1,180 @@
+"""A study over one field as branches: the cycles of its points joined over the field, and where they turn."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.cycles.families import Starts
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, pick
+from engine.cycles.search import judged_orbits, solved_starts
+from engine.mechanics.modes import directional_shapes
+from engine.mechanics.static_profile import horizontal_position
+from engine.models.discretization import Discretization, discretize, observation
+from engine.models.hybrid import hybrid_model
+from engine.models.reduced_model import ReducedModel, take
+from engine.report.rows import number
+from engine.result import FollowedBifurcationRow, FollowedCycleRow, Result
+from engine.spec import Analysis, Line, Model
+from engine.studies.field_branches import FieldCycles, FieldProblem, follow
+from engine.studies.field_models import field_models
+
+MORE_HARMONICS = 4  # than are asked for: near a fold the fifth moves the field more than the cycle's amplitude
+
+LineAt = Callable[[float], Line]
+
+
+def followed(line_at: LineAt, values: Sequence[float], results: Sequence[Result], analysis: Analysis) -> list[Result]:
+    """Follow the hybrid model's cycles over a field, at every number of loops and wind speed of an analysis.
+
+    Parameters
+    ----------
+    line_at : callable
+        Makes the line of a value of the field; what it raises (ValueError, ArithmeticError) ends a branch there.
+    values : sequence of float
+        At least two, in rising order.
+    results : sequence of Result
+        Of the lines at these values under this analysis.
+    analysis : Analysis
+
+    Returns
+    -------
+    list of Result
+        With `followed_cycles`, and `followed_bifurcations` at the nearest value.
+    """
+    study = _Study(line_at, np.array(values, dtype=np.float64), analysis)
+    made, grid = study.models_of([line_at(value) for value in values])
+    known = study.starts(made, grid, results)
+    if known.member.size == 0:
+        return list(results)
+    problem = study.problem(grid)
+    found = follow(problem, study.values, known)
+    cycles = _cycle_rows(study, made, grid, found)
+    turns = _bifurcation_rows(study, found)
+    return [
+        replace(result, followed_cycles=tuple(own), followed_bifurcations=tuple(turned))
+        for result, own, turned in zip(results, cycles, turns, strict=True)
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class _Study:
+    """A line over a field; members are its numbers of loops, each at every wind speed."""
+
+    line_at: LineAt
+    values: FloatArray
+    analysis: Analysis
+
+    @property
+    def winds(self) -> FloatArray:
+        return np.array(sorted(set(self.analysis.wind_speeds)))
+
+    @property
+    def column(self) -> IntArray:
+        """Index of the number of loops of each member."""
+        return np.repeat(np.arange(len(self.analysis.loops)), self.winds.size)
+
+    def models_of(self, lines: Sequence[Line]) -> tuple[Discretization, ReducedModel]:
+        """Return the hybrid models (lines, loops) as an analysis makes them."""
+        made = discretize(lines, self.analysis.static_twist)
+        loops = tuple(sorted({*self.analysis.loops, 1, 2}))
+        shapes = directional_shapes(made.matrices, made.profile.arc_length, loops)
+        return made, hybrid_model(made, shapes, self.analysis.loops, self.analysis)
+
+    def made(self, values: FloatArray) -> ReducedModel | None:
+        """Make the models of values, leading axes (values, loops); None where one of them has no line."""
+        try:
+            return self.models_of([self.line_at(value) for value in values.tolist()])[1]
+        except (ValueError, ArithmeticError):
+            return None
+
+    def problem(self, grid: ReducedModel) -> FieldProblem:
+        """Set up the equations; sizes are measured in the middle of the range."""
+        members, column = self.column.size, self.column
+        models = field_models(self.made, float(self.values[0]), float(self.values[-1]))
+
+        def made(values: FloatArray, member: IntArray) -> tuple[ReducedModel, BoolArray]:
+            return models.at(values, column[member])
+
+        return FieldProblem(
+            model=take(grid, (self.values.size // 2, self.column)),
+            member=np.arange(members),
+            reference=np.ones(members),
+            made=made,
+            wind_speed=np.tile(self.winds, len(self.analysis.loops)),
+            width=float(np.ptp(self.values)),
+        )
+
+    def starts(self, made: Discretization, grid: ReducedModel, results: Sequence[Result]) -> Starts:
+        """Read the cycles of the hybrid model back from results."""
+        size = 2 * (self.analysis.harmonics + MORE_HARMONICS) + 1
+        member, value, rate, coefficients = [], [], [], []
+        for i, result in enumerate(results):
+            for orbit in result.orbits:
+                row = result.limit_cycles[orbit.cycle]
+                if row.model is not Model.HYBRID or row.kind != "periodic" or row.frequency_hz is None:
+                    continue
+                column = self.analysis.loops.index(row.loops)
+                seen = np.diagonal(observation(made, grid.shapes[i, column], row.loops))
+                series = np.array([orbit.vertical, orbit.horizontal, orbit.torsional])[:, :size] / seen[:, None]
+                coefficients.append(np.pad(series, ((0, 0), (0, size - series.shape[1]))))
+                member.append(column * self.winds.size + int(np.searchsorted(self.winds, row.wind_speed_m_per_s)))
+                value.append(i)
+                rate.append(2.0 * np.pi * row.frequency_hz)
+        places = np.array(member, dtype=np.intp)
+        wind = np.tile(self.winds, len(self.analysis.loops))[places]
+        orbits = Orbits(np.array(coefficients).reshape(-1, 3, size), np.array(rate), wind)
+        return self.balanced(grid, Starts(places, np.array(value, dtype=np.intp), orbits))
+
+    def balanced(self, grid: ReducedModel, starts: Starts) -> Starts:
+        """Solve for the cycles with the harmonics that they have here."""
+        models = take(grid, (starts.wind, self.column[starts.member]))
+        solved, good = solved_starts(models, Starts(np.arange(starts.wind.size), starts.wind, starts.orbits))
+        return Starts(starts.member[good], starts.wind[good], pick(solved.orbits, np.flatnonzero(good)))
+
+
+def _cycle_rows(
+    study: _Study, made: Discretization, grid: ReducedModel, found: FieldCycles
+) -> list[list[FollowedCycleRow]]:
+    rows: list[list[FollowedCycleRow]] = [[] for _ in study.values]
+    column = study.column[found.member]
+    models = take(grid, (found.value, column))
+    orbits, judged, kept, _ = judged_orbits(models, np.arange(column.size), found.orbits)
+    for i in np.flatnonzero(kept).tolist():
+        loops, value = study.analysis.loops[column[i]], int(found.value[i])
+        seen = observation(made, models.shapes[i], loops)
+        vertical, horizontal, torsional = half_peak_to_peak(seen.T @ orbits.coefficients[i]).tolist()
+        place = horizontal_position(made.profile, made.profile.arc_length / (2.0 * loops))
+        row = FollowedCycleRow(
+            loops=loops,
+            wind_speed_m_per_s=float(orbits.wind_speed[i]),
+            branch=int(found.branch[i]),
+            stability=judged.stability[i],
+            frequency_hz=float(orbits.angular_frequency[i] / (2.0 * np.pi)),
+            observed_at_m=float(place[value]),
+            vertical_m=vertical,
+            horizontal_m=horizontal,
+            torsional_rad=torsional,
+            found_by="point" if found.given[i] else "field_branch",
+        )
+        rows[value].append(row)
+    return rows
+
+
+def _bifurcation_rows(study: _Study, found: FieldCycles) -> list[list[FollowedBifurcationRow]]:
+    rows: list[list[FollowedBifurcationRow]] = [[] for _ in study.values]
+    b = found.bifurcations
+    for i in range(b.member.size):
+        row = FollowedBifurcationRow(
+            loops=study.analysis.loops[study.column[b.member[i]]],
+            wind_speed_m_per_s=float(np.tile(study.winds, len(study.analysis.loops))[b.member[i]]),
+            branch=int(b.branch[i]),
+            type=b.kind[i].value,
+            value=float(b.wind_speed[i]),
+            frequency_hz=float(b.angular_frequency[i] / (2.0 * np.pi)),
+            second_frequency_hz=number(float(b.second[i] / (2.0 * np.pi))),
+            uncertainty=float(b.uncertainty[i]),
+        )
+        rows[int(np.abs(study.values - b.wind_speed[i]).argmin())].append(row)
+    return rows

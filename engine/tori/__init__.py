@@ -1,0 +1,1 @@
+"""Quasi-periodic motions: two-frequency balance, stability, branches, search. Not the periodic ones."""

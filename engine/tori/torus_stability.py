@@ -1,0 +1,136 @@
+"""Stability of quasi-periodic motions from what the linearized equations do over long times. Theory section 7.3.
+
+Over one period of w the disturbances of a torus are mapped by a matrix that depends on the phase theta_2 alone. It is
+computed at some phases and interpolated in between, so that the map over thousands of periods is a product of small
+matrices. After a number of periods in which theta_2 comes back, too, the torus is where it was, and the map is judged
+like that of a cycle: without the two directions along the torus, which the motion keeps.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import ComplexArray, FloatArray, merged
+from engine.cycles.floquet import MOST_STEPS, gauss_phases, generator, ordered_product, steps_needed, transfers
+from engine.models.reduced_model import ReducedModel
+from engine.outcome import Stability
+from engine.tori.two_frequency_balance import Tori, derivative, lattice, states, waves
+
+SAMPLES = 64  # phases theta_2 at which the map over one period is computed
+PERIODS = 50_000  # after which the search for a decision ends
+BLOCK = 4096  # periods whose maps are held at a time
+MARGIN = 3.0  # times the errors of the map
+
+
+@dataclass(frozen=True, slots=True)
+class LongMap:
+    """Disturbances across a torus after a number of periods.
+
+    largest: modulus of the largest multiplier, NaN if nothing could be computed; error: what it may be trusted to;
+    periods: of w; stability: UNKNOWN where the error leaves it open.
+    """
+
+    largest: float
+    error: float
+    periods: int
+    stability: Stability
+
+
+def long_map(model: ReducedModel, torus: Tori) -> LongMap:
+    """Judge one torus of one model, both with a leading axis of length 1.
+
+    It goes from return to better return until the largest multiplier is told from 1.
+    """
+    maps = _maps_over_a_period(model, torus)
+    if maps is None:
+        return LongMap(np.nan, np.nan, 0, Stability.UNKNOWN)
+    weight = np.sqrt(np.tile(np.diagonal(model.mass[0]), 2))
+    series = np.fft.rfft(weight[:, None] * maps / weight, axis=0) / SAMPLES
+    turn = float(torus.angular_frequency[0, 1] / torus.angular_frequency[0, 0])
+    total, done, judged = np.eye(weight.size), 0, LongMap(np.nan, np.nan, 0, Stability.UNKNOWN)
+    for periods in _returns(turn):
+        with np.errstate(over="ignore", invalid="ignore"):
+            for first in range(done, periods, BLOCK):
+                total = _product(series, turn, first, min(first + BLOCK, periods)) @ total
+        if not np.isfinite(total).all():
+            break
+        done = periods
+        judged = _judged(torus, weight, total, periods)
+        if judged.stability is not Stability.UNKNOWN:
+            break
+    return judged
+
+
+def _maps_over_a_period(model: ReducedModel, torus: Tori) -> FloatArray | None:
+    """Return the maps of (q, dq/dtau) over one period from theta_1 = 0 and even theta_2: (samples, 2 m, 2 m)."""
+    m = model.mass.shape[-1]
+    fast = torus.angular_frequency[:, 0]
+    steps = int(steps_needed(np.linalg.inv(model.mass) @ model.stiffness, fast)[0])
+    if steps > MOST_STEPS:
+        return None
+    turn = torus.angular_frequency[0, 1] / fast[0]
+    start = 2.0 * np.pi * np.arange(SAMPLES)[:, None] / SAMPLES
+    generators = []
+    for tau in gauss_phases(steps):
+        phases = np.stack(np.broadcast_arrays(tau, start + turn * tau), axis=-1).reshape(-1, 2)
+        made = generator(model, states(torus, phases), fast, torus.wind_speed)
+        generators.append(made.reshape(SAMPLES, steps, 2 * m, 2 * m))
+    return ordered_product(transfers(generators[0], generators[1], 2.0 * np.pi / steps))
+
+
+def _returns(turn: float) -> Iterator[int]:
+    """Yield numbers of periods after which theta_2 returns ever better: denominators of the continued fraction."""
+    before, here, rest = 0, 1, abs(turn) % 1.0
+    while rest > 1e-9:
+        whole, rest = divmod(1.0 / rest, 1.0)
+        before, here = here, int(whole) * here + before
+        if here > PERIODS:
+            return
+        yield here
+
+
+def _product(series: ComplexArray, turn: float, first: int, stop: int) -> FloatArray:
+    """Multiply the interpolated maps of the periods from first to stop."""
+    phase = 2.0 * np.pi * turn * np.arange(first, stop)
+    order = np.arange(len(series))
+    weight = np.where((order == 0) | (order == SAMPLES // 2), 1.0, 2.0)
+    rotations = weight * np.exp(1j * phase[:, None] * order)
+    size = series.shape[-1]
+    maps = (rotations @ merged(series, -2)).real.reshape(-1, size, size)
+    whole = np.broadcast_to(np.eye(size), (2 ** int(np.ceil(np.log2(len(maps)))), size, size)).copy()
+    whole[: len(maps)] = maps
+    return np.asarray(ordered_product(whole[None])[0])
+
+
+def _judged(torus: Tori, weight: FloatArray, total: FloatArray, periods: int) -> LongMap:
+    """Judge the map in the space across the torus, where disturbances along it count for nothing."""
+    turn = torus.angular_frequency[0, 1] / torus.angular_frequency[0, 0]
+    start, end = (weight[:, None] * _tangents(torus, 2.0 * np.pi * turn * n) for n in (0, periods))
+    length = np.linalg.norm(start, axis=0)
+    if not length.all():
+        return LongMap(np.nan, np.inf, periods, Stability.UNKNOWN)
+    closing = abs(np.angle(np.exp(2j * np.pi * turn * periods)))
+    slip = np.linalg.norm(total @ start - end, axis=0) / length
+    across = np.linalg.qr(start / length, mode="complete")[0][:, 2:]
+    values = np.linalg.eigvals(across.T @ total @ across)
+    error = float(slip.max() + torus.order[1] * closing)
+    largest = float(np.abs(values).max(initial=0.0))
+    verdict = Stability.UNKNOWN
+    if largest > 1.0 + MARGIN * error:
+        verdict = Stability.UNSTABLE
+    elif largest < 1.0 - MARGIN * error:
+        verdict = Stability.STABLE
+    return LongMap(largest, error, periods, verdict)
+
+
+def _tangents(torus: Tori, phase: float) -> FloatArray:
+    """Return the directions along both phases in (q, dq/dtau) at theta_1 = 0 and theta_2 = phase: (2 m, 2)."""
+    pairs = lattice(torus.order).pairs
+    basis = waves(np.array([0.0, phase]), pairs)
+    rate = torus.angular_frequency @ pairs.T / torus.angular_frequency[:, :1]
+    columns = []
+    for axis in (0, 1):
+        along = derivative(torus.coefficients, pairs[None, :, axis].astype(float))
+        columns.append(np.concatenate([along[0] @ basis, derivative(along, rate)[0] @ basis]))
+    return np.stack(columns, axis=-1)

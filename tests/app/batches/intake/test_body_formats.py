@@ -1,0 +1,141 @@
+import gzip
+import json
+from collections.abc import Iterator
+
+import pytest
+
+from app.batches.intake import BodyTooLarge, gunzipped, read_csv, read_json, read_ndjson
+from app.schemas.faults import BadInput
+
+
+def pieces(body: bytes, size: int) -> Iterator[bytes]:
+    for first in range(0, len(body), size):
+        yield body[first : first + size]
+
+
+def codes(error: pytest.ExceptionInfo[BadInput]) -> list[tuple[str, str]]:
+    return [(fault.pointer, fault.code) for fault in error.value.faults]
+
+
+@pytest.mark.parametrize("size", [1, 7, 1000])
+def test_ndjson_is_the_same_however_it_is_cut(size: int) -> None:
+    body = b'{"analysis": {"loops": [1]}}\n{"n": 1}\r\n\n{"n": "\xc3\xa4"}\n{"n": 3}'
+    incoming = read_ndjson(pieces(body, size), 100)
+    assert incoming.analysis == {"loops": [1]}
+    assert list(incoming.lines) == [{"n": 1}, {"n": "ä"}, {"n": 3}]
+
+
+def test_ndjson_needs_its_analysis_first() -> None:
+    for body in (b"", b'{"n": 1}\n', b"[1]\n", b'{"analysis": {}, "webhook": "http://x"}\n'):
+        with pytest.raises(BadInput) as caught:
+            read_ndjson([body], 100)
+        assert codes(caught) == [("", "missing")]
+
+
+def test_a_line_that_is_no_json_is_told_of_in_its_place() -> None:
+    first, second, third = read_ndjson([b'{"analysis": {}}\n{"a": 1}\n{"a": \n{"a": 3}\n'], 100).lines
+    assert (first, third) == ({"a": 1}, {"a": 3})
+    assert isinstance(second, BadInput)
+
+
+def test_a_text_line_without_end_is_refused_early() -> None:
+    taken = []
+
+    def endless() -> Iterator[bytes]:
+        yield b'{"analysis": {}}\n'
+        for number in range(1000):
+            taken.append(number)
+            yield b"x" * 100
+
+    with pytest.raises(BodyTooLarge, match="1000 bytes"):
+        list(read_ndjson(endless(), 1000).lines)
+    assert len(taken) == 11
+
+
+@pytest.mark.parametrize("size", [1, 13, 10_000])
+def test_gzip_comes_out_as_it_went_in(size: int) -> None:
+    text = json.dumps(list(range(3000))).encode()
+    body = gzip.compress(text[:5000]) + gzip.compress(text[5000:])
+    assert b"".join(gunzipped(pieces(body, size), 100_000)) == text
+
+
+def test_a_bomb_is_noticed_before_it_takes_memory() -> None:
+    bomb = gzip.compress(b"\0" * 50_000_000)
+    assert len(bomb) < 100_000
+    out = 0
+    with pytest.raises(BodyTooLarge, match="1000000 bytes"):
+        for part in gunzipped([bomb], 1_000_000):
+            out += len(part)
+            assert len(part) <= 1 << 18
+    assert out <= 1_000_000
+
+
+def test_broken_gzip_is_the_senders_fault() -> None:
+    for body in (b"no gzip", gzip.compress(b"cut" * 1000)[:-9]):
+        with pytest.raises(BadInput) as caught:
+            list(gunzipped([body], 10_000))
+        assert codes(caught) == [("", "gzip_invalid")]
+
+
+def test_json_is_read_whole_and_names_every_fault() -> None:
+    incoming = read_json([b'{"lines": [1, {"a"', b": 2}]}"], 100)
+    assert (incoming.analysis, list(incoming.lines)) == ({}, [1, {"a": 2}])
+    with pytest.raises(BadInput) as caught:
+        read_json([b'{"webhook": "http://x", "lines": {}}'], 100)
+    assert codes(caught) == [("/webhook", "unknown_field"), ("/lines", "list_type")]
+    with pytest.raises(BodyTooLarge, match="NDJSON"):
+        read_json([b"x" * 101], 100)
+
+
+@pytest.mark.parametrize("size", [1, 11, 1000])
+def test_csv_cells_become_fields(size: int) -> None:
+    header = "reference,name,span.length_m,span.elements,ice.v,damping.model,devices.1.from_m,devices.0.type,tags.a.b"
+    text = f'\ufeff{header}\r\n007,"two\r\nlines",125.5,10,"[1, 2.5]",constant_ratio,3,spacer,1\r\n\r\n,,9,,,,,,\r\n'
+    first, second = read_csv(pieces(text.encode(), size), {"loops": [1]}, 1000).lines
+    assert first == {
+        "reference": "007",
+        "name": "two\r\nlines",
+        "span": {"length_m": 125.5, "elements": 10},
+        "ice": {"v": [1, 2.5]},
+        "damping": {"model": "constant_ratio"},
+        "devices": [{"type": "spacer"}, {"from_m": 3}],
+        "tags": {"a.b": "1"},
+    }
+    assert second == {"span": {"length_m": 9}}
+
+
+def test_a_row_of_another_length_is_told_of_in_its_place() -> None:
+    first, second = read_csv([b"a.b,c\n1,2\n1,2,3\n"], {}, 100).lines
+    assert first == {"a": {"b": 1}, "c": 2}
+    assert isinstance(second, BadInput) and "3 cells, the header 2" in str(second)
+
+
+@pytest.mark.parametrize(
+    ("header", "places"),
+    [
+        ("a,,b", ["/header/1"]),
+        ("a,b,a", ["/header/0", "/header/2"]),
+        ("a.b,a", ["/header/1"]),
+        ("a.5000", ["/header/0"]),
+        ("0.a", ["/header/0"]),
+        ("1", ["/header/0"]),
+        (",".join(["x"] * 501), ["/header"]),
+    ],
+)
+def test_headers_at_fault_are_refused_whole(header: str, places: list[str]) -> None:
+    with pytest.raises(BadInput) as caught:
+        read_csv([f"{header}\n1\n".encode()], {}, 5000)
+    assert [pointer for pointer, _ in codes(caught)] == places
+
+
+def test_a_header_is_needed() -> None:
+    with pytest.raises(BadInput) as caught:
+        read_csv([b"\r\n"], {}, 100)
+    assert codes(caught) == [("/header", "csv_header")]
+
+
+def test_what_is_no_csv_or_no_utf8_is_refused() -> None:
+    for body, code in ((b'a\n"1"2\n', "csv_invalid"), (b"a\n\xff\n", "not_utf8")):
+        with pytest.raises(BadInput) as caught:
+            list(read_csv([body], {}, 100).lines)
+        assert codes(caught) == [("", code)]

@@ -1,0 +1,77 @@
+"""The operator's commands as operators use them: keys, audit, prune, status."""
+
+import json
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.runtime.settings import Settings
+from tests.app import service
+from tests.app.command_line import galloping, refused
+from tests.documents import short_request
+
+
+def test_a_key_is_made_used_listed_and_revoked(
+    tmp_path: Path, own_settings: Settings, own_client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = ("--data-dir", str(own_settings.data_dir))
+    made = galloping("keys", "create", "--owner", "acme", "--name", "SCADA", "--days", "9", *place)
+    key = made.stdout.strip()
+    assert made.returncode == 0 and len(made.stdout.splitlines()) == 1
+    assert key not in made.stderr
+    monkeypatch.setenv("GALLOPING_KEY", key)
+    request = tmp_path / "request.json"
+    request.write_text(json.dumps(short_request()))
+    sent = galloping("submit", str(request), "--url", str(own_client.base_url))
+    assert sent.returncode == 0, sent.stderr
+    (listed,) = json.loads(galloping("keys", "list", "--json", *place).stdout)["keys"]
+    assert (listed["owner"], listed["name"], listed["state"]) == ("acme", "SCADA", "good")
+    assert listed["scopes"] == ["cancel", "read", "submit"]
+    assert listed["used_at"] is not None and listed["expires_at"] is not None
+    assert key not in json.dumps(listed)
+    assert galloping("keys", "revoke", listed["prefix"], *place).returncode == 0
+    assert "revoked" in galloping("keys", "list", *place).stdout
+    assert galloping("keys", "create", "--owner", "b", "--scope", "read", *place).returncode == 0
+    (narrow,) = json.loads(galloping("keys", "list", "--owner", "b", "--json", *place).stdout)["keys"]
+    assert (narrow["owner"], narrow["scopes"], narrow["expires_at"]) == ("b", ["read"], None)
+    assert "--scope" in refused("keys", "create", "--owner", "b", "--scope", "all", *place)
+    events = json.loads(galloping("audit", "--json", *place).stdout)["events"]
+    assert [event["action"] for event in events] == [
+        "key_created",
+        "key_revoked",
+        "job_submitted",
+        "key_created",
+    ]
+    assert events[2]["key_id"] == listed["id"]
+
+
+def test_what_cannot_be_done_with_keys_ends_with_2_and_a_sentence(tmp_path: Path) -> None:
+    place = ("--data-dir", str(tmp_path))
+    assert "galloping migrate" in refused("keys", "create", "--owner", "acme", *place)
+    assert galloping("migrate", *place).returncode == 0
+    assert "--owner" in refused("keys", "create", "--owner", "a b", *place)
+    assert "no keys begin with" in refused("keys", "revoke", "galloping_0000", *place)
+    assert "there is no key yet" in refused("serve", "--host", "0.0.0.0", *place)
+
+
+def test_prune_counts_before_it_removes(own_settings: Settings, own_client: httpx.Client) -> None:
+    address = service.finished(own_client, own_settings)
+    place = ("--json", "--data-dir", str(own_settings.data_dir))
+    nothing = {"jobs": 0, "batches": 0, "lines": 0, "audit_events": 0}
+    assert json.loads(galloping("prune", "--days", "1", "--dry-run", *place).stdout) == {"dry_run": True, **nothing}
+    assert json.loads(galloping("prune", "--days", "1", *place).stdout) == {"dry_run": False, **nothing}
+    assert own_client.get(address).status_code == 200
+    assert galloping("prune", *place).returncode == 2  # how long to keep is for the operator to say
+
+
+def test_status_shows_the_service_and_its_exit_code_what_is_wrong(own_settings: Settings) -> None:
+    place = ("--data-dir", str(own_settings.data_dir))
+    assert galloping("migrate", *place).returncode == 0
+    shown = galloping("status", *place)
+    assert shown.returncode == 1
+    assert "No worker is there." in shown.stdout
+    assert "oldest waiting" in shown.stdout
+    found = json.loads(galloping("status", "--json", *place).stdout)
+    assert (found["database"], found["broker"], found["queues"]) == ("ok", "ok", {"jobs": 0, "chunks": 0})
+    assert found["faults"] == ["No worker is there."]

@@ -1,0 +1,136 @@
+import asyncio
+import threading
+from collections.abc import Mapping
+from contextlib import aclosing
+
+from sqlalchemy.exc import OperationalError
+
+from app.coalescing.shared_watch import Watch
+
+Seen = Mapping[int, str | None]
+
+
+class Table:
+    """What there is to be seen, and how often somebody has looked."""
+
+    def __init__(self, **states: str) -> None:
+        self.states: dict[int, str] = {int(name[1:]): state for name, state in states.items()}
+        self.looks: list[set[int]] = []
+        self.faults = 0
+
+    def look(self, before: Seen) -> dict[int, str]:
+        self.looks.append(set(before))
+        if self.faults:
+            self.faults -= 1
+            raise OperationalError("SELECT", {}, Exception("gone"))
+        return {number: state for number, state in self.states.items() if number in before}
+
+
+async def first(watch: Watch[int, str], subject: int) -> str | None:
+    async with aclosing(watch.follow(subject)) as states:
+        async for state in states:
+            return state
+    return None
+
+
+def test_every_change_arrives_and_what_is_gone_ends() -> None:
+    table = Table(n1="a")
+
+    async def main() -> list[str]:
+        watch = Watch("test", table.look, 0.01)
+        seen: list[str] = []
+        async with aclosing(watch.follow(1)) as states:
+            async for state in states:
+                seen.append(state)
+                if state == "a":
+                    table.states[1] = "b"
+                else:
+                    del table.states[1]
+        await watch.close()
+        return seen
+
+    assert asyncio.run(main()) == ["a", "b"]
+
+
+def test_what_there_is_not_ends_at_once() -> None:
+    async def main() -> str | None:
+        watch = Watch("test", Table().look, 0.01)
+        found = await first(watch, 5)
+        await watch.close()
+        return found
+
+    assert asyncio.run(main()) is None
+
+
+def test_many_who_wait_share_one_look_and_one_thread() -> None:
+    table = Table(n1="a", n2="a")
+
+    async def main() -> int:
+        watch = Watch("test", table.look, 0.01)
+
+        async def wait_for_b(subject: int) -> None:
+            async with aclosing(watch.follow(subject)) as states:
+                async for state in states:
+                    if state == "b":
+                        return
+
+        waiting = [asyncio.create_task(wait_for_b(1 + number % 2)) for number in range(500)]
+        while not table.looks:
+            await asyncio.sleep(0.01)
+        threads = threading.active_count()
+        table.states = {1: "b", 2: "b"}
+        await asyncio.gather(*waiting)
+        await watch.close()
+        return threads
+
+    before = threading.active_count()
+    assert asyncio.run(main()) <= before + 1
+    assert {frozenset(look) for look in table.looks} == {frozenset({1, 2})}
+
+
+def test_nobody_is_looked_at_when_nobody_waits() -> None:
+    table = Table(n1="a")
+
+    async def main() -> int:
+        watch = Watch("test", table.look, 0.001)
+        await first(watch, 1)
+        await asyncio.sleep(0.05)
+        looks = len(table.looks)
+        await asyncio.sleep(0.05)
+        assert len(table.looks) == looks
+        assert await first(watch, 1) == "a"
+        await watch.close()
+        return len(table.looks) - looks
+
+    assert asyncio.run(main()) >= 1
+
+
+def test_a_database_that_fails_is_looked_at_again() -> None:
+    table = Table(n1="a")
+    table.faults = 2
+
+    async def main() -> str | None:
+        watch = Watch("test", table.look, 0.01)
+        found = await first(watch, 1)
+        await watch.close()
+        return found
+
+    assert asyncio.run(main()) == "a"
+
+
+def test_all_are_let_go_at_once() -> None:
+    async def main() -> list[list[str]]:
+        watch = Watch("test", Table(n1="a").look, 0.01)
+
+        async def follow() -> list[str]:
+            async with aclosing(watch.follow(1)) as states:
+                return [state async for state in states]
+
+        following = [asyncio.create_task(follow()) for _ in range(3)]
+        await first(watch, 1)
+        watch.release()
+        seen = [*await asyncio.gather(*following), await follow()]
+        await watch.close()
+        return seen
+
+    assert asyncio.run(main())[3] == []

@@ -1,0 +1,90 @@
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app import convert
+from app.convert import PointResult, ranking_figures
+from app.reference.source_lines import example
+from tests.app.lines import changed
+
+TWIN = example("c11-twin")
+WIDTH = 2.0 * 0.2355
+
+
+def found(line: dict[str, Any], winds: list[float], loops: list[int] | None = None) -> PointResult:
+    analysis = {"loops": loops or [1], "models": ["hybrid"], "wind_speeds_m_per_s": winds}
+    request = convert.read({"line": line, "analysis": analysis}).model_dump(mode="json", by_alias=True)
+    (point,) = (item for item in convert.run(request) if isinstance(item, PointResult))
+    return point
+
+
+def test_peaks_are_those_of_the_motions_that_last() -> None:
+    point = found(TWIN, [4.0, 6.0], [1, 2])
+    stable = [(i, row) for i, row in enumerate(point.tables["limit_cycles"]) if row["stability"] == "stable"]
+    assert point.peaks["largest_vertical_m"] == max(row["vertical_m"] for _, row in stable)
+    winds = [row["wind_speed_m_per_s"] for row in point.tables["critical_wind_speeds"]]
+    assert point.peaks["lowest_critical_wind_speed_m_per_s"] == min(winds)
+    assert len(stable) < len(point.tables["limit_cycles"])
+
+
+def test_height_and_width_are_of_all_sub_conductors_over_the_whole_orbit() -> None:
+    """Against points laid densely on the orbits by eq. (3), sub-conductor by sub-conductor."""
+    point = found(TWIN, [4.0, 6.0], [1, 2])
+    tau = np.linspace(0.0, 2.0 * math.pi, 20_001)
+    height = width = 0.0
+    for orbit in point.orbits:
+        if point.tables["limit_cycles"][orbit["cycle"]]["stability"] != "stable":
+            continue
+        order = np.arange(1, len(orbit["vertical"]) // 2 + 1)[:, None]
+        v, w, theta = (
+            c[0] + np.array(c[1::2]) @ np.cos(order * tau) + np.array(c[2::2]) @ np.sin(order * tau)
+            for c in (orbit["vertical"], orbit["horizontal"], orbit["torsional"])
+        )
+        y = np.concatenate([v - z * theta for z in (0.2355, -0.2355)])
+        z = np.concatenate([z + w for z in (0.2355, -0.2355)])
+        height, width = max(height, float(np.ptp(y))), max(width, float(np.ptp(z)))
+    assert point.peaks["largest_height_m"] == pytest.approx(height, rel=1e-3)
+    assert point.peaks["largest_width_m"] == pytest.approx(width, rel=1e-3)
+    assert width > WIDTH + 0.9  # two loops at 6 m/s move sideways by 0.94 m
+
+
+def test_a_line_at_rest_is_as_wide_as_its_bundle() -> None:
+    point = found(TWIN, [1.0])
+    assert point.peaks["largest_vertical_m"] == 0.0
+    assert point.peaks["largest_height_m"] == pytest.approx(0.0, abs=1e-12)
+    assert point.peaks["largest_width_m"] == pytest.approx(WIDTH)
+
+
+def test_a_line_that_is_unstable_without_wind_has_the_critical_wind_speed_0() -> None:
+    line = changed("span.length_m", 400.0, example("c11-single"))
+    point = found(line, [4.0])
+    assert point.tables["frequencies"][0]["outcome"] == "statically_unstable"
+    assert point.peaks["lowest_critical_wind_speed_m_per_s"] == 0.0
+    assert point.peaks["largest_vertical_m"] is None
+    assert point.peaks["largest_height_m"] is None
+
+
+def test_lines_side_by_side_have_the_peaks_that_each_has_alone() -> None:
+    """Bundles of one, two and four sub-conductors, and a line of which nothing is known."""
+    unknown = changed("span.length_m", 400.0, example("c11-single"))
+    others = example("c11-single"), example("c11-quad"), changed("span.horizontal_tension_n", 38000.0, TWIN)
+    lines = [TWIN, unknown, *others]
+    analysis = {"loops": [1, 2], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 6.0]}
+    numbered = [convert.NumberedLine(number, line) for number, line in enumerate(lines)]
+    points = [item for item in convert.run_stack(analysis, numbered) if isinstance(item, PointResult)]
+    assert [point.point for point in points] == list(range(len(lines)))
+    for line, point in zip(lines, points, strict=True):
+        alone = found(line, [4.0, 6.0], [1, 2]).peaks
+        for name, value in alone.items():
+            assert point.peaks[name] == (None if value is None else pytest.approx(value, rel=1e-6, abs=1e-12))
+    widths = [point.peaks["largest_width_m"] for point in points]
+    assert widths[1] is None
+    assert len(set(widths)) == len(widths)
+
+
+def test_many_orbits_are_followed_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    together = found(TWIN, [4.0, 6.0], [1, 2]).peaks
+    monkeypatch.setattr(ranking_figures, "_ORBITS_AT_ONCE", 1)
+    assert found(TWIN, [4.0, 6.0], [1, 2]).peaks == together

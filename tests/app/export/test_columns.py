@@ -1,0 +1,59 @@
+from typing import Any, get_args
+
+import pytest
+
+from app import convert
+from app.batches import line_results
+from app.batches.line_results import BatchTable
+from app.export.columns import Column, axis_columns, columns_of
+
+
+@pytest.mark.parametrize("table", get_args(BatchTable))
+def test_every_column_of_every_table_has_its_kind_and_meaning(table: BatchTable) -> None:
+    names = line_results.columns(table)
+    columns = columns_of(table, names)
+    assert [column.name for column in columns] == names
+    assert all(column.description for column in columns)
+    for column in columns:
+        unit = {"_m": "m", "_hz": "Hz", "_rad": "rad", "_n": "N", "_m_per_s": "m/s", "_n_per_m": "N/m"}
+        ends = [text for end, text in sorted(unit.items(), key=lambda item: len(item[0])) if column.name.endswith(end)]
+        if ends:
+            assert (column.kind, column.unit) == ("number", ends[-1]), column.name
+
+
+def test_kinds_follow_the_schemas() -> None:
+    names = ["loops", "branch", "stability", "vertical_m", "outcome"]
+    assert [column.kind for column in columns_of("limit_cycles", names)] == [
+        "integer",
+        "integer",
+        "text",
+        "number",
+        "text",
+    ]
+    assert columns_of("summary", ["den_hartog_unstable"])[0].kind == "truth"
+    assert columns_of("frequencies", ["number", "vertical_hz"])[1] == Column(
+        "vertical_hz", "number", "Hz", "Dominantly vertical"
+    )
+
+
+def test_an_unknown_column_is_an_error() -> None:
+    with pytest.raises(KeyError):
+        columns_of("frequencies", ["colour"])
+
+
+def test_axes_have_the_units_of_the_fields_that_they_vary() -> None:
+    axes: list[dict[str, Any]] = [
+        {"parameter": "span.horizontal_tension_n", "values": [24000, 30000.0]},
+        {"parameter": "damping.model", "values": ["constant_ratio"]},
+        {"parameter": "devices.0.position_m", "values": [1.0]},
+    ]
+    assert [(c.name, c.kind, c.unit) for c in axis_columns(axes)] == [
+        ("span.horizontal_tension_n", "number", "N"),
+        ("damping.model", "text", None),
+        ("devices.0.position_m", "number", None),
+    ]
+
+
+def test_tables_of_a_job_have_columns_of_their_own_only() -> None:
+    for table in convert.TABLES:
+        assert len(columns_of(table, convert.columns(table))) == len(convert.columns(table))

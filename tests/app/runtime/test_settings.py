@@ -1,0 +1,76 @@
+import stat
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pydantic import SecretStr, ValidationError
+
+from app.runtime.settings import Settings, cursor_key
+
+
+def test_defaults_need_no_other_server(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path)
+    assert settings.database_url == f"sqlite:///{tmp_path}/galloping.sqlite3"
+    assert settings.broker_url == "filesystem://localhost"
+    assert settings.max_attempts == 3
+    assert settings.max_body_bytes == 20_000_000
+    assert settings.cursor_secret is None
+
+
+def test_relative_data_directory_becomes_absolute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    settings = Settings(data_dir=Path("here"))
+    assert settings.data_dir == tmp_path / "here"
+    assert settings.database_url == f"sqlite:///{tmp_path}/here/galloping.sqlite3"
+
+
+@pytest.mark.parametrize("scheme", ["postgres", "postgresql", "postgresql+psycopg"])
+def test_postgres_gets_its_driver(scheme: str) -> None:
+    assert Settings(database_url=f"{scheme}://a:b@localhost/d").database_url == "postgresql+psycopg://a:b@localhost/d"
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("database_url", "mysql://a/b"),
+        ("database_url", "sqlite"),
+        ("broker_url", "amqp://a"),
+        ("lease_seconds", 0.0),
+        ("lease_seconds", float("inf")),
+        ("max_attempts", 0),
+        ("heartbeat_seconds", 16.0),  # more than half of the lease
+        ("soft_time_limit_seconds", 3660.0),  # not below the hard limit
+    ],
+)
+def test_bad_settings_are_refused(field: str, value: Any) -> None:
+    with pytest.raises(ValidationError, match=field):
+        Settings(**{field: value})
+
+
+def test_child_processes_get_the_same_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = Settings(data_dir=tmp_path, lease_seconds=4.5, worker_processes=7, cursor_secret=SecretStr("s3cret"))
+    for name, value in settings.environment().items():
+        monkeypatch.setenv(name, value)
+    assert Settings() == settings
+
+
+def test_secret_is_not_shown(tmp_path: Path) -> None:
+    assert "s3cret" not in repr(Settings(data_dir=tmp_path, cursor_secret=SecretStr("s3cret")))
+
+
+def test_cursor_key_that_is_set_is_used(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "none", cursor_secret=SecretStr("s3cret"))
+    assert cursor_key(settings) == b"s3cret"
+    assert not (tmp_path / "none").exists()
+
+
+def test_cursor_key_is_made_once_in_a_private_file(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "data")
+    with ThreadPoolExecutor(8) as pool:
+        keys = set(pool.map(lambda _: cursor_key(settings), range(32)))
+    files = list((tmp_path / "data").iterdir())
+    assert len(keys) == 1
+    assert len(next(iter(keys))) >= 40
+    assert [stat.S_IMODE(path.stat().st_mode) for path in files] == [0o600]
+    assert cursor_key(Settings(data_dir=tmp_path / "other")) not in keys

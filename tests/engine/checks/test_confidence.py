@@ -1,0 +1,60 @@
+"""What is said of the trust in a cycle, against solving the changed problem in full and against direct integration."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engine.arrays import FloatArray
+from engine.checks.confidence import DETUNING, confidence
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized
+from engine.cycles.search import Cycles, energy_starts, find_cycles
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel
+from engine.numerics.newton import Options
+from engine.spec import Check
+from tests.builders import hybrid, source_line
+
+WINDS = np.array([4.0, 6.0])
+
+
+def cycles_of(model: ReducedModel, harmonics: int) -> Cycles:
+    starts = energy_starts(model, WINDS, harmonics)
+    return find_cycles(model, critical_wind_speeds(model, 30.0), WINDS, starts, harmonics)
+
+
+def solved_anew(model: ReducedModel, cycles: Cycles, start: Orbits) -> FloatArray:
+    orbits, solution = balance(model, cycles.member, start, Options(tolerance=1e-10))
+    assert solution.converged.all()
+    return np.asarray(half_peak_to_peak(orbits.coefficients) / half_peak_to_peak(cycles.orbits.coefficients) - 1.0)
+
+
+def test_truncation_is_what_one_harmonic_more_changes() -> None:
+    model = hybrid(source_line(1), 1)
+    cycles = cycles_of(model, 2)
+    measured = confidence(model, cycles, Check.NONE)
+    change = np.abs(solved_anew(model, cycles, resized(cycles.orbits, 3)))[:, 0]
+    assert (measured.truncation > 1e-5).all()
+    assert measured.truncation == pytest.approx(change, rel=0.1)
+    assert (confidence(model, cycles_of(model, 7), Check.NONE).truncation < measured.truncation / 10.0).all()
+
+
+def test_detuning_is_the_change_for_a_higher_horizontal_frequency() -> None:
+    model = hybrid(source_line(3), 2)
+    cycles = cycles_of(model, 5)
+    stiffness = model.stiffness.copy()
+    factor = np.array([1.0, 1.0 + DETUNING, 1.0])
+    stiffness *= factor[:, None] * factor
+    change = solved_anew(replace(model, stiffness=stiffness), cycles, cycles.orbits)[:, 1]
+    measured = confidence(model, cycles, Check.NONE)
+    assert measured.detuning == pytest.approx(change, rel=1e-4)
+    assert (np.abs(measured.detuning) > 0.02).all()  # the close resonance of two loops is soft
+
+
+def test_residual_is_that_of_rounding_and_direct_integration_agrees() -> None:
+    model = hybrid(source_line(2), 1)
+    cycles = cycles_of(model, 5)
+    measured = confidence(model, cycles, Check.DIRECT)
+    assert (measured.residual < 1e-9).all()
+    assert (np.abs(measured.direct) < 5e-4).all()
+    assert np.isnan(confidence(model, cycles, Check.NONE).direct).all()

@@ -1,0 +1,157 @@
+"""Bifurcations of branches of cycles against exact ones, direct integration and what AUTO finds on the same lines."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from engine.arrays import ComplexArray, FloatArray
+from engine.cycles.bifurcations import FACTORS, Bifurcations, Kind, bifurcations
+from engine.cycles.branches import traced_from_hopf
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, pick, resized, states
+from engine.models.aerodynamic_load import force, force_gradient
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel, take
+from tests.builders import Oscillators, hand_made
+from tests.engine.motions import LIGHT, analysed
+
+
+def of_kind(found: Bifurcations, kind: Kind) -> FloatArray:
+    return found.wind_speed[[k is kind for k in found.kind]]
+
+
+# The ranges in which AUTO finds torus points on the two-loop branches.
+@pytest.mark.parametrize("subconductors", [1, 2, 3])
+def test_two_loop_branches_with_light_damping_have_torus_points(subconductors: int) -> None:
+    _, _, found = analysed(subconductors, LIGHT, 2)
+    torus = of_kind(found, Kind.TORUS)
+    assert torus.size >= 1
+    assert ((torus > 7.0) & (torus < 12.0)).all()
+    second = found.second[[k is Kind.TORUS for k in found.kind]]
+    assert (np.abs(second / found.angular_frequency[[k is Kind.TORUS for k in found.kind]] - 1.0) < 0.02).all()
+
+
+def test_single_conductor_with_very_light_torsion_has_two_folds() -> None:
+    _, _, found = analysed(1, 0.01, 1)
+    assert of_kind(found, Kind.FOLD) == pytest.approx([5.31999, 5.32152], abs=2e-4)
+
+
+def test_branch_joins_both_hopf_points_and_is_number_zero() -> None:
+    _, cycles, found = analysed(1, 0.308, 1)
+    assert of_kind(found, Kind.HOPF) == pytest.approx([2.400, 10.286], abs=2e-3)
+    assert set(found.branch.tolist()) == {0}
+    assert set(cycles.branch.tolist()) == {0}
+
+
+def test_every_bifurcation_is_located_to_a_millionth() -> None:
+    for subconductors, ratio, loops in ((1, LIGHT, 2), (2, LIGHT, 2), (3, LIGHT, 2), (1, 0.01, 1)):
+        _, _, found = analysed(subconductors, ratio, loops)
+        assert (found.uncertainty <= 1e-6 * found.wind_speed).all()
+
+
+def multipliers_by_integration(model: ReducedModel, orbit: Orbits) -> ComplexArray:
+    """Integrate the nonlinear equations with their variation over one period."""
+    speed, period = float(orbit.wind_speed[0]), 2.0 * np.pi / float(orbit.angular_frequency[0])
+    inverse = np.linalg.inv(model.mass)
+
+    def rate(_: float, y: FloatArray) -> FloatArray:
+        q, v, variation = y[:3], y[3:6], y[6:].reshape(6, 6)
+        state = np.concatenate([q, v / speed])[None]
+        gradient = force_gradient(model.load, state)[0]
+        acceleration = inverse @ (speed**2 * force(model.load, state)[0] - model.stiffness @ q - model.damping @ v)
+        by_q = inverse @ (speed**2 * gradient[:, :3] - model.stiffness)
+        by_v = inverse @ (speed * gradient[:, 3:] - model.damping)
+        slope = np.concatenate([variation[3:], by_q @ variation[:3] + by_v @ variation[3:]])
+        return np.concatenate([v, acceleration, slope.ravel()])
+
+    start = states(orbit, np.zeros(1))[0, 0] * np.repeat([1.0, speed], 3)
+    run = solve_ivp(
+        rate, (0.0, period), np.concatenate([start, np.eye(6).ravel()]), method="DOP853", rtol=1e-11, atol=1e-13
+    )
+    return np.asarray(np.linalg.eigvals(run.y[6:, -1].reshape(6, 6)), dtype=np.complex128)
+
+
+def test_torus_point_has_a_pair_on_the_circle_by_direct_integration() -> None:
+    model, cycles, found = analysed(1, LIGHT, 2)
+    torus = int(np.flatnonzero([k is Kind.TORUS for k in found.kind])[0])
+    trace = next(t for t in cycles.traces if t.points.branch.size)
+    near = int(
+        np.abs(trace.orbits.wind_speed - found.wind_speed[torus]).argmin()
+        if trace.problem.member.size == 1
+        else np.hypot(
+            trace.orbits.wind_speed / found.wind_speed[torus] - 1.0,
+            100.0 * (trace.orbits.angular_frequency / found.angular_frequency[torus] - 1.0),
+        ).argmin()
+    )
+    start = pick(trace.orbits, np.array([near]))
+    guess = Orbits(start.coefficients, start.angular_frequency, found.wind_speed[[torus]])
+    orbit, solution = balance(model, np.zeros(1, dtype=np.intp), resized(guess, 9))
+    assert solution.converged.all()
+    values = multipliers_by_integration(take(model, 0), orbit)
+    others = values[np.abs(values - 1.0) > 1e-6]
+    pair = others[np.abs(np.abs(others) - 1.0).argmin()]
+    assert abs(pair) == pytest.approx(1.0, abs=1e-6)
+    beat = abs(found.second[torus] - found.angular_frequency[torus]) / found.angular_frequency[torus]
+    assert abs(np.angle(pair)) / (2.0 * np.pi) == pytest.approx(beat, abs=1e-5)
+
+
+def one_degree_of_freedom(quadratic: float = 0.0) -> ReducedModel:
+    """Return m (y'' + 2 zeta w y' + w^2 y) = U^2 (a_1 v + a_2 v^2 - a_3 v^3), v = y'/U, with m = w = 1 (section 11)."""
+    zeta, terms = 0.005, {(0, (1,)): 0.01, (0, (1, 1)): quadratic, (0, (1, 1, 1)): -0.04}
+    return hand_made(Oscillators(np.eye(1), np.array([[2.0 * zeta]]), np.eye(1), terms))
+
+
+def test_branch_of_one_degree_of_freedom_is_the_exact_parabola() -> None:
+    # a_1 U - 2 zeta - (3/4) a_3 (w A)^2 / U = 0 to first order in the small damping (theory section 11).
+    model = one_degree_of_freedom()
+    crossings = critical_wind_speeds(model, 30.0)
+    assert crossings.wind_speed == pytest.approx([1.0])
+    trace = traced_from_hopf(model, crossings, np.array([0]), 5, np.array([3.0]))
+    speed = trace.orbits.wind_speed[1:]
+    amplitude = half_peak_to_peak(trace.orbits.coefficients)[1:, 0]
+    assert speed[-1] > 3.0
+    assert amplitude**2 == pytest.approx((0.01 * speed**2 - 0.01 * speed) / (0.75 * 0.04), rel=1e-3)
+
+
+def test_van_der_pol_branch_has_amplitude_two() -> None:
+    # y'' - mu (1 - y^2) y' + y = 0 for every wind speed: the load is U^2 (mu v / U - mu y^2 v / U) at U = 1.
+    mu = 0.01
+    terms = {(0, (1,)): 2.0 * mu, (0, (0, 0, 1)): -mu}
+    model = hand_made(Oscillators(np.eye(1), np.array([[mu]]), np.eye(1), terms))
+    crossings = critical_wind_speeds(model, 5.0)
+    trace = traced_from_hopf(model, crossings, np.array([0]), 5, np.array([1.0]))
+    index = int(np.abs(trace.orbits.wind_speed - 1.0).argmin())
+    speed = trace.orbits.wind_speed[index]
+    # mu (2 U - 1 - U y^2) y': amplitude 2 sqrt((2 U - 1) / U).
+    amplitude = half_peak_to_peak(trace.orbits.coefficients)[index, 0]
+    assert crossings.wind_speed == pytest.approx([0.5])
+    assert amplitude == pytest.approx(2.0 * np.sqrt((2.0 * speed - 1.0) / speed), rel=1e-3)
+
+
+def test_torus_point_of_two_oscillators_is_exact() -> None:
+    # q_1'' + w_1^2 q_1 = mu (2 U - 1 - U q_1^2 - q_1'^2 / (U w_1^2)) q_1' runs on a circle of radius 1 at U = 1. Beside
+    # it q_2'' + w_2^2 q_2 = nu (3 U - 2 - U q_1^2 - q_1'^2 / (U w_1^2)) q_2' is undamped just there.
+    mu, nu, first, second = 0.05, 0.02, 1.0, 1.37
+    terms: dict[tuple[int, tuple[int, ...]], float] = {
+        (0, (2,)): 2.0 * mu,
+        (0, (0, 0, 2)): -mu,
+        (0, (2, 2, 2)): -mu / first**2,
+        (1, (3,)): 3.0 * nu,
+        (1, (0, 0, 3)): -nu,
+        (1, (2, 2, 3)): -nu / first**2,
+    }
+    model = hand_made(Oscillators(np.eye(2), np.diag([mu, 2.0 * nu]), np.diag([first**2, second**2]), terms))
+    crossings = critical_wind_speeds(model, 5.0)
+    assert crossings.wind_speed == pytest.approx([0.5, 2.0 / 3.0])
+    trace = traced_from_hopf(model, crossings, np.array([0]), 5, np.array([1.1]))
+    found = bifurcations((trace,), np.zeros(1, dtype=np.intp), model, crossings)
+    torus = [i for i, kind in enumerate(found.kind) if kind is Kind.TORUS]
+    assert found.wind_speed[torus] == pytest.approx([1.0], abs=1e-6)
+    assert found.angular_frequency[torus] == pytest.approx([first], abs=1e-6)
+    assert found.second[torus] == pytest.approx([second], abs=1e-6)
+    assert (found.uncertainty[torus] < 1e-6).all()
+
+
+def test_multipliers_beyond_all_numbers_cross_nothing_and_warn_of_nothing() -> None:
+    huge = np.array([1e200 + 1e200j, 1e200 - 1e200j, 0.5])
+    assert not np.isfinite(FACTORS[Kind.TORUS](huge)).all()
+    assert FACTORS[Kind.TORUS](np.array([0.5, 3.0, 2.0])) == pytest.approx([-0.5, 0.0, -5.0])

@@ -1,0 +1,126 @@
+"""The static profile against the catenary's own identities and (A10)."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engine.mechanics.static_profile import arc_position, coordinates, horizontal_position, mean_mass, static_profile
+from engine.spec import BlowOut, IceSegment, Span, Support, Supports, Wind
+from tests.builders import source_line
+
+WEIGHT = 2.379 * 9.81
+
+
+def test_catenary_parameter_sag_and_tension_are_one_another() -> None:
+    by_tension = static_profile((source_line(2),))
+    c, sag = by_tension.catenary_parameter[0], by_tension.sag[0]
+    assert c == pytest.approx(30_000.0 / WEIGHT, rel=1e-14)
+    assert sag == pytest.approx(c * (math.cosh(62.94 / c) - 1.0), rel=1e-12)
+    for span in (Span(125.88, catenary_parameter=float(c)), Span(125.88, sag=float(sag))):
+        other = static_profile((replace(source_line(2), span=span),))
+        assert other.horizontal_tension[0] == pytest.approx(30_000.0, rel=1e-12)
+        assert other.arc_length[0] == pytest.approx(by_tension.arc_length[0], rel=1e-13)
+
+
+@pytest.mark.parametrize("ratio", [1e-5, 0.02, 0.3, 2.0])
+def test_sag_is_met_from_taut_wires_to_deep_chains(ratio: float) -> None:
+    profile = static_profile((replace(source_line(1), span=Span(80.0, sag=80.0 * ratio)),))
+    c = profile.catenary_parameter[0]
+    # 2 c sinh^2 instead of c (cosh - 1): the difference cancels in taut wires.
+    assert 2.0 * c * math.sinh(20.0 / c) ** 2 == pytest.approx(80.0 * ratio, rel=1e-12)
+
+
+def test_arc_and_position_are_inverse_and_measure_the_curve() -> None:
+    profile = static_profile((replace(source_line(1), span=Span(300.0, sag=20.0)), source_line(2)))
+    x = np.linspace(0.0, 1.0, 2001) * profile.span_length[:, None]
+    arc = arc_position(profile, x)
+    assert horizontal_position(profile, arc) == pytest.approx(x, abs=1e-10)
+    assert arc[:, 0] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert arc[:, -1] == pytest.approx(profile.arc_length, rel=1e-13)
+    chords = np.linalg.norm(np.diff(coordinates(profile, arc), axis=1), axis=-1).sum(axis=1)
+    assert chords == pytest.approx(profile.arc_length, rel=1e-8)  # 2000 chords: (h/c)^2/24
+
+
+def test_coordinates_satisfy_the_equilibrium_of_the_cable() -> None:
+    profile = static_profile((source_line(2),))
+    x = np.linspace(0.0, 125.88, 401)[None]
+    y = coordinates(profile, arc_position(profile, x))[0, :, 1]
+    # H y'' = p sqrt(1 + y'^2); second differences of 0.3 m are good to 1e-8 here.
+    step = x[0, 1]
+    slope = np.gradient(y, step, edge_order=2)[1:-1]
+    bend = np.diff(y, 2) / step**2
+    assert 30_000.0 * bend == pytest.approx(WEIGHT * np.sqrt(1.0 + slope**2), rel=1e-6)
+    assert y[[0, -1]] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert -y.min() == pytest.approx(profile.sag[0], rel=1e-12)
+
+
+def test_blow_out_turns_the_catenary_about_the_chord() -> None:
+    still = static_profile((source_line(2),))
+    blown = replace(source_line(2), wind=Wind(1.25, blow_out=BlowOut(20.0, 1.1)))
+    profile = static_profile((blown,))
+    drag = 0.5 * 1.25 * 20.0**2 * 0.0286 * 1.1
+    assert profile.tilt[0] == pytest.approx(math.atan(drag / WEIGHT), rel=1e-14)
+    assert profile.horizontal_tension[0] == pytest.approx(30_000.0 * math.hypot(1.0, drag / WEIGHT), rel=1e-14)
+    arc = np.linspace(0.0, still.arc_length[0], 5)[None]
+    x, y, z = coordinates(profile, arc)[0].T
+    plain = coordinates(still, arc)[0]
+    assert x == pytest.approx(plain[:, 0], abs=1e-12)
+    assert y == pytest.approx(plain[:, 1] * math.cos(profile.tilt[0]), abs=1e-12)
+    assert z == pytest.approx(-plain[:, 1] * math.sin(profile.tilt[0]), abs=1e-12)  # downwind is positive
+    assert z[2] > 0.0
+
+
+def test_mean_mass_takes_segments_by_their_length() -> None:
+    line = source_line(1)
+    ice = replace(line.ice, segments=(IceSegment(0.0, 31.47, mass=3.379), IceSegment(94.41, 125.88, mass=1.379)))
+    assert mean_mass(replace(line, ice=ice)) == pytest.approx(2.379, rel=1e-14)
+    one = replace(line.ice, segments=(IceSegment(10.0, 72.94, mass=3.379),))
+    assert mean_mass(replace(line, ice=one)) == pytest.approx(2.879, rel=1e-14)
+
+
+def by_hand(adjacent: float) -> float:
+    """Return the first term of (A10) for an adjacent span of the same H and weight."""
+    rigidity, tension = source_line(1).conductor.axial_rigidity, 30_000.0
+    c = tension / WEIGHT
+    arc = 2.0 * c * math.sinh(adjacent / (2.0 * c))
+    return 12.0 * rigidity * tension**3 / (12.0 * arc * tension**3 + rigidity * WEIGHT**2 * adjacent**3)
+
+
+def test_supports_follow_a10_with_the_string_and_unequal_spans() -> None:
+    supports = Supports(left=Support(adjacent_span=200.0), right=Support(insulator_length=1.6, insulator_weight=350.0))
+    found = static_profile((replace(source_line(1), supports=supports),)).end_stiffness[0]
+    arc = static_profile((source_line(1),)).arc_length[0]
+    assert found[0] == pytest.approx(by_hand(200.0), rel=1e-12)
+    assert found[1] == pytest.approx(by_hand(125.88) + WEIGHT * arc / 1.6 + 350.0 / 3.2, rel=1e-12)
+
+
+def test_string_between_unequal_spans_carries_half_of_each() -> None:
+    supports = Supports(left=Support(adjacent_span=60.0, insulator_length=2.0))
+    found = static_profile((replace(source_line(1), supports=supports),)).end_stiffness[0, 0]
+    c = 30_000.0 / WEIGHT
+    arcs = [2.0 * c * math.sinh(x / (2.0 * c)) for x in (125.88, 60.0)]
+    assert found == pytest.approx(by_hand(60.0) + 0.5 * WEIGHT * sum(arcs) / 2.0, rel=1e-12)
+
+
+def test_given_stiffness_wins_at_both_ends_and_a_dead_end_over_its_neighbour() -> None:
+    # The contract: "a given stiffness (per sub-conductor, both ends) wins; else (A10) at each end".
+    ends = Supports(left=Support(dead_end=True), right=Support(insulator_length=1.0))
+    given = replace(ends, longitudinal_stiffness=7e4)
+    assert static_profile((replace(source_line(1), supports=given),)).end_stiffness[0].tolist() == [7e4, 7e4]
+    left, right = static_profile((replace(source_line(1), supports=ends),)).end_stiffness[0]
+    assert left == math.inf
+    assert right < math.inf
+
+
+def test_adjacent_span_blown_out_too_holds_by_its_own_plane() -> None:
+    # (A10) is the stiffness of a cable in the plane of its sag: the blown-out adjacent span
+    # carries p_r = p sqrt(1 + (q/p)^2) as well as H_r, and so must the string.
+    line = replace(source_line(1), span=Span(300.0, sag=9.0), wind=Wind(1.25, blow_out=BlowOut(30.0, 1.2)))
+    profile = static_profile((line,))
+    tension, arc = profile.horizontal_tension[0], profile.arc_length[0]
+    weight = 2.379 * 9.81 * math.hypot(1.0, math.tan(profile.tilt[0]))
+    rigidity = line.conductor.axial_rigidity
+    expected = 12.0 * rigidity * tension**3 / (12.0 * arc * tension**3 + rigidity * weight**2 * 300.0**3)
+    assert profile.end_stiffness[0] == pytest.approx([expected, expected], rel=1e-10)

@@ -1,0 +1,184 @@
+"""The aerodynamic load against direct quadrature of eq. (16) and the unexpanded relative wind."""
+
+from dataclasses import replace
+from itertools import pairwise, product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.arrays import FloatArray
+from engine.mechanics.modes import at_points
+from engine.models.aerodynamic_load import force, force_gradient, integrated, relative_wind_table, span_load
+from engine.models.reduced_model import ReducedModel
+from engine.spec import AerodynamicModel, Aerodynamics, AirflowSpoiler, Analysis, IceSegment, Line, Wind
+from tests.builders import discretized, finite_element, hybrid, random_line, sorted_products, source_line
+
+RELATIVE = Analysis(aerodynamic_model=AerodynamicModel.RELATIVE_WIND)
+AT_REST = (0.05, 1.1, -0.2)
+OTHER = Aerodynamics((-0.3, 1.0, 4.0), (0.5, 0.2, 0.1), (0.3, 0.2, 2.0), (0.1, 0.9, 0.3))
+
+
+def varied() -> Line:
+    """Return a triple bundle with segments, a spoiler and a wind profile."""
+    line = source_line(3)
+    ice = replace(
+        line.ice,
+        aerodynamics=replace(line.ice.aerodynamics, at_rest=AT_REST),
+        segments=(IceSegment(0.0, 33.0, OTHER), IceSegment(80.0, 91.0, replace(OTHER, vertical=(0.4, 0.0, -1.0)))),
+    )
+    wind = Wind(1.2, profile=((10.0, 0.7), (62.94, 1.3), (100.0, 0.9)))
+    return replace(line, ice=ice, wind=wind, devices=(AirflowSpoiler(50.0, 61.0, OTHER),))
+
+
+def pieces(line: Line) -> list[tuple[float, float, Aerodynamics]]:
+    """List the stretches of the varied line on which the coefficients and the slope of the wind are constant."""
+    marks = [0.0, 10.0, 33.0, 50.0, 61.0, 62.94, 80.0, 91.0, 100.0, line.span.length]
+    own = {0.0: OTHER, 10.0: OTHER, 50.0: OTHER, 80.0: replace(OTHER, vertical=(0.4, 0.0, -1.0))}
+    return [(a, b, own.get(a, line.ice.aerodynamics)) for a, b in pairwise(marks)]
+
+
+def by_quadrature(line: Line, model: ReducedModel, state: FloatArray, relative: bool) -> FloatArray:
+    """Integrate the load of one state over the span by the trapezoidal rule on 4000 points a piece."""
+    made = discretized(line)
+    c, arc_length = made.profile.catenary_parameter[0], made.profile.arc_length[0]
+    d, rho, n = line.conductor.diameter, line.wind.air_density, len(line.bundle.positions)
+    m = state.size // 2
+    total = np.zeros(m)
+    for start, stop, a in pieces(line):
+        x = np.linspace(start, stop, 4001)
+        s = c * (np.sinh((x - 62.94) / c) + np.sinh(62.94 / c))
+        shapes = interpolated(model.shapes[0], s / arc_length)
+        phi = np.interp(x, [10.0, 62.94, 100.0], [0.7, 1.3, 0.9])
+        v, w, turn = shapes[:, 0], shapes[:, 1], shapes[:, 2]
+        theta = state[:m] @ turn
+        rise, sway = (state[m:] @ (v + 0.5 * d * turn)) / phi, (state[m:] @ w) / phi
+        loads = unexpanded(a, theta, rise, sway) if relative else cubic(a, theta - rise)
+        density = loads[0] * v + loads[1] * w + d * loads[2] * turn
+        total += np.trapezoid(0.5 * rho * d * n * phi**2 * density, s, axis=-1)
+    return total
+
+
+def interpolated(nodal: FloatArray, along: FloatArray) -> FloatArray:
+    """Evaluate nodal values (..., 21) of quadratic elements at s/L: (..., points)."""
+    element = np.minimum((along * 10.0).astype(int), 9)
+    t = along * 10.0 - element
+    weights = np.stack([(1.0 - t) * (1.0 - 2.0 * t), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)])
+    return np.asarray(sum(nodal[..., 2 * element + i] * weights[i] for i in range(3)))
+
+
+def cubic(a: Aerodynamics, alpha: FloatArray) -> list[FloatArray]:
+    """Return the cubics in the angle of attack."""
+    rows = (a.vertical, a.horizontal, a.torsional)
+    return [np.asarray(r[0] * alpha + r[1] * alpha**2 + r[2] * alpha**3) for r in rows]
+
+
+def unexpanded(a: Aerodynamics, theta: FloatArray, rise: FloatArray, sway: FloatArray) -> list[FloatArray]:
+    """Return the load of the relative wind as theory section 5 writes it, less its value at rest."""
+    assert a.at_rest is not None
+    alpha = theta - np.arctan2(rise, 1.0 - sway)
+    pressure = (1.0 - sway) ** 2 + rise**2
+    c_y, c_z, c_m = (r + c for r, c in zip(a.at_rest, cubic(a, alpha), strict=True))
+    return [
+        pressure * (c_y * np.cos(theta) - c_z * np.sin(theta)) - a.at_rest[0],
+        pressure * (c_y * np.sin(theta) + c_z * np.cos(theta)) - a.at_rest[1],
+        pressure * c_m - a.at_rest[2],
+    ]
+
+
+@pytest.mark.parametrize("loops", [1, 2])
+def test_hybrid_load_is_the_integral_of_eq_16(loops: int) -> None:
+    line = varied()
+    model = hybrid(line, loops)
+    rng = np.random.default_rng(loops)
+    for scale in (0.01, 0.3):
+        state = scale * rng.normal(size=6)
+        expected = by_quadrature(line, model, state, relative=False)
+        # 4000 trapezoids a piece err by 1e-7; a boundary's place on the curved element by 1e-6.
+        assert force(model.load, state[None, None])[0, 0] == pytest.approx(expected, rel=1e-5, abs=1e-6 * scale)
+
+
+def test_finite_element_load_is_the_integral_of_eq_16() -> None:
+    line = varied()
+    model = finite_element(line, (1, 2))
+    state = np.random.default_rng(5).normal(size=12) * 0.3
+    expected = by_quadrature(line, model, state, relative=False)
+    found = force(model.load, state[None, None])[0, 0]
+    assert found == pytest.approx(expected, rel=1e-5, abs=1e-6 * np.abs(expected).max())
+
+
+def test_relative_wind_load_is_the_integral_of_the_unexpanded_one_to_third_order() -> None:
+    line = varied()
+    model = hybrid(line, 2, RELATIVE)
+    state = np.random.default_rng(7).normal(size=6)
+    error = []
+    for scale in (0.02, 0.01):
+        expected = by_quadrature(line, model, scale * state, relative=True)
+        error.append(np.abs(force(model.load, scale * state[None, None])[0, 0] - expected).max() / scale)
+    # What is left out begins at fourth order, so half the motion leaves an eighth, relative to the motion.
+    assert error[0] < 1e-3 * np.abs(model.load.table).max()
+    assert np.log2(error[0] / error[1]) == pytest.approx(3.0, abs=0.3)
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.integers(0, 10**6))
+def test_relative_wind_table_is_the_taylor_expansion_of_the_unexpanded_formula(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a = rng.normal(size=(3, 4))
+    y, z, m = ([float(value) for value in row] for row in a)
+    coefficients = Aerodynamics((y[1], y[2], y[3]), (z[1], z[2], z[3]), (m[1], m[2], m[3]), (y[0], z[0], m[0]))
+    table = relative_wind_table(a)
+    # A polynomial of degree 5 fitted through 11^3 points in a cube of 0.06 leaves sixth-order terms only.
+    axis = 0.06 * np.cos(np.pi * (np.arange(11) + 0.5) / 11.0)
+    points = np.array(list(product(axis, axis, axis)))
+    values = np.stack(unexpanded(coefficients, *points.T), axis=-1)
+    exponents = [e for e in product(range(6), repeat=3) if 0 < sum(e) <= 5]
+    scaled = points / 0.06
+    design = np.stack([np.prod(scaled ** np.array(e), axis=-1) for e in exponents], axis=-1)
+    fitted = np.linalg.lstsq(design, values, rcond=None)[0]
+    for column, monomial in enumerate(sorted_products(3)):
+        e = tuple(monomial.count(i) for i in range(3))
+        expected = fitted[exponents.index(e)] / 0.06 ** len(monomial)
+        assert table[:, column] == pytest.approx(expected, rel=1e-3, abs=2e-3)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([Analysis(), RELATIVE]))
+def test_gradient_is_the_derivative_of_the_force(seed: int, analysis: Analysis) -> None:
+    rng = np.random.default_rng(seed)
+    line = random_line(rng)
+    line = replace(line, ice=replace(line.ice, aerodynamics=replace(line.ice.aerodynamics, at_rest=AT_REST)))
+    for model in (hybrid(line, 2, analysis), finite_element(line, (1, 2), analysis)):
+        size, step = model.load.forms.shape[-1], 1e-3
+        state = 0.1 * rng.normal(size=(size,))
+        gradient = force_gradient(model.load, state[None, None])[0, 0]
+        shifts = step * np.eye(size)
+        points = np.concatenate([state + shifts, state - shifts, state + 2.0 * shifts, state - 2.0 * shifts])
+        plus, minus, far, back = force(model.load, points[None])[0].reshape(4, size, -1)
+        # Four-point differences are exact for cubics.
+        expected = ((8.0 * (plus - minus) - (far - back)) / (12.0 * step)).T
+        assert gradient == pytest.approx(expected, rel=1e-8, abs=1e-9 * np.abs(expected).max())
+
+
+def test_integrated_load_is_the_pointwise_one() -> None:
+    line = varied()
+    made = discretized(line)
+    model = hybrid(line, 1)
+    values = at_points(made.matrices, model.shapes)[:, None]
+    pointwise = span_load((line,), made.sections, made.matrices.weight, values, AerodynamicModel.PUBLISHED)
+    active = (2, 3, 5)
+    once = integrated(pointwise, active)
+    state = 0.2 * np.random.default_rng(2).normal(size=(1, 1, 7, 6))
+    expected = force(pointwise, state)
+    assert force(once, state) == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())
+    assert force(model.load, state[:, 0]) == pytest.approx(expected[:, 0], rel=1e-10, abs=1e-9)
+
+
+def test_uniform_wind_factor_scales_the_wind() -> None:
+    line = source_line(2)
+    slower = replace(line, wind=Wind(1.2929, profile=((0.0, 0.7), (125.88, 0.7))))
+    state = 0.1 * np.random.default_rng(4).normal(size=6)
+    scaled = state / np.array([1.0, 1.0, 1.0, 0.7, 0.7, 0.7])
+    one, other = force(hybrid(slower).load, state[None, None]), force(hybrid(line).load, scaled[None, None])
+    assert one == pytest.approx(0.49 * other, rel=1e-12)

@@ -1,0 +1,87 @@
+"""Models and motions that tests of several modules look at."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from engine.cycles.bifurcations import Bifurcations, bifurcations
+from engine.cycles.first_harmonic import energy_balance_cycles
+from engine.cycles.harmonic_balance import (
+    Orbits,
+    balance,
+    resized,
+)
+from engine.cycles.search import Cycles, energy_starts, find_cycles
+from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.reduced_model import ReducedModel, take
+from engine.spec import AerodynamicModel, Analysis, Line
+from tests.builders import finite_element, hybrid, source_line
+
+LIGHT = 0.0308
+
+
+WINDS = np.array([4.0, 8.0, 12.0])
+
+
+@cache
+def analysed(subconductors: int, torsional_ratio: float, loops: int) -> tuple[ReducedModel, Cycles, Bifurcations]:
+    model = take(hybrid(source_line(subconductors, torsional_ratio=torsional_ratio), loops), [0])
+    crossings = critical_wind_speeds(model, 30.0)
+    cycles = find_cycles(model, crossings, WINDS, energy_starts(model, WINDS, 5), 5)
+    return model, cycles, bifurcations(cycles.traces, cycles.followed, model, crossings)
+
+
+RELATIVE = Analysis(aerodynamic_model=AerodynamicModel.RELATIVE_WIND)
+
+
+def relative_line(subconductors: int) -> Line:
+    """Return a source line whose ice has coefficients at rest."""
+    line = source_line(subconductors)
+    aerodynamics = replace(line.ice.aerodynamics, at_rest=(0.05, 1.0, 0.02))
+    return replace(line, ice=replace(line.ice, aerodynamics=aerodynamics))
+
+
+MODELS = {
+    "hybrid": lambda: hybrid(source_line(3), 2),
+    "hybrid, relative wind": lambda: hybrid(relative_line(2), 2, RELATIVE),
+    "finite element": lambda: finite_element(source_line(2)),
+    "finite element, relative wind": lambda: finite_element(relative_line(1), (1, 2), RELATIVE),
+}
+
+
+def random_orbits(model: ReducedModel, harmonics: int, copies: int) -> Orbits:
+    """Return large arbitrary motions, so that the cubic terms matter."""
+    rng = np.random.default_rng(harmonics)
+    m = model.mass.shape[-1]
+    scale = 0.3 / np.sqrt(np.diagonal(model.mass[0]))
+    coefficients = scale[:, None] * rng.normal(size=(copies, m, 2 * harmonics + 1))
+    return Orbits(coefficients, rng.uniform(2.0, 6.0, copies), rng.uniform(3.0, 9.0, copies))
+
+
+COPIES = 11  # not a multiple of what the kernels do side by side
+
+
+def perturbed(model: ReducedModel) -> ReducedModel:
+    """Return a stack of models, each with a damping of its own, so that members must not be mixed up."""
+    stack = take(model, np.zeros(4, dtype=np.intp))
+    factors = np.linspace(0.5, 2.0, 4)[:, None, None]
+    return ReducedModel(
+        stack.mass,
+        factors * stack.damping,
+        stack.stiffness,
+        stack.load,
+        stack.shapes,
+        stack.direction,
+        stack.statically_unstable,
+    )
+
+
+def orbit_of(model: ReducedModel, wind_speed: float) -> Orbits:
+    """Return the first cycle that the energy balance leads to, with twelve harmonics."""
+    guess = energy_balance_cycles(model, np.array([wind_speed]))
+    first = np.stack([guess.mean, guess.amplitude.real, -guess.amplitude.imag], axis=-1)
+    start = Orbits(first, guess.angular_frequency, np.full(guess.member.size, wind_speed))
+    orbits, solution = balance(model, np.zeros(guess.member.size, dtype=np.intp), resized(start, 12))
+    i = int(np.flatnonzero(solution.converged)[0])
+    return Orbits(orbits.coefficients[[i]], orbits.angular_frequency[[i]], orbits.wind_speed[[i]])

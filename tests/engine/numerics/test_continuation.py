@@ -1,0 +1,134 @@
+"""Pseudo-arclength continuation on curves that are known exactly."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.numerics.continuation import (
+    Points,
+    Problem,
+    Steps,
+    branches,
+    interpolated,
+    located,
+    onto,
+    points_at,
+    tangents,
+)
+from engine.outcome import Outcome
+
+
+@dataclass(frozen=True, slots=True)
+class Circles(Problem):
+    """Circles x^2 + p^2 = r^2, one a branch; folds at p = +-r."""
+
+    radius: FloatArray
+
+    def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
+        del anchor
+        residual = (z**2).sum(axis=-1) - self.radius[branch] ** 2
+        return residual[:, None], 2.0 * z[:, None, :]
+
+    def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
+        return np.repeat(self.radius[branch][:, None], z.shape[-1], axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class Kink(Problem):
+    """x = |p| near p = 0 has no solution at all beyond: (x - 1)^2 + max(p, 0) = 0 ends at p = 0."""
+
+    def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
+        del anchor, branch
+        beyond = np.sqrt(np.where(z[:, 1] > 0.0, np.nan, 1.0))
+        return (z[:, :1] - 1.0) * beyond[:, None], np.stack([beyond, np.zeros_like(beyond)], axis=-1)[:, None]
+
+    def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
+        del branch
+        return np.ones_like(z)
+
+
+def followed(problem: Problem, start: FloatArray, direction: FloatArray, steps: Steps | None = None) -> list[Points]:
+    return list(branches(problem, start, direction, steps))
+
+
+CIRCLES = Circles(np.array([1.0, 3.0]))
+START = np.array([[0.0, 1.0], [3.0, 0.0]])
+ALONG = np.array([[1.0, 0.0], [0.0, -1.0]])
+
+
+def test_points_lie_on_the_curves_and_go_round_all_of_them() -> None:
+    points = followed(CIRCLES, START, ALONG, Steps(points=150))
+    for branch, radius in enumerate(CIRCLES.radius):
+        z = np.array([p.z[p.branch == branch][0] for p in points])
+        assert np.hypot(*z.T) == pytest.approx(radius, rel=1e-7)
+        angle = np.unwrap(np.arctan2(z[:, 1], z[:, 0]))
+        assert abs(angle[-1] - angle[0]) > 2.0 * np.pi
+        assert (np.diff(angle) * np.sign(angle[-1] - angle[0]) > 0.0).all()
+
+
+def test_caller_ends_a_branch() -> None:
+    steps = branches(CIRCLES, START, ALONG)
+    first = next(steps)
+    assert first.branch.tolist() == [0, 1]
+    assert steps.send(np.array([False, True])).branch.tolist() == [1]
+    with pytest.raises(StopIteration) as end:
+        steps.send(np.array([False]))
+    assert end.value.value.tolist() == [Outcome.CONVERGED, Outcome.CONVERGED]
+
+
+def test_end_of_a_curve_is_an_outcome() -> None:
+    steps = branches(Kink(), np.array([[1.0, -0.35]]), np.array([[0.0, 1.0]]))
+    points = []
+    alive: BoolArray | None = None
+    while True:
+        try:
+            points.append(steps.send(alive))
+        except StopIteration as end:
+            assert end.value.tolist() == [Outcome.NO_CONVERGENCE]
+            break
+    assert -1e-3 < points[-1].z[0, 1] <= 0.0
+    assert points[-1].z[0, 0] == pytest.approx(1.0)
+
+
+def test_largest_number_of_points_is_an_outcome() -> None:
+    steps = branches(CIRCLES, START, ALONG, Steps(points=2))
+    next(steps), next(steps)
+    with pytest.raises(StopIteration) as end:
+        next(steps)
+    assert end.value.value.tolist() == [Outcome.LIMIT_REACHED, Outcome.LIMIT_REACHED]
+
+
+def test_folds_are_located() -> None:
+    points = followed(CIRCLES, np.array([[1.0, 0.0], [3.0, 0.0]]), np.array([[0.0, 1.0], [0.0, 1.0]]), Steps(points=50))
+    for branch, radius in enumerate(CIRCLES.radius):
+        own = [p.pick(p.branch == branch) for p in points]
+        at = next(i for i in range(len(own)) if own[i].tangent[0, -1] * own[i + 1].tangent[0, -1] < 0.0)
+        fold = located(CIRCLES, own[at], own[at + 1], lambda p: p.tangent[:, -1], 1e-12)
+        assert fold.points.z[0, 0] == pytest.approx(0.0, abs=1e-4)
+        assert fold.points.z[0, 1] == pytest.approx(radius, rel=1e-9)
+        assert fold.uncertainty[0] < 1e-9
+
+
+def test_a_test_function_is_met_inside_a_segment() -> None:
+    left = points_at(CIRCLES, np.array([0]), np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]))
+    right = points_at(CIRCLES, np.array([0]), np.array([[0.0, 1.0]]), np.array([[-1.0, 0.0]]))
+    found = located(CIRCLES, left, right, lambda p: p.z[:, 1] - 0.6, 1e-12)
+    assert found.points.z[0] == pytest.approx([0.8, 0.6], abs=1e-10)
+
+
+def test_tangents_and_hermite_interpolation() -> None:
+    angle = np.array([0.3, 0.5])
+    z = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    branch = np.array([0, 0])
+    tangent = tangents(CIRCLES, z, branch, np.array([[-1.0, 0.0], [-1.0, 0.0]]))
+    assert tangent == pytest.approx(np.stack([-np.sin(angle), np.cos(angle)], axis=-1))
+    ends = [points_at(CIRCLES, branch[i : i + 1], z[i : i + 1], tangent[i : i + 1]) for i in (0, 1)]
+    middle = interpolated(ends[0], ends[1], np.array([0.5]))
+    assert middle[0] == pytest.approx([np.cos(0.4), np.sin(0.4)], abs=2e-5)
+
+
+def test_points_are_put_onto_the_branch() -> None:
+    near = points_at(CIRCLES, np.array([1]), np.array([[3.1, 0.0]]), np.array([[0.0, 3.0]]))
+    assert onto(CIRCLES, near).z[0] == pytest.approx([3.0, 0.0], abs=1e-9)
