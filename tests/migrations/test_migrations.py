@@ -74,7 +74,7 @@ def test_missing_column_would_be_seen(settings: Settings, engine: Engine) -> Non
 
 
 def test_several_at_once_migrate_once(settings: Settings, engine: Engine) -> None:
-    script = "from app.serve import migrate; from app.runtime.settings import get_settings; migrate(get_settings())"
+    script = "from app.storage.migration import migrate; from app.runtime.settings import get_settings; migrate(get_settings())"
     commands = [
         subprocess.Popen([sys.executable, "-c", script], env=environment(settings), stderr=subprocess.PIPE)
         for _ in range(4)

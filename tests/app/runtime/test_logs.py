@@ -67,7 +67,7 @@ def test_levels_are_the_settings(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 def test_people_get_text(tmp_path: Path) -> None:
-    program = "import logging; from app import logs; from app.runtime.settings import Settings; "
+    program = "import logging; from app.runtime import logs; from app.runtime.settings import Settings; "
     program += "logs.configure(Settings(log_format='text')); logging.getLogger('a').warning('hello', extra={'n': 1})"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert "hello" in done.stderr and "n=1" in done.stderr and not done.stderr.startswith("{")
