@@ -19,7 +19,7 @@ from tests.servers import free_port, wait_until
 PARENT = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"
 PROGRAM = f"""
 from opentelemetry import trace
-from app import correlation, telemetry
+from app.runtime import correlation, telemetry
 from app.runtime.settings import Settings
 
 telemetry.configure(Settings(opentelemetry=True), "worker")
