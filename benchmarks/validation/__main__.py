@@ -24,9 +24,10 @@ PAGE = ROOT / "docs" / "validation.md"
 
 HEADER = """# Validation
 
-Every figure on this page is written by `make validation` (benchmarks/validation/, a module for each section). Unless a
-section says otherwise the lines are those of the source's Table 1 with one to four sub-conductors, constant damping
-coefficient, exact closure, ten elements. Theory and section numbers are explained in [conventions](conventions.md)."""
+`make validation` computes every figure on this page (benchmarks/validation/, one module a section). Unless a section
+says otherwise, the lines are those of the source's Table 1 with one to four sub-conductors (n), constant damping
+coefficient, exact closure and ten elements. [Conventions](conventions.md#sections-of-the-theory) lists the sections of
+the theory that this page names; [nomenclature](nomenclature.md) explains symbols."""
 
 SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "frequencies": frequencies.section,

@@ -37,17 +37,16 @@ def section() -> Iterator[str]:
     """Yield the section's text."""
     yield "## Bifurcations and coexisting cycles\n"
     yield (
-        "Hybrid model with a torsional damping ratio of a tenth of the source's and less. The branch of every Hopf "
-        "point is followed to 12.6 m/s. AUTO finds torus points on the two-loop branches with 0.0308 between 7 and 12 "
-        "m/s, and folds on the one-loop branch of the single conductor with 0.01.\n"
+        "Hybrid model with a tenth of the source's torsional damping ratio or less. The branch of every Hopf point is "
+        "followed to 12.6 m/s. AUTO finds torus points on the two-loop branches with the ratio 0.0308 between 7 and 12 "
+        "m/s, and folds on the one-loop branch of the single conductor with the ratio 0.01.\n"
     )
     head = ["n", "torsional ratio", "loops", "branch", "type", "wind m/s", "f1 Hz", "f2 Hz", "uncertainty m/s"]
     yield table(head, [row for case in BRANCHES for row in _turning(case)])
     yield (
-        "\nStable cycles that exist side by side. The difference is how far the largest amplitude moves in 50 periods "
-        "of direct integration (DOP853, relative tolerance 1e-8) that begin on the cycle; besides, motions from large "
-        "starts were integrated until they settled (`check: direct`), which led to no further cycle unless the last "
-        "column says so.\n"
+        "\nStable cycles that coexist at one wind speed. The difference is the change of the largest amplitude over 50 "
+        "periods of direct integration (DOP853, relative tolerance 1e-8) that starts on the cycle. Direct integration "
+        "from large starts (`check: direct`) found no further cycle unless the last column says so.\n"
     )
     head = ["n", "torsional ratio", "loops", "wind m/s", "branch", "vertical m", "horizontal m", "torsional rad"]
     yield table([*head, "difference %", "found by"], [row for case in COEXISTING for row in _stable(case)])

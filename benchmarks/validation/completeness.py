@@ -191,14 +191,15 @@ def section() -> Iterator[str]:
     found = compared(ends(lines, SEED), reported(lines))
     yield "## Completeness: where direct integration ends\n"
     yield (
-        f"{LINES} lines drawn at random (seed {SEED}), loops {_listed(LOOPS)}, wind speeds {_listed(WINDS)} m/s: "
-        f"{len(found.cases)} cases of the hybrid model. Each is integrated from {found.starts // len(found.cases)} "
-        f"starts, vertical, horizontal, torsional and mixed, of random phases and four sizes, up to {LEVELS[-1]:g} rad "
-        f"of torsion or turn of the wind, for at most {LONGEST} blocks of fifty of the shortest periods. The method "
+        f"{LINES} random lines (seed {SEED}), loops {_listed(LOOPS)}, wind speeds {_listed(WINDS)} m/s: "
+        f"{len(found.cases)} cases of the hybrid model. Each case is integrated from "
+        f"{found.starts // len(found.cases)} starts: vertical, horizontal, torsional and mixed, with random phases and "
+        f"four sizes up to {LEVELS[-1]:g} rad of torsion or of the angle by which the motion turns the wind. An "
+        f"integration lasts at most {LONGEST} blocks of fifty of the shortest periods. The method "
         f"(engine/checks/settled_motion.py) is within {integration_error(lines[:COMPARED_LINES], SEED):.0e} of DOP853 "
-        f"after {COMPARED} periods from starts of {LEVELS[-2]:g} rad. Two motions are one if their sizes by direction "
-        f"and those of their velocities differ by less than {SAME:.0%}; the largest difference of an attractor from "
-        f"the motion reported for it is {_worst(found):.2%}.\n"
+        f"after {COMPARED} periods from starts of {LEVELS[-2]:g} rad. Two motions count as one if their sizes by "
+        f"direction and those of their velocities differ by less than {SAME:.0%}. The largest difference between an "
+        f"attractor and the motion reported for it is {_worst(found):.2%}.\n"
     )
     yield table(["", "number"], list(_counts(found)))
     missed = [a for a in found.attractors if a.verdict is not Verdict.REPORTED]
@@ -206,7 +207,8 @@ def section() -> Iterator[str]:
         yield "\nAttractors that are not reported as stable:\n"
         head = ["line", "loops", "wind m/s", "starts", "vertical m", "horizontal m", "torsional rad", "Hz", ""]
         yield table(head, [_missed_row(a) for a in missed])
-    for text, cases in (("that still changed otherwise", found.unsettled), ("that diverged", found.diverged)):
+    unsettled = "unsettled at the end, approaching no reported motion"
+    for text, cases in ((unsettled, found.unsettled), ("that diverged", found.diverged)):
         if cases:
             yield f"\nStarts {text}, by line, loops and wind speed: {_placed(cases)}."
 
@@ -223,14 +225,14 @@ def _counts(found: Explored) -> Iterator[list[object]]:
     settled_starts = sum(a.starts for a in found.attractors)
     yield ["starts", found.starts]
     yield ["settled", settled_starts]
-    yield ["on their straight way to a motion reported as stable when given up", len(found.approaching)]
-    yield ["still changing otherwise when given up", len(found.unsettled)]
+    yield ["unsettled at the end, but approaching a motion reported as stable", len(found.approaching)]
+    yield ["unsettled at the end, approaching no such motion", len(found.unsettled)]
     yield ["diverged (angle of attack beyond 180 degrees)", len(found.diverged)]
-    yield ["attractors that starts settled on, rest among them", len(found.attractors)]
+    yield ["attractors that starts settled on, the state at rest included", len(found.attractors)]
     for verdict in Verdict:
         yield [f"of these {verdict.value}", sum(a.verdict is verdict for a in found.attractors)]
-    yield ["motions reported as stable, rest among them", found.stable]
-    yield ["of these that no start has settled on yet", found.unreached]
+    yield ["motions reported as stable, the state at rest included", found.stable]
+    yield ["of these, not reached by any start", found.unreached]
 
 
 def _missed_row(a: Attractor) -> list[object]:

@@ -16,9 +16,9 @@ def section() -> Iterator[str]:
     """Yield the section's text."""
     yield "## Two pendulums placed by the search\n"
     yield (
-        "Two equal pendulums of 5 to 20 kg on arms of 0.2 to 0.5 m, between 10 and 115 m, placed for the highest onset "
-        "of one and two loops, or for the lowest amplitude sqrt(V^2 + W^2) at 4 m/s. Onsets in m/s, amplitudes in m, "
-        "each without and with the pendulums.\n"
+        "The search places two equal pendulums of 5 to 20 kg on arms of 0.2 to 0.5 m between 10 and 115 m, either for "
+        "the highest onset of one and two loops or for the lowest amplitude sqrt(V^2 + W^2) at 4 m/s. Onsets are in "
+        "m/s and amplitudes in m, each without -> with the pendulums.\n"
     )
     head = ["n", "objective", "positions m", "mass kg", "arm m", "loops", "onset", "amplitude at 4 m/s"]
     yield table(head, [row for n in SUBCONDUCTORS for objective in Objective for row in _rows(n, objective)])

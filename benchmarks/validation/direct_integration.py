@@ -21,8 +21,8 @@ def section() -> Iterator[str]:
     rows = [row for n in (1, 2, 3) for row in _integrated(n)]
     yield "## Harmonic balance against direct integration\n"
     yield (
-        f"Each orbit is the start of {CYCLES} cycles of direct integration (DOP853, relative tolerance 1e-8); the last "
-        "50 cycles give the amplitude. Stable orbits must stay where they are.\n"
+        f"Direct integration (DOP853, relative tolerance 1e-8) starts on each orbit and runs for {CYCLES} cycles. The "
+        "last 50 cycles give the amplitude in brackets. A stable orbit must stay where it is.\n"
     )
     yield table(["n", "loops", "wind m/s", "vertical m", "horizontal m", "torsional rad", "largest change %"], rows)
 

@@ -25,7 +25,7 @@ def section() -> Iterator[str]:
             cells = [f"{v:.4f} ({s:.3f}, {c} %)" for v, s, c in zip(values, source, change, strict=True)]
             rows.append([entry["subconductors"], entry["model"].replace("_", " "), loops, *cells])
     yield "## Natural frequencies: the source's Table 2\n"
-    yield "Computed value in Hz, in brackets the source's value and the difference.\n"
+    yield "Each cell holds the computed frequency in Hz and, in brackets, the source's value and the difference.\n"
     yield table(["n", "model", "loops", "vertical", "horizontal", "torsional"], rows)
     yield (
         f"\nAll {3 * len(rows)} entries: largest difference {largest['hybrid']:.2f} % for the hybrid model, "

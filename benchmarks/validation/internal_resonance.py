@@ -12,10 +12,10 @@ def section() -> Iterator[str]:
     """Yield the section's text."""
     yield "## Internal resonance\n"
     yield (
-        "The source names a 1:1:0 resonance (vertical, horizontal, torsional) in one loop and a possible 1:1:1 in two "
-        "loops of the bundles. Hybrid model: ratio of the frequencies without wind, in brackets the nearest ratio of "
-        f"integers up to 3 and the detuning in %; then the shares of the stable cycle at {WINDS[0]:g} m/s in the mean "
-        "kinetic energy.\n"
+        "The source names a 1:1:0 resonance (vertical : horizontal : torsional) in one loop and a possible 1:1:1 "
+        "resonance in two loops of the bundles. The table holds the frequency ratios of the hybrid model without wind "
+        "and, in brackets, the nearest ratio of integers up to 3 and the detuning in %. The last three columns are the "
+        f"shares of the directions in the mean kinetic energy of the stable cycle at {WINDS[0]:g} m/s.\n"
     )
     head = ["n", "loops", *DIRECTIONS, "vertical share", "horizontal share", "torsional share"]
     yield table(head, [_row(n, loops) for n in SUBCONDUCTORS for loops in (1, 2)])

@@ -22,5 +22,8 @@ def section() -> Iterator[str]:
             cells = [f"{v:.4f} ({e:.4f}, {percent(v, e)} %)" for v, e in zip(values, expected, strict=True)]
             rows.append([entry["subconductors"], entry["loops"], f"{wind:g}", *cells])
     yield "## Limit cycles of the hybrid model\n"
-    yield "Computed amplitude, in brackets the reference by direct integration until settled and the difference.\n"
+    yield (
+        "Each cell holds the computed amplitude and, in brackets, the reference (direct integration until the motion "
+        "settles) and the difference.\n"
+    )
     yield table(["n", "loops", "wind m/s", "vertical m", "horizontal m", "torsional rad"], rows)

@@ -28,24 +28,26 @@ def section() -> Iterator[str]:
     yield "## Orbits of both models at 4 m/s: the source's Figure 3\n"
     yield "![Orbits of both models, one and two loops, one to four sub-conductors](images/figure-3.svg)\n"
     yield (
-        "Vertical and horizontal amplitude in m. The hybrid model neglects the longitudinal inertia as the source "
-        "does; `condensed` keeps it. The finite element model keeps it too and lets one, two and three loops move "
-        "together; its cycle nearest to the hybrid one is shown, stable or not. At one loop the models agree. At "
-        "two loops the vertical and horizontal frequencies lie 0.1 % apart, the longitudinal inertia shifts the "
-        "vertical one by as much, and the amplitudes follow the detuning.\n"
+        "Vertical and horizontal amplitude in m. The hybrid model neglects longitudinal inertia, as the source does; "
+        "`condensed` keeps it. The finite element model keeps it too and lets one, two and three loops move together. "
+        "The table shows its cycle nearest to the hybrid one, stable or not. At one loop the models agree. At two "
+        "loops the vertical and horizontal frequencies lie 0.1 % apart. Longitudinal inertia shifts the vertical one "
+        "by as much, and the amplitudes follow the detuning.\n"
     )
     head = ["n", "loops", "hybrid", "hybrid, condensed", "finite element", "its stability", "difference %"]
     yield table(head, [row for n in SUBCONDUCTORS for row in _compared(n, results[n], condensed[n])])
     yield (
-        "\nWhich cycle survives: each cycle of the hybrid model, stable alone, in the model in which one and two loops "
-        "may move together. The factor is the largest Floquet multiplier beside the trivial one.\n"
+        "\nWhich cycle survives? Each cycle that is stable alone in the hybrid model is put into the model in which "
+        "one and two loops may move together. The growth factor is the largest Floquet multiplier apart from the "
+        "trivial one.\n"
     )
     rows = [
         [n, row.loops, row.stability.value, row.growing_loops, f"{row.growth_per_cycle:.6f}"]
         for n in SUBCONDUCTORS
         for row in results[n].loop_competitions
     ]
-    yield table(["n", "loops", "among both loops", "loops that move against it", "factor a cycle"], rows)
+    head = ["n", "loops", "stability with both", "loops of the least stable disturbance", "growth factor a cycle"]
+    yield table(head, rows)
 
 
 def _compared(subconductors: int, found: Result, condensed: Result) -> Iterator[list[object]]:

@@ -52,10 +52,11 @@ def section() -> Iterator[str]:
     counts, found = _searched()
     yield "## Quasi-periodic motions\n"
     yield (
-        f"Searched: {LINES} lines of a seeded generator (half the source's, half random bundles) with spans of 60 to "
-        "350 m, tensions of 15 to 45 kN, torsional damping ratios of 0.001 to 0.3 and the others of 0.0002 to 0.01 "
-        f"(evenly in the logarithm); hybrid model, {', '.join(map(str, LOOPS))} loops alone, winds "
-        f"{', '.join(f'{wind:g}' for wind in WINDS)} m/s; tori that may last (`quasi_periodic: lasting`).\n"
+        f"The search covers {LINES} lines of a seeded generator (half the source's, half random bundles) with spans of "
+        "60 to 350 m, tensions of 15 to 45 kN, torsional damping ratios of 0.001 to 0.3 and vertical and horizontal "
+        "ratios of 0.0002 to 0.01, evenly distributed in the logarithm. It takes the hybrid model with "
+        f"{', '.join(map(str, LOOPS))} loops alone, winds of {', '.join(f'{wind:g}' for wind in WINDS)} m/s, and the "
+        "tori that may be stable (`quasi_periodic: lasting`).\n"
     )
     yield table(["", "count"], list(counts.items()))
     stable = [one for one in found if one.stability is Stability.STABLE]
@@ -64,10 +65,10 @@ def section() -> Iterator[str]:
         return
     first = list({one.number: one for one in reversed(stable)}.values())[::-1][:INTEGRATED]
     yield (
-        f"\nOn the first {len(first)} of these lines, direct integration (DOP853, relative tolerance 1e-7) over "
-        f"{CYCLES} cycles from the torus with all rates raised by 1 %: both frequencies in the spectrum of the last "
-        f"{WINDOW} cycles beside those of the balance, and the strength of both lines there over that in the balance. "
-        "A line in the spectrum that persists has the ratio 1.\n"
+        f"\nFor the first {len(first)} lines with a stable torus, direct integration (DOP853, relative tolerance 1e-7) "
+        f"starts on the torus with all rates raised by 1 % and runs for {CYCLES} cycles. The table sets both "
+        f"frequencies in the spectrum of the last {WINDOW} cycles beside those of the two-frequency balance. The last "
+        "two columns are the strength of both spectral lines, relative to the balance: 1 if the line persists.\n"
     )
     head = ["line", "n", "span m", "loops", "wind m/s", "f1 Hz", "f1 integrated", "f2 Hz", "f2 integrated"]
     yield table([*head, "line 1", "line 2"], list(_rows(first)))
@@ -89,7 +90,7 @@ def _searched() -> tuple[dict[str, int], list[Found]]:
             lost += len(known.lost)
             motions += _listed((number, line), loops, model, known)
     by_verdict = {f"{verdict} tori": sum(m.stability is verdict for m in motions) for verdict in Stability}
-    return counts | by_verdict | {"wind speeds without anything stable where no stable torus was found": lost}, motions
+    return counts | by_verdict | {"wind speeds with no stable motion of any kind": lost}, motions
 
 
 def drawn(generator: np.random.Generator) -> Line:

@@ -33,23 +33,24 @@ def section() -> Iterator[str]:
     """Yield the section's text."""
     yield "## Relative wind\n"
     yield (
-        "The source lets only the vertical velocity turn the wind; `aerodynamic_model: relative_wind` lets the "
-        "horizontal one change it too. It needs the coefficients at rest, which the source does not print: "
-        f"a_z0 = {DRAG_AT_REST:g} (drag), a_y0 = a_theta0 = 0 are assumed here. Hybrid model, stable cycles; in "
-        "brackets the change against the published model in %.\n"
+        "In the source only the vertical velocity changes the relative wind. `aerodynamic_model: relative_wind` takes "
+        "the horizontal velocity into account as well. It needs the coefficients at rest, which the source does not "
+        f"print; a_z0 = {DRAG_AT_REST:g} (drag) and a_y0 = a_theta0 = 0 are assumed here. Hybrid model, stable cycles; "
+        "in brackets the change against the published model in %.\n"
     )
     yield table(["n", "loops", "wind m/s", "vertical m", "horizontal m", "torsional rad"], list(_changes()))
     yield (
-        "\nHow much hangs on the assumed drag: the horizontal amplitude of the twin bundle in two loops at 6 m/s is "
+        "\nThe result depends on the assumed drag: the horizontal amplitude of the twin bundle in two loops at 6 m/s "
+        "is "
         + ", ".join(f"{_horizontal(drag):.4f} m with a_z0 = {drag:g}" for drag in OTHER_DRAGS)
         + ".\n\nCritical wind speeds, m/s:\n"
     )
     yield table(["n", "loops", "published", "relative wind"], list(_onsets()))
     yield (
-        "\nThe load is expanded to third order. Here each cycle found with it is the start of "
-        f"{CYCLES:,} periods of direct integration (DOP853, relative tolerance 1e-7) of the load as theory section 5 "
-        "writes it, integrated along the span by quadrature at every step; the last column says how much the largest "
-        f"amplitude still moved between the last two blocks of {BLOCK} periods.\n"
+        "\nThe load is expanded to third order. To check the expansion, direct integration (DOP853, relative tolerance "
+        f"1e-7) starts on each cycle and runs for {CYCLES:,} periods with the load as theory section 5 writes it, "
+        "integrated along the span by quadrature at every step. The last column is the change of the largest amplitude "
+        f"between the last two blocks of {BLOCK} periods.\n"
     )
     head = ["n", "loops", "wind m/s", "amplitude", "expanded", "not expanded", "difference %", "still moving %"]
     yield table(head, [row for n in (1, 2, 3) for row in unexpanded_rows(n)])

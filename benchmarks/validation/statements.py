@@ -58,7 +58,8 @@ def grows(shown: Curves) -> tuple[str, bool]:
     pairs = [values for curve in shown for values in (curve.vertical, curve.horizontal)]
     growth = np.array([values[-1] / values[0] for values in pairs])
     back = sum(bool((np.diff(values) < 0.0).any()) for values in pairs)
-    text = f"last over first {growth.min():.3g} to {growth.max():.3g}; steps back along {back} of {len(pairs)} curves"
+    growths = f"last over first value {growth.min():.3g} to {growth.max():.3g}"
+    text = f"{growths}; falls somewhere on {back} of {len(pairs)} curves"
     return text, bool((growth > 1.0).all())
 
 

@@ -21,10 +21,10 @@ def section() -> Iterator[str]:
     """Yield the section's text."""
     yield "## Static twist of long single spans\n"
     yield (
-        "The source's single conductor, other spans. With the mass centre straight above (e_z = 0) torsion buckles at "
-        "pi sqrt(GJ/(m g e_y)), and the largest twist of the bent state follows from K(sin(Theta/2)) = L/2 sqrt(m g "
-        "e_y/GJ), K the complete elliptic integral. With the source's e_z the section twists from the start; the last "
-        "three columns are one loop of the hybrid model without and with the twist.\n"
+        "The source's single conductor on other spans. With the mass centre straight above (e_z = 0), torsion buckles "
+        "at the length pi sqrt(GJ/(m g e_y)). Beyond it, the largest twist follows from K(sin(Theta/2)) = L/2 sqrt(m g "
+        "e_y/GJ), where K is the complete elliptic integral. With the source's e_z the section twists at every length. "
+        "The last three columns are for one loop of the hybrid model, without and with the twist.\n"
     )
     head = ["span m", "largest twist, e_z = 0, rad", "elliptic integral", "difference %"]
     head += ["largest twist, e_z of Table 1, rad", "onset m/s, twist neglected", "onset m/s, twist solved"]

@@ -34,10 +34,10 @@ def section() -> Iterator[str]:
     """Yield the section's text, and draw the pictures that it shows."""
     yield "## The source's studies: Figures 4 to 9\n"
     yield (
-        "Each is a preset of the command line, such as `galloping example --study figure-4 c11-twin`; the pictures are "
-        "the service's own with four lines in one. Hybrid model, stable cycles, wind speed 4 m/s where it does not "
-        "vary, w the iced weight of a sub-conductor in the span. The source prints its figures without numbers, so "
-        "that its statements are what can be compared."
+        "Each figure is a preset of the command line, for example `galloping example --study figure-4 c11-twin`. The "
+        "pictures are the service's own, with four lines in one. Hybrid model, stable cycles, wind speed 4 m/s where "
+        "it does not vary; w is the iced weight of a sub-conductor in the span. The source prints its figures without "
+        "numbers, so only its statements can be compared."
     )
     for name, (title, statements) in FIGURES.items():
         found = _studies(name)
@@ -48,8 +48,9 @@ def section() -> Iterator[str]:
         rows = [[text, *_verdict(check(shown))] for text, check in statements]
         yield table(["the source", "here", ""], rows)
     yield (
-        "\nAt 270 degrees the motion is horizontal here, not vertical as the source says. The source gives the place "
-        "of the ice's mass at 40 degrees only; turning it with the ice, which is done above, is not what decides:\n"
+        "\nAt 270 degrees the motion is horizontal here, not vertical as the source says. The source gives the "
+        "position of the ice's mass at 40 degrees only, and the figures above turn it with the ice. The table shows "
+        "that this choice is not the cause:\n"
     )
     yield table(["mass turned by, deg", "onset m/s", "direction", "A_z / A_y at 6 m/s"], list(_turned()))
     title = "Twin bundle over tension and span"
