@@ -74,7 +74,8 @@ def test_missing_column_would_be_seen(settings: Settings, engine: Engine) -> Non
 
 
 def test_several_at_once_migrate_once(settings: Settings, engine: Engine) -> None:
-    script = "from app.storage.migration import migrate; from app.runtime.settings import get_settings; migrate(get_settings())"
+    imports = "from app.runtime.settings import get_settings; from app.storage.migration import migrate"
+    script = f"{imports}; migrate(get_settings())"
     commands = [
         subprocess.Popen([sys.executable, "-c", script], env=environment(settings), stderr=subprocess.PIPE)
         for _ in range(4)
