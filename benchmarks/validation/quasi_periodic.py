@@ -90,7 +90,7 @@ def _searched() -> tuple[dict[str, int], list[Found]]:
             lost += len(known.lost)
             motions += _listed((number, line), loops, model, known)
     by_verdict = {f"{verdict} tori": sum(m.stability is verdict for m in motions) for verdict in Stability}
-    return counts | by_verdict | {"wind speeds with no stable motion of any kind": lost}, motions
+    return counts | by_verdict | {"wind speeds at which no stable motion was found": lost}, motions
 
 
 def drawn(generator: np.random.Generator) -> Line:
