@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 HTTP = "app.http.bounded_heads:BoundedHeads"
 """What speaks HTTP on a connection, as uvicorn is told of it."""
-LOOP = "app.http.listening:SharingLoop"
-"""What takes connections, likewise."""
 
 _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded
 _METRICS_BYTES = 1 << 20  # far more than all routes and answers need
@@ -61,7 +59,7 @@ def api(settings: Settings, host: str, port: int) -> int:
         "app.serve:_application",
         factory=True,
         http=HTTP,
-        loop=LOOP,
+        loop="uvloop",
         host=host,
         port=port,
         workers=settings.api_processes,
