@@ -1,6 +1,6 @@
-"""HTTP as the server speaks it, with bounds on the head of a request: the server itself takes any and waits for ever.
+"""Bounds on the head of a request: its bytes, its fields and its time, none of which uvicorn with httptools bounds.
 
-Nothing of the application sees a head before it is whole, so only the connection can end one that is too large or slow.
+The application sees a head only when it is complete, so only the protocol can stop one that is too large or too slow.
 """
 
 import asyncio
@@ -25,22 +25,19 @@ _logger = logging.getLogger(__name__)
 
 
 class _HeadTooLarge(Exception):
-    """Raised in the parser, which stops at it."""
+    """Raised in the parser's callbacks, which ends the parsing."""
 
 
 class BoundedHeads(HttpToolsProtocol):
-    """The server's protocol on one connection, which answers 431 to a head that is too large, and ends.
+    """Uvicorn's protocol, which also answers 431 to a head that is too large and closes a connection that is too slow.
 
-    At a head that is too slow it ends without an answer. No more than `MOST_BYTES` and one reading of the socket
-    (256 kB) are held of any.
+    A connection holds at most `MOST_BYTES` and one read of its socket (256 kB) of a head.
     """
 
     def __init__(self, *given: Any, **named: Any) -> None:
         """Begin a connection."""
         super().__init__(*given, **named)
-        self._unsettled = 0  # bytes since the last that belonged to a body or ended a request
-        self._bytes = 0
-        self._fields = 0
+        self._head_bytes = 0  # bytes since the last that belonged to a body or ended a request
         self._is_refused = False
         self._deadline: asyncio.TimerHandle | None = None
 
@@ -50,80 +47,68 @@ class BoundedHeads(HttpToolsProtocol):
         self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End."""
-        self._end_wait()
+        """Stop the timer."""
+        self._stop_timer()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Take what has come, unless the connection only waits for its client to have read why it ends."""
+        """Parse data, unless the head was refused: then only read on, so that the client can read the answer."""
         if self._is_refused:
             return
-        self._unsettled += len(data)
+        self._head_bytes += len(data)
         super().data_received(data)
-        if self._unsettled > MOST_BYTES and not (self._is_refused or self.transport.is_closing()):
+        if self._head_bytes > MOST_BYTES and not (self._is_refused or self.transport.is_closing()):
             self._refuse()
 
     def on_message_begin(self) -> None:
-        """Begin to count."""
-        self._bytes = self._fields = 0
+        """Start the timer of a head."""
         if self._deadline is None:
             self._await_head()
         super().on_message_begin()
 
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """Count the fields, also those that follow a body in chunks."""
+        super().on_header(name, value)
+        if len(self.headers) > MOST_FIELDS:
+            self._refuse()
+            raise _HeadTooLarge
+
     def on_headers_complete(self) -> None:
-        """Hand the head over."""
-        self._end_wait()
+        """Start the request, if its head is within the bound."""
+        if len(self.url) + sum(len(name) + len(value) + len(": \r\n") for name, value in self.headers) > MOST_BYTES:
+            self._refuse()
+            raise _HeadTooLarge
+        self._stop_timer()
         super().on_headers_complete()
 
-    def on_url(self, url: bytes) -> None:
-        """Take a part of the address."""
-        self._count(len(url), fields=0)
-        super().on_url(url)
-
-    def on_header(self, name: bytes, value: bytes) -> None:
-        """Take a field."""
-        self._count(len(name) + len(value) + len(": \r\n"), fields=1)
-        super().on_header(name, value)
-
     def on_body(self, body: bytes) -> None:
-        """Take a part of a body, for which the application has a bound of its own."""
-        self._unsettled = 0
+        """Pass on a part of a body, which the application bounds."""
+        self._head_bytes = 0
         super().on_body(body)
 
     def on_message_complete(self) -> None:
         """End a request."""
-        self._unsettled = 0
+        self._head_bytes = 0
         super().on_message_complete()
 
     def send_400_response(self, msg: str) -> None:
-        """Answer to what the parser has stopped at."""
-        if self._is_too_large():
-            self._refuse()
-        else:
+        """Answer the fault at which the parser has stopped, unless that was a refusal."""
+        if not self._is_refused:
             super().send_400_response(msg)
-
-    def _count(self, count: int, fields: int) -> None:
-        self._bytes += count
-        self._fields += fields
-        if self._is_too_large():
-            raise _HeadTooLarge
 
     def _await_head(self) -> None:
         self._deadline = self.loop.call_later(_HEAD_SECONDS, self._give_up)
 
     def _give_up(self) -> None:
-        if self.flow.read_paused:  # earlier requests are at work, and what is missing waits in the socket
+        if self.flow.read_paused:  # earlier requests are running, and the rest of this one waits in the socket
             self._await_head()
         else:
             self.transport.close()
 
-    def _end_wait(self) -> None:
+    def _stop_timer(self) -> None:
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
-
-    def _is_too_large(self) -> bool:
-        return self._bytes > MOST_BYTES or self._fields > MOST_FIELDS
 
     def _refuse(self) -> None:
         self._is_refused = True
