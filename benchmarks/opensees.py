@@ -1,0 +1,209 @@
+"""Hanging conductors in OpenSees: chains of corotational bars with lumped masses, a code that nobody here wrote."""
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+import openseespy.opensees as ops
+
+from engine.arrays import FloatArray
+
+GRAVITY = 9.81
+_DIRECTIONS = ("longitudinal", "vertical", "horizontal")
+
+
+@dataclass(frozen=True, slots=True)
+class Conductor:
+    """One iced sub-conductor: axial rigidity EA [N], mass per length [kg/m] and horizontal tension [N]."""
+
+    axial_rigidity: float
+    mass: float
+    horizontal_tension: float
+
+
+@dataclass(frozen=True, slots=True)
+class InsulatorString:
+    """A suspension string that swings along and across the line: length [m] and weight a sub-conductor [N]."""
+
+    length: float
+    weight: float
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """Spans between two ends that hold the conductor, with a string at every support between them. Theory section 16.
+
+    spans: lengths [m]; level_difference: of each span, right end higher [m]; end_stiffness: of the left and the right
+    end along the line [N/m], infinite at a dead end.
+    """
+
+    spans: tuple[float, ...]
+    strings: tuple[InsulatorString, ...] = ()
+    level_difference: float = 0.0
+    end_stiffness: tuple[float, float] = (math.inf, math.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A natural mode: frequency [Hz], direction of largest energy, shape (nodes, 3) in X, Y, Z."""
+
+    frequency: float
+    direction: str
+    shape: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class _Node:
+    tag: int
+    x: float
+    y: float
+
+
+def natural_modes(conductor: Conductor, section: Section, count: int, bars: int = 160) -> tuple[FloatArray, list[Mode]]:
+    """Compute the lowest modes of a section about its static state.
+
+    Parameters
+    ----------
+    conductor : Conductor
+    section : Section
+    count : int
+        Number of modes.
+    bars : int
+        Bars a span; the frequencies converge with the square of their length.
+
+    Returns
+    -------
+    positions : (nodes,) horizontal distance from the left end [m]
+    modes : list of Mode
+        In rising order of frequency.
+
+    Raises
+    ------
+    RuntimeError
+        If OpenSees finds no equilibrium.
+    """
+    with _model():
+        nodes = _chain(conductor, section, bars)
+        _equilibrium(conductor, section, nodes)
+        eigenvalues = ops.eigen(count)
+        shapes = [np.array([ops.nodeEigenvector(node.tag, i + 1) for node in nodes]) for i in range(count)]
+    modes = [
+        Mode(math.sqrt(value) / (2.0 * math.pi), _DIRECTIONS[int((shape**2).sum(axis=0).argmax())], shape)
+        for value, shape in zip(eigenvalues, shapes, strict=True)
+    ]
+    return np.array([node.x for node in nodes]), modes
+
+
+def vertical_frequency(conductor: Conductor, section: Section, loops: int, count: int = 12) -> float:
+    """Return the frequency [Hz] of the mode whose vertical part is nearest to sin(loops pi x/L) of a single span."""
+    positions, modes = natural_modes(conductor, section, count)
+    sine = np.sin(loops * math.pi * positions / section.spans[0])
+    return max(modes, key=lambda mode: abs(mode.shape[:, 1] @ sine) / np.linalg.norm(mode.shape)).frequency
+
+
+@contextmanager
+def _model() -> Iterator[None]:
+    """Open an empty model; OpenSees keeps one a process, so it is wiped before and after."""
+    ops.wipe()
+    ops.model("basic", "-ndm", 3, "-ndf", 3)
+    try:
+        yield
+    finally:
+        ops.wipe()
+
+
+def _chain(conductor: Conductor, section: Section, bars: int) -> list[_Node]:
+    """Lay bars along the catenaries, each with the tension that it has there."""
+    nodes = [_Node(1, 0.0, 0.0)]
+    ops.node(1, 0.0, 0.0, 0.0)
+    for length in section.spans:
+        start = nodes[-1]
+        for x, y in _catenary(conductor, length, section.level_difference, bars):
+            node = _Node(len(nodes) + 1, start.x + x, start.y + y)
+            ops.node(node.tag, node.x, node.y, 0.0)
+            _bar(conductor, nodes[-1], node)
+            nodes.append(node)
+    return nodes
+
+
+def _catenary(conductor: Conductor, length: float, rise: float, bars: int) -> list[tuple[float, float]]:
+    """Return points at equal arc lengths on a catenary through (0, 0) and (length, rise), the first left out."""
+    c = conductor.horizontal_tension / (conductor.mass * GRAVITY)
+    low = 0.5 * length - c * math.asinh(rise / (2.0 * c * math.sinh(length / (2.0 * c))))
+    start, stop = math.sinh(-low / c), math.sinh((length - low) / c)
+    x = low + c * np.arcsinh(np.linspace(start, stop, bars + 1)[1:])
+    y = c * (np.cosh((x - low) / c) - math.cosh(low / c))
+    return list(zip(x.tolist(), y.tolist(), strict=True))
+
+
+def _bar(conductor: Conductor, left: _Node, right: _Node) -> None:
+    tension = conductor.horizontal_tension * math.dist((left.x, left.y), (right.x, right.y)) / (right.x - left.x)
+    elastic, stressed = 2 * left.tag, 2 * left.tag + 1
+    ops.uniaxialMaterial("Elastic", elastic, conductor.axial_rigidity)
+    ops.uniaxialMaterial("InitStressMaterial", stressed, elastic, tension)
+    ops.element("corotTruss", left.tag, left.tag, right.tag, 1.0, stressed)
+
+
+def _equilibrium(conductor: Conductor, section: Section, nodes: Sequence[_Node]) -> None:
+    """Hold the supports, load the nodes with their weight, and let the bars settle."""
+    lengths = [math.dist((a.x, a.y), (b.x, b.y)) for a, b in itertools.pairwise(nodes)]
+    shares = 0.5 * (np.array([0.0, *lengths]) + np.array([*lengths, 0.0]))
+    springs = _Springs(len(nodes))
+    push = dict.fromkeys((node.tag for node in nodes), 0.0)
+    for node, stiffness, sign in zip((nodes[0], nodes[-1]), section.end_stiffness, (-1.0, 1.0), strict=True):
+        if math.isinf(stiffness):
+            ops.fix(node.tag, 1, 1, 1)
+        else:
+            ops.fix(node.tag, 0, 1, 1)
+            springs.hold(node, {1: stiffness})
+            push[node.tag] = sign * conductor.horizontal_tension
+    hung = {node.tag: 0.0 for node in nodes}
+    every = (len(nodes) - 1) // len(section.spans)
+    for i, string in enumerate(section.strings, start=1):
+        node = nodes[i * every]
+        carried = conductor.mass * GRAVITY * sum(lengths[(i - 1) * every : (i + 1) * every]) / 2.0
+        stiffness = (carried + string.weight / 2.0) / string.length
+        ops.fix(node.tag, 0, 1, 0)
+        springs.hold(node, {1: stiffness, 3: stiffness})
+        hung[node.tag] = string.weight / (3.0 * GRAVITY)  # a rigid rod's mass at its lower end
+    ops.timeSeries("Constant", 1)
+    ops.pattern("Plain", 1, 1)
+    for node, share in zip(nodes, shares.tolist(), strict=True):
+        ops.mass(node.tag, *[conductor.mass * share + hung[node.tag]] * 3)
+        ops.load(node.tag, push[node.tag], -conductor.mass * GRAVITY * share, 0.0)
+    _solve()
+
+
+class _Springs:
+    """Springs to fixed ground, numbered after nodes and bars."""
+
+    def __init__(self, nodes: int) -> None:
+        self._last = 4 * nodes
+
+    def hold(self, node: _Node, stiffness: dict[int, float]) -> None:
+        """Tie a node to the ground by springs [N/m] in these directions (1 along, 3 across the line)."""
+        ground = self._last = self._last + 1
+        ops.node(ground, node.x, node.y, 0.0)
+        ops.fix(ground, 1, 1, 1)
+        materials = []
+        for value in stiffness.values():
+            self._last += 1
+            ops.uniaxialMaterial("Elastic", self._last, value)
+            materials.append(self._last)
+        self._last += 1
+        ops.element("zeroLength", self._last, ground, node.tag, "-mat", *materials, "-dir", *stiffness)
+
+
+def _solve() -> None:
+    ops.system("BandGeneral")
+    ops.numberer("RCM")
+    ops.constraints("Plain")
+    ops.test("NormDispIncr", 1e-11, 50)
+    ops.algorithm("Newton")
+    ops.integrator("LoadControl", 0.0)
+    ops.analysis("Static")
+    if ops.analyze(1) != 0:
+        raise RuntimeError("OpenSees found no equilibrium of the chain")
