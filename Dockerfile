@@ -1,7 +1,7 @@
 # One image for the API, the workers and the migrations; docker-compose.yml names their commands.
 FROM python:3.11-slim-bookworm AS build
 
-# The engine's kernels are compiled here, so that the image itself needs no compiler.
+# This stage compiles the engine's kernels, so the final image needs no compiler.
 RUN apt-get update && apt-get install --yes --no-install-recommends gcc libc6-dev
 WORKDIR /source
 COPY pyproject.toml README.md ./
@@ -13,7 +13,7 @@ RUN pip wheel --no-cache-dir --no-deps --wheel-dir /wheels .
 
 FROM python:3.11-slim-bookworm
 
-# One BLAS thread: threads and forked workers freeze each other, and one process a core is faster here.
+# One BLAS thread: BLAS threads and forked workers can deadlock, and one process a core is faster here.
 ENV OPENBLAS_NUM_THREADS=1 \
     OMP_NUM_THREADS=1 \
     MKL_NUM_THREADS=1 \

@@ -1,8 +1,8 @@
-# Every target does the set-up that it needs; Python >= 3.11 with pip is all that a fresh machine has to have.
+# Every target does its own set-up; a fresh machine needs only Python >= 3.11 with pip.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# One BLAS thread: threads and forked workers freeze each other, and one process a core is faster here.
+# One BLAS thread: BLAS threads and forked workers can deadlock, and one process a core is faster here.
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
@@ -22,7 +22,8 @@ demo: setup
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal tests
 
-# Kills and restarts for some seven minutes, prints what it measured; `make reliability` puts it on docs/reliability.md.
+# Kills and restarts processes for some seven minutes and prints the figures; `make reliability` writes them into
+# docs/reliability.md.
 test-faults: setup
 	$(BIN)/python -m pytest --timeout 840 tests/faults
 	$(BIN)/python -m tests.faults.report
