@@ -14,7 +14,7 @@ VARIABLES = "abcdef"  # q_v, q_w, q_theta and their rates
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """Wind speeds [m/s], half of peak-to-peak of each co-ordinate (points, 3), and the seconds that AUTO took."""
+    """Wind speeds [m/s], half of peak-to-peak of each coordinate (points, 3), and the seconds that AUTO took."""
 
     wind_speed: FloatArray
     amplitude: FloatArray

@@ -18,7 +18,7 @@ from benchmarks.models import discretized, hybrid_models, plain_rate
 from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
 from engine.cycles.floquet import Floquet, floquet
-from engine.cycles.harmonic_balance import balance, half_peak_to_peak, pick, states
+from engine.cycles.harmonic_balance import balance, half_peak_to_peak, select, states
 from engine.cycles.search import Cycles, explicit_starts, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
@@ -66,8 +66,8 @@ def settled_amplitude(model: ReducedModel, wind: float) -> tuple[FloatArray, int
 
 def one_cycle() -> Iterator[tuple[str, float]]:
     """Yield the figures of a limit cycle of the source's lines against direct integration."""
-    made = discretized([source_line(n) for n in (1, 2, 3)])
-    model, published = hybrid_models(made, (1, 2))
+    discretization = discretized([source_line(n) for n in (1, 2, 3)])
+    model, published = hybrid_models(discretization, (1, 2))
     members, winds = range(model.mass.shape[0]), SOURCE_WINDS
     cycles = found_cycles(model, published, winds)
     count = int((cycles.floquet.stability == "stable").sum())
@@ -112,7 +112,7 @@ def _bare(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Fl
 def _held_amplitude(model: ReducedModel, cycles: Cycles, i: int, j: int) -> tuple[FloatArray, int]:
     """Integrate 100 periods from a stable cycle of the engine and measure the last ten."""
     index = np.flatnonzero((cycles.member == i) & (cycles.wind == j) & (cycles.floquet.stability == "stable"))[:1]
-    orbit = pick(cycles.orbits, index)
+    orbit = select(cycles.orbits, index)
     wind, period = float(orbit.wind_speed[0]), 2.0 * np.pi / float(orbit.angular_frequency[0])
     start = states(orbit, np.zeros(1))[0, 0] * np.array([1.0, 1.0, 1.0, wind, wind, wind])
     times = np.linspace(90.0 * period, 100.0 * period, 10 * 96 + 1)
@@ -134,8 +134,8 @@ def _largest_difference(cycles: Cycles, settled: dict[tuple[int, int], tuple[Flo
 
 def branch() -> Iterator[tuple[str, float]]:
     """Yield the figures of whole branches of 41 winds with Floquet stability against AUTO."""
-    made = discretized([source_line(n) for n in (2, 3)])
-    model, published = hybrid_models(made, (1, 2))
+    discretization = discretized([source_line(n) for n in (2, 3)])
+    model, published = hybrid_models(discretization, (1, 2))
     winds, members = np.linspace(2.6, 6.0, 41), range(model.mass.shape[0])
     lone = [(take(model, [i]), take(published, [i])) for i in members]
     runs: list[Branch] = []

@@ -21,16 +21,16 @@ Rate = Callable[[float, FloatArray], FloatArray]
 def discretized(lines: Sequence[Line]) -> Discretization:
     """Return everything that reduced models of lines are made from."""
     profile = static_profile(lines)
-    made_of = sections(lines, profile)
-    return Discretization(tuple(lines), profile, made_of, matrices(lines, profile, made_of))
+    sections_of_lines = sections(lines, profile)
+    return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
 
 
-def hybrid_models(made: Discretization, loops: tuple[int, ...]) -> tuple[ReducedModel, ReducedModel]:
+def hybrid_models(discretization: Discretization, loops: tuple[int, ...]) -> tuple[ReducedModel, ReducedModel]:
     """Return the hybrid models (lines x loops,), line-major, with the exact and with the published load."""
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, tuple(sorted({1, *loops})))
-    grid = hybrid_model(made, shapes, loops, Analysis(loops=loops))
-    index = np.divmod(np.arange(len(made.lines) * len(loops)), len(loops))
-    return take(grid, index), take(with_published_load(made, grid), index)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, tuple(sorted({1, *loops})))
+    grid = hybrid_model(discretization, shapes, loops, Analysis(loops=loops))
+    index = np.divmod(np.arange(len(discretization.lines) * len(loops)), len(loops))
+    return take(grid, index), take(with_published_load(discretization, grid), index)
 
 
 def plain_rate(model: ReducedModel, wind_speed: float) -> Rate:

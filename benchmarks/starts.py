@@ -8,7 +8,7 @@ import numpy as np
 from benchmarks.models import discretized, hybrid_models
 from engine.arrays import FloatArray
 from engine.checks.direct_starts import spread_starts
-from engine.checks.settled_motion import Runs, settled
+from engine.checks.settled_motion import SettledMotions, integrate_until_settled
 from engine.models.discretization import observation
 from engine.spec import Line
 
@@ -37,7 +37,7 @@ class Ends:
     """Where the starts of all cases ended, equally many a case, one case after the other; sizes are where observed."""
 
     cases: list[Case]
-    runs: Runs
+    runs: SettledMotions
 
 
 def ends(lines: Sequence[Line], seed: int, winds: Sequence[float] = WINDS, longest: int = LONGEST) -> Ends:
@@ -53,15 +53,17 @@ def ends(lines: Sequence[Line], seed: int, winds: Sequence[float] = WINDS, longe
     longest : int
         Number of blocks after which a start is given up.
     """
-    made = discretized(lines)
-    model, _ = hybrid_models(made, LOOPS)
+    discretization = discretized(lines)
+    model, _ = hybrid_models(discretization, LOOPS)
     usable = np.flatnonzero(~model.statically_unstable)
     member, wind = np.repeat(usable, len(winds)), np.tile(np.array(winds), usable.size)
-    seen = np.stack([observation(made, model.shapes[i::2], k) for i, k in enumerate(LOOPS)], axis=1)
+    seen = np.stack([observation(discretization, model.shapes[i::2], k) for i, k in enumerate(LOOPS)], axis=1)
     seen = np.abs(np.diagonal(seen.reshape(-1, 3, 3), axis1=-2, axis2=-1))
     starts = spread_starts(model, member, wind, LEVELS, np.random.default_rng(seed))
     each = starts.shape[1]
-    runs = settled(model, np.repeat(member, each), np.repeat(wind, each), starts.reshape(-1, 6), longest)
+    runs = integrate_until_settled(
+        model, np.repeat(member, each), np.repeat(wind, each), starts.reshape(-1, 6), longest
+    )
     weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1)) / seen
     cases = [Case(i // 2 + 1, LOOPS[i % 2], u, weight[i]) for i, u in zip(member.tolist(), wind.tolist(), strict=True)]
     scale = np.tile(seen, 2)[np.repeat(member, each)]

@@ -24,7 +24,7 @@ def lengths(vectors: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))
 
 
-def merged(array: AnyArray, first: int, last: int = -1) -> AnyArray:
+def merge_axes(array: AnyArray, first: int, last: int = -1) -> AnyArray:
     """Merge the axes from first to last, both negative, into one; stacks without members keep their shape."""
     shape = array.shape
     stop = array.ndim + last + 1

@@ -81,29 +81,31 @@ def tight_line(*, sag_ratio: float, rigidity_ratio: float, elements: int) -> Lin
 def discretized(*lines: Line) -> Discretization:
     """Make profile, sections and matrices of lines."""
     profile = static_profile(lines)
-    made_of = sections(lines, profile)
-    return Discretization(lines, profile, made_of, matrices(lines, profile, made_of))
+    sections_of_lines = sections(lines, profile)
+    return Discretization(lines, profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
 
 
 def hybrid(line: Line, loops: int = 1, analysis: Analysis | None = None) -> ReducedModel:
     """Return the hybrid model of one line and number of loops, with a leading axis of length 1."""
-    made = discretized(line)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, tuple(sorted({1, loops})))
-    return take(hybrid_model(made, shapes, (loops,), analysis or Analysis()), 0)
+    discretization = discretized(line)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, tuple(sorted({1, loops})))
+    return take(hybrid_model(discretization, shapes, (loops,), analysis or Analysis()), 0)
 
 
 def published(line: Line, loops: int = 1) -> ReducedModel:
     """Return the hybrid model of one line under the published closure, with a leading axis of length 1."""
-    made = discretized(line)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, tuple(sorted({1, loops})))
-    return take(with_published_load(made, hybrid_model(made, shapes, (loops,), Analysis())), 0)
+    discretization = discretized(line)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, tuple(sorted({1, loops})))
+    return take(with_published_load(discretization, hybrid_model(discretization, shapes, (loops,), Analysis())), 0)
 
 
 def finite_element(line: Line, loops: tuple[int, ...] = (1, 2, 3), analysis: Analysis | None = None) -> ReducedModel:
     """Return the finite element model of one line, with a leading axis of length 1."""
-    made = discretized(line)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, tuple(sorted({1, *loops})))
-    return finite_element_model(made, full_modes(made.matrices, loops), shapes, analysis or Analysis())
+    discretization = discretized(line)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, tuple(sorted({1, *loops})))
+    return finite_element_model(
+        discretization, full_modes(discretization.matrices, loops), shapes, analysis or Analysis()
+    )
 
 
 def run(line: Line, analysis: Analysis) -> Result:

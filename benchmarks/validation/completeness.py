@@ -15,7 +15,7 @@ from benchmarks.starts import LEVELS, LONGEST, LOOPS, MIXES, WINDS, Case, Ends, 
 from benchmarks.validation.common import table
 from engine.arrays import FloatArray
 from engine.checks.direct_starts import spread_starts
-from engine.checks.settled_motion import STEPS, Runs, advanced, flow
+from engine.checks.settled_motion import STEPS, SettledMotions, lawson_equations, lawson_step
 from engine.models.reduced_model import take
 from engine.outcome import Outcome
 from engine.result import LimitCycleRow, Orbit, Result
@@ -56,7 +56,7 @@ class Attractor:
 
     @property
     def frequency(self) -> float:
-        """Frequency of the largest co-ordinate, as if it were harmonic [Hz]."""
+        """Frequency of the largest coordinate, as if it were harmonic [Hz]."""
         largest = int((self.case.weight * self.size[:3]).argmax())
         return float(self.size[3 + largest] / self.size[largest] / (2.0 * np.pi)) if self.size.any() else 0.0
 
@@ -106,7 +106,7 @@ def compared(ended: Ends, results: Sequence[Result]) -> Explored:
     return found
 
 
-def _comes_nearer(case: Case, runs: Runs, row: int, motion: FloatArray) -> bool:
+def _comes_nearer(case: Case, runs: SettledMotions, row: int, motion: FloatArray) -> bool:
     """Tell whether a start goes straight to a motion of size (6,)."""
     before, now = runs.before[row], runs.size[row]
     was, is_now, step = (np.linalg.norm(case.weight * x[:3]) for x in (before - motion, now - motion, now - before))
@@ -172,10 +172,10 @@ def integration_error(lines: Sequence[Line], seed: int) -> float:
     member = np.flatnonzero(~model.statically_unstable)
     wind = np.full(member.size, WINDS[-1])
     start = spread_starts(model, member, wind, LEVELS, np.random.default_rng(seed))[:, -1 - MIXES]
-    equations = flow(model, member, wind)
+    equations = lawson_equations(model, member, wind)
     state = start.T
     for _ in range(COMPARED * STEPS):
-        state = advanced(equations, state)
+        state = lawson_step(equations, state)
     errors = []
     for i in range(member.size):
         rate, end = plain_rate(take(model, int(member[i])), WINDS[-1]), COMPARED * STEPS * float(equations.step[i])

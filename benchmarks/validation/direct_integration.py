@@ -9,7 +9,7 @@ from benchmarks.lines import source_line
 from benchmarks.models import discretized, hybrid_models
 from benchmarks.validation.common import WINDS, table
 from engine.checks.time_integration import integrate
-from engine.cycles.harmonic_balance import half_peak_to_peak, pick, states
+from engine.cycles.harmonic_balance import half_peak_to_peak, select, states
 from engine.models.discretization import observation
 from engine.models.reduced_model import take
 
@@ -28,17 +28,17 @@ def section() -> Iterator[str]:
 
 
 def _integrated(subconductors: int) -> Iterator[list[object]]:
-    made = discretized((source_line(subconductors),))
-    model, published = hybrid_models(made, (1, 2))
+    discretization = discretized((source_line(subconductors),))
+    model, published = hybrid_models(discretization, (1, 2))
     winds = np.array(WINDS)
     cycles = found_cycles(model, published, winds)
     for i in np.flatnonzero(cycles.floquet.stability == "stable"):
-        orbit = pick(cycles.orbits, np.array([i]))
+        orbit = select(cycles.orbits, np.array([i]))
         member = int(cycles.member[i])
         state = states(orbit, np.zeros(1))[0, 0]
         state[3:] *= orbit.wind_speed[0]
         settled = integrate(take(model, member), float(orbit.wind_speed[0]), state, change=0.0, longest=CYCLES)
-        seen = observation(made, model.shapes[member], member + 1)
+        seen = observation(discretization, model.shapes[member], member + 1)
         after = 0.5 * np.ptp(settled.history @ seen, axis=0)
         before = half_peak_to_peak(seen.T @ orbit.coefficients[0])
         change = 100.0 * np.abs(after / before - 1.0).max()

@@ -19,7 +19,7 @@ from engine.models.reduced_model import ReducedModel, take
 from engine.numerics import polynomial
 from engine.outcome import Stability
 from engine.spec import Line, Span, TorusSearch
-from engine.tori.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
+from engine.tori.quasi_periodic import QuasiPeriodicMotions, quasi_periodic_motions
 from engine.tori.spectrum import base_frequencies
 from engine.tori.two_frequency_balance import Tori, states
 
@@ -80,17 +80,17 @@ def _searched() -> tuple[dict[str, int], list[Found]]:
     generator = np.random.default_rng(SEED)
     counts = dict.fromkeys(("models that are statically stable", "with torus points", "wind speeds of those models"), 0)
     motions: list[Found] = []
-    lost = 0
+    missing = 0
     for number in range(LINES):
         line = drawn(generator)
         for loops, model, known, points in _analysed(line):
             counts["models that are statically stable"] += 1
             counts["with torus points"] += points
             counts["wind speeds of those models"] += points * WINDS.size
-            lost += len(known.lost)
+            missing += len(known.missing)
             motions += _listed((number, line), loops, model, known)
     by_verdict = {f"{verdict} tori": sum(m.stability is verdict for m in motions) for verdict in Stability}
-    return counts | by_verdict | {"wind speeds at which no stable motion was found": lost}, motions
+    return counts | by_verdict | {"wind speeds at which no stable motion was found": missing}, motions
 
 
 def drawn(generator: np.random.Generator) -> Line:
@@ -104,23 +104,23 @@ def drawn(generator: np.random.Generator) -> Line:
     return replace(line, damping=damping, span=span)
 
 
-def _analysed(line: Line) -> Iterator[tuple[int, ReducedModel, QuasiPeriodic, bool]]:
+def _analysed(line: Line) -> Iterator[tuple[int, ReducedModel, QuasiPeriodicMotions, bool]]:
     """Yield number of loops, model, motions and whether there is a torus point, where the static state is stable."""
-    made = discretized((line,))
-    models, published = hybrid_models(made, LOOPS)
+    discretization = discretized((line,))
+    models, published = hybrid_models(discretization, LOOPS)
     for i, loops in enumerate(LOOPS):
         model, other = take(models, [i]), take(published, [i])
         if not model.statically_unstable[0]:
             crossings = critical_wind_speeds(model, HIGHEST_WIND)
             cycles = find_cycles(model, crossings, WINDS, explicit_starts(other, WINDS, HARMONICS), HARMONICS)
-            found = bifurcations(cycles.traces, cycles.followed, model, crossings)
+            found = bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
             known = quasi_periodic_motions(model, cycles, found, WINDS, TorusSearch.LASTING)
             yield loops, model, known, any(kind is Kind.TORUS for kind in found.kind)
 
 
-def _listed(line: tuple[int, Line], loops: int, model: ReducedModel, known: QuasiPeriodic) -> Iterator[Found]:
+def _listed(line: tuple[int, Line], loops: int, model: ReducedModel, known: QuasiPeriodicMotions) -> Iterator[Found]:
     for i in range(known.member.size):
-        yield Found(*line, loops, model, known.tori.pick(np.array([i])), known.stability[i])
+        yield Found(*line, loops, model, known.tori.select(np.array([i])), known.stability[i])
 
 
 def _rows(found: list[Found]) -> Iterator[list[object]]:
@@ -147,7 +147,7 @@ def _largest(one: Found) -> int:
 
 
 def _integrated(found: list[Found], tau: FloatArray) -> list[FloatArray]:
-    """Integrate from beside each torus and return its largest co-ordinate at w t = tau."""
+    """Integrate from beside each torus and return its largest coordinate at w t = tau."""
     fast = np.array([float(one.torus.angular_frequency[0, 0]) for one in found])
     wind = np.array([float(one.torus.wind_speed[0]) for one in found])
     inverse = np.linalg.inv(np.concatenate([one.model.mass for one in found]))

@@ -10,7 +10,7 @@ from benchmarks.lines import source_line
 from benchmarks.models import discretized
 from benchmarks.validation.common import SUBCONDUCTORS, WINDS, percent, result, table
 from engine.arrays import FloatArray
-from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, pick, states
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select, states
 from engine.cycles.search import explicit_starts, find_cycles
 from engine.mechanics.modes import at_points, directional_shapes
 from engine.models.critical_wind_speeds import critical_wind_speeds
@@ -113,22 +113,22 @@ def _onsets() -> Iterator[list[object]]:
 def unexpanded_rows(subconductors: int, cycles: int = CYCLES) -> Iterator[list[object]]:
     """Yield the amplitudes of the stable cycles of one line, and what direct integration makes of them."""
     line = _line(subconductors)
-    made = discretized((line,))
+    discretization = discretized((line,))
     analysis = _asked(AerodynamicModel.RELATIVE_WIND)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1, 2))
-    grid = hybrid_model(made, shapes, (1, 2), analysis)
-    model, published = take(grid, 0), take(with_published_load(made, grid), 0)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1, 2))
+    grid = hybrid_model(discretization, shapes, (1, 2), analysis)
+    model, published = take(grid, 0), take(with_published_load(discretization, grid), 0)
     winds = np.array(WINDS)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
     starts = explicit_starts(published, winds, analysis.harmonics)
     found = find_cycles(model, crossings, winds, starts, analysis.harmonics)
     stable = np.flatnonzero(found.floquet.stability == "stable")
-    orbits, member = pick(found.orbits, stable), found.member[stable]
+    orbits, member = select(found.orbits, stable), found.member[stable]
     settled, moved = settle(
-        take(model, member), orbits, unexpanded(made, take(model, member), orbits.wind_speed), cycles
+        take(model, member), orbits, unexpanded(discretization, take(model, member), orbits.wind_speed), cycles
     )
     for i, loops in enumerate((member + 1).tolist()):
-        seen = observation(made, model.shapes[member[i]], loops)
+        seen = observation(discretization, model.shapes[member[i]], loops)
         before = half_peak_to_peak(seen.T @ orbits.coefficients[i])
         after = 0.5 * np.ptp(settled[i] @ seen, axis=0)
         largest = int(before[:2].argmax())
@@ -137,12 +137,12 @@ def unexpanded_rows(subconductors: int, cycles: int = CYCLES) -> Iterator[list[o
         yield [*place, *amplitudes, f"{100.0 * moved[i]:.3f}"]
 
 
-def unexpanded(made: Discretization, model: ReducedModel, wind_speed: FloatArray) -> Force:
+def unexpanded(discretization: Discretization, model: ReducedModel, wind_speed: FloatArray) -> Force:
     """Return the generalized load of the relative wind, less its value at rest, by quadrature along the span.
 
     Parameters
     ----------
-    made : Discretization
+    discretization : Discretization
         Of one line whose coefficients are the same along the span, in uniform wind.
     model : ReducedModel
         Leading axis (cycles,).
@@ -154,11 +154,11 @@ def unexpanded(made: Discretization, model: ReducedModel, wind_speed: FloatArray
     callable
         Of q and q', each (cycles, m); it returns (cycles, m) [N, N m].
     """
-    line = made.lines[0]
+    line = discretization.lines[0]
     d, count = line.conductor.diameter, wind_speed.size
-    fields = at_points(made.matrices, model.shapes).reshape(count, 3, 3, -1)
-    weight = made.matrices.weight.reshape(-1)
-    coefficients = made.sections.aerodynamics[0].reshape(weight.size, 3, 4)[0]
+    fields = at_points(discretization.matrices, model.shapes).reshape(count, 3, 3, -1)
+    weight = discretization.matrices.weight.reshape(-1)
+    coefficients = discretization.sections.aerodynamics[0].reshape(weight.size, 3, 4)[0]
     strength = 0.5 * line.wind.air_density * d * len(line.bundle.positions) * wind_speed[:, None] ** 2 * weight
 
     def force(q: FloatArray, rate: FloatArray) -> FloatArray:
@@ -185,7 +185,7 @@ def settle(model: ReducedModel, orbits: Orbits, force: Force, cycles: int) -> tu
     Returns
     -------
     history : (cycles, samples, m)
-        Co-ordinates over the last block.
+        Coordinates over the last block.
     moved : (cycles,)
         Relative change of the largest amplitude between the last two blocks.
     """

@@ -8,17 +8,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, linearized, pick, resized
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, linearized, resized, select
 from engine.cycles.search import Cycles
 from engine.models.reduced_model import ReducedModel, take
-from engine.numerics.newton import Options
+from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.spec import Check
 
 DETUNING = 1e-3  # share by which the horizontal frequencies are raised
-ONE_STEP = Options(iterations=1)  # the change with one harmonic more is small: a step of Newton's method tells it
+ONE_STEP = NewtonOptions(iterations=1)  # the change with one harmonic more is small: a step of Newton's method tells it
 HORIZONTAL = 1
-COARSE = Options(tolerance=1e-3)  # convergence is quadratic: the change is exact to 1e-6 of the amplitude
+COARSE = NewtonOptions(tolerance=1e-3)  # convergence is quadratic: the change is exact to 1e-6 of the amplitude
 PERIODS = 50  # of direct integration from a cycle
 
 
@@ -59,46 +59,48 @@ def confidence(model: ReducedModel, cycles: Cycles, check: Check) -> Confidence:
     parts = np.empty((3, member.size))
     for harmonics in np.unique(cycles.harmonics):
         here = np.flatnonzero(cycles.harmonics == harmonics)
-        parts[:, here] = _measured(model, member[here], resized(pick(orbits, here), int(harmonics)))
+        parts[:, here] = _measures(model, member[here], resized(select(orbits, here), int(harmonics)))
     if check is Check.DIRECT:
         stable = np.flatnonzero(cycles.floquet.stability == Stability.STABLE)
-        direct[stable] = direct_difference(model, member[stable], pick(orbits, stable))
+        direct[stable] = integration_drift(model, member[stable], select(orbits, stable))
     return Confidence(parts[0], parts[1], parts[2], direct)
 
 
-def _measured(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
     """Return residual, truncation and detuning of cycles with equally many harmonics: (3, cycles).
 
     Changes are those of the amplitude that weighs most in M_ii |q_i|^2.
     """
-    rest, _ = linearized(model, member, orbits)
+    residual, _ = linearized(model, member, orbits)
     elastic = np.abs(model.stiffness[member] @ orbits.coefficients).max(axis=(1, 2))
-    longer, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
+    with_one_more, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
     # Within 0.1 % a close resonance bends: a linear step would not do.
     detuned, solution = balance(_detuned(model), member, orbits, COARSE)
-    before, by_harmonic, by_frequency = (half_peak_to_peak(o.coefficients) for o in (orbits, longer, detuned))
+    before, by_harmonic, by_frequency = (half_peak_to_peak(o.coefficients) for o in (orbits, with_one_more, detuned))
     main = (before * np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]).argmax(axis=-1)
     row = np.arange(member.size)
     truncation, detuning = (after[row, main] / before[row, main] - 1.0 for after in (by_harmonic, by_frequency))
     return np.stack(
-        [np.abs(rest).max(axis=-1) / elastic, np.abs(truncation), np.where(solution.converged, detuning, np.nan)]
+        [np.abs(residual).max(axis=-1) / elastic, np.abs(truncation), np.where(solution.converged, detuning, np.nan)]
     )
 
 
-def direct_difference(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+def integration_drift(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
     """Integrate the equations from each cycle and return the relative change of its largest amplitude: (cycles,)."""
-    return np.array([_held(take(model, int(i)), pick(orbits, np.array([at]))) for at, i in enumerate(member)])
+    return np.array(
+        [_amplitude_drift(take(model, int(i)), select(orbits, np.array([at]))) for at, i in enumerate(member)]
+    )
 
 
-def _held(model: ReducedModel, orbit: Orbits) -> float:
-    from engine.checks.time_integration import held_amplitude  # noqa: PLC0415 - only who asks for it waits for scipy's integrators
+def _amplitude_drift(model: ReducedModel, orbit: Orbits) -> float:
+    from engine.checks.time_integration import amplitude_after_periods  # noqa: PLC0415 - only who asks for it waits for scipy's integrators
 
     own = half_peak_to_peak(orbit.coefficients)[0]
     main = int((own * np.sqrt(np.diagonal(model.mass))).argmax())
-    return float(held_amplitude(model, orbit, PERIODS)[main] / own[main] - 1.0)
+    return float(amplitude_after_periods(model, orbit, PERIODS)[main] / own[main] - 1.0)
 
 
 def _detuned(model: ReducedModel) -> ReducedModel:
-    """Raise the stiffness of the horizontal co-ordinates so that their frequencies rise by DETUNING."""
+    """Raise the stiffness of the horizontal coordinates so that their frequencies rise by DETUNING."""
     factor = np.where(model.direction == HORIZONTAL, 1.0 + DETUNING, 1.0)
     return replace(model, stiffness=model.stiffness * factor[:, None] * factor)

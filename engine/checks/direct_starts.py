@@ -7,9 +7,15 @@ periods: Newton's method needs to begin near a cycle, not on it.
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.checks.settled_motion import BLOCK_PERIODS, advanced, flow, natural_rates, settled
-from engine.cycles.families import Starts
+from engine.checks.settled_motion import (
+    BLOCK_PERIODS,
+    integrate_until_settled,
+    lawson_equations,
+    lawson_step,
+    natural_frequency_range,
+)
 from engine.cycles.harmonic_balance import Orbits, fourier
+from engine.cycles.known_cycles import Starts
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome
 
@@ -40,26 +46,26 @@ def spread_starts(
     levels : tuple of float
         Sizes over the largest: rad of torsion, or of the turn of the wind by vertical motion.
     generator : numpy.random.Generator
-        Of the phases, and of how the mixed starts divide between the co-ordinates.
+        Of the phases, and of how the mixed starts divide between the coordinates.
 
     Returns
     -------
     (cases, levels (m + 1), 2 m)
-        q and q': for each level one start a co-ordinate, and one of all.
+        q and q': for each level one start a coordinate, and one of all.
     """
     m = model.mass.shape[-1]
-    largest, rate = _largest(model, member, wind_speed)
+    largest, rate = _largest_amplitudes(model, member, wind_speed)
     shares = np.tile(np.concatenate([np.eye(m), np.zeros((1, m))]), (len(levels), 1))
     shares = np.tile(shares, (member.size, 1, 1))
     shares[:, m :: m + 1] = np.sqrt(generator.dirichlet(np.ones(m), (member.size, len(levels))))
     phase = generator.uniform(0.0, 2.0 * np.pi, shares.shape)
-    # No start lies on an axis: what its co-ordinate leaves out is there by a thousandth.
+    # No start lies on an axis: what its coordinate leaves out is there by a thousandth.
     amplitude = np.repeat(levels, m + 1)[:, None] * np.maximum(shares, 1e-3) * largest[:, None]
     return np.concatenate([amplitude * np.cos(phase), -rate[:, None] * amplitude * np.sin(phase)], axis=-1)
 
 
-def _largest(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the amplitude of a start of level 1 and the natural rate [rad/s] of each co-ordinate: (cases, m) each."""
+def _largest_amplitudes(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the amplitude of a start of level 1 and the natural rate [rad/s] of each coordinate: (cases, m) each."""
     mass = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
     rate = np.sqrt(np.diagonal(model.stiffness, axis1=-2, axis2=-1)[member] / mass)
     form = np.abs(model.load.angle[member]).max(axis=1)
@@ -91,45 +97,47 @@ def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
     chosen = np.unique(np.linspace(0, wind_speeds.size - 1, WINDS).round().astype(np.intp))[: wind_speeds.size]
     member, wind = np.repeat(usable, chosen.size), np.tile(chosen, usable.size)
     state = spread_starts(model, member, wind_speeds[wind], LEVELS, np.random.default_rng(0))
-    each = state.shape[1]
-    member, wind, state = np.repeat(member, each), np.repeat(wind, each), state.reshape(-1, state.shape[-1])
+    per_case = state.shape[1]
+    member, wind, state = np.repeat(member, per_case), np.repeat(wind, per_case), state.reshape(-1, state.shape[-1])
     groups = np.array_split(np.arange(member.size), -(-member.size // TOGETHER) or 1)
-    parts = [_arrived(model, member[i], wind_speeds[wind[i]], state[i], harmonics) for i in groups]
+    parts = [_settled_cycles(model, member[i], wind_speeds[wind[i]], state[i], harmonics) for i in groups]
     index = np.concatenate([group[kept] for group, (kept, _) in zip(groups, parts, strict=True)])
     names = ("coefficients", "angular_frequency", "wind_speed")
-    orbits = Orbits(*(np.concatenate([getattr(found, name) for _, found in parts]) for name in names))
+    orbits = Orbits(*(np.concatenate([getattr(cycles, name) for _, cycles in parts]) for name in names))
     return Starts(member[index], wind[index], orbits)
 
 
-def _arrived(
+def _settled_cycles(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, harmonics: int
 ) -> tuple[IntArray, Orbits]:
     """Integrate starts and read a cycle from each that still moves: their indices, and the cycles."""
-    slowest, fastest = natural_rates(model, member)
+    slowest, fastest = natural_frequency_range(model, member)
     ratio = np.minimum(fastest / slowest, LARGEST_RATIO)
     blocks = np.ceil(PERIODS * ratio / BLOCK_PERIODS).astype(np.intp)
-    runs = settled(model, member, wind_speed, start, blocks, STEPS)
+    runs = integrate_until_settled(model, member, wind_speed, start, blocks, STEPS)
     kept = np.flatnonzero(~runs.at_rest & (runs.outcome != Outcome.NO_CONVERGENCE))
-    equations = flow(model, member[kept], wind_speed[kept], STEPS)
+    equations = lawson_equations(model, member[kept], wind_speed[kept], STEPS)
     state, history = runs.state[kept].T, []
     weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member[kept]]
     with np.errstate(over="ignore", invalid="ignore"):  # a motion may leave all bounds here, too: nothing recurs then
         for _ in range(int(np.ceil(SAMPLED * STEPS * ratio[kept].max(initial=0.0)))):
-            state = advanced(equations, state)
+            state = lawson_step(equations, state)
             history.append(state[: model.mass.shape[-1]])
         series = np.stack(history, axis=-1) if history else np.zeros((weight.shape[1], 0, 1))
-        read = [_read(series[:, i], weight[i], float(equations.step[i]), harmonics) for i in range(kept.size)]
-    moving = np.array([i for i, found in enumerate(read) if found is not None], dtype=np.intp)
-    found = [item for item in read if item is not None]
-    shape = (len(found), weight.shape[1], 2 * harmonics + 1)
-    coefficients = np.array([item[0] for item in found]).reshape(shape)
-    return kept[moving], Orbits(coefficients, np.array([item[1] for item in found]), wind_speed[kept[moving]])
+        fitted = [_fitted_cycle(series[:, i], weight[i], float(equations.step[i]), harmonics) for i in range(kept.size)]
+    moving = np.array([i for i, cycles in enumerate(fitted) if cycles is not None], dtype=np.intp)
+    cycles = [item for item in fitted if item is not None]
+    shape = (len(cycles), weight.shape[1], 2 * harmonics + 1)
+    coefficients = np.array([item[0] for item in cycles]).reshape(shape)
+    return kept[moving], Orbits(coefficients, np.array([item[1] for item in cycles]), wind_speed[kept[moving]])
 
 
-def _read(series: FloatArray, weight: FloatArray, step: float, harmonics: int) -> tuple[FloatArray, float] | None:
+def _fitted_cycle(
+    series: FloatArray, weight: FloatArray, step: float, harmonics: int
+) -> tuple[FloatArray, float] | None:
     """Fit a Fourier series to samples (m, samples): its coefficients and angular frequency, None if nothing recurs.
 
-    The frequency is that at which the co-ordinate that moves most crosses its mean upwards.
+    The frequency is that at which the coordinate that moves most crosses its mean upwards.
     """
     swing = series - series.mean(axis=-1, keepdims=True)
     main = swing[int((weight * swing.std(axis=-1)).argmax())]

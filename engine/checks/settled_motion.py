@@ -1,8 +1,8 @@
-"""Direct integration of reduced models from many starts side by side, until every motion has settled.
+"""Integrate reduced models directly from many starts side by side, until every motion has settled.
 
-The linear part of the equations, that of the load included, is taken exactly by its matrix exponential; what is
-quadratic and cubic goes through the Runge-Kutta method of fourth order in the co-ordinates that turn with it (Lawson
-1967). A step has to resolve the bend of the load alone, so that weak damping is not drowned in errors of the method.
+Only the nonlinear terms are stepped by the fourth-order Runge-Kutta method; the linear part, the load's linear terms
+included, is integrated exactly by its matrix exponential (Lawson 1967). The step only has to resolve the nonlinear
+terms, so weak damping is not lost in the error of the method.
 """
 
 import itertools
@@ -17,20 +17,20 @@ from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome
 
 STEPS = 24  # in the shortest natural period
-BLOCK_PERIODS = 50  # shortest natural ones between two looks at the motion
-CHANGE = 4e-6  # of the motion's size in a block, below which it counts as settled
-REST = 1e-4  # of the size at the start, below which a motion counts as at rest
-FARTHEST = np.pi  # rad of angle of attack, beyond which a motion has diverged
+BLOCK_PERIODS = 50  # shortest natural periods in a block; the motion is examined after each block
+SETTLED_CHANGE = 4e-6  # change of the motion's size in a block, relative to it, below which it has settled
+REST = 1e-4  # size relative to the start's, below which the motion counts as at rest
+LARGEST_ANGLE = np.pi  # rad of angle of attack, beyond which a motion has diverged
 
 
 @dataclass(frozen=True, slots=True)
-class Runs:
-    """Where starts ended, one entry each.
+class SettledMotions:
+    """The motions that starts settled on, one entry per start.
 
     size, before: (starts, 2 m), root mean square of q and q' over the last block and over the one before it; state:
-    (starts, 2 m), q and q' at the end; blocks: (starts,), number integrated; outcome: (starts,) of Outcome, CONVERGED
-    where the motion settled or came to rest, LIMIT_REACHED where it still changed, NO_CONVERGENCE where it diverged;
-    at_rest: (starts,).
+    (starts, 2 m), q and q' at the end; blocks: (starts,), number of blocks integrated; outcome: (starts,) of Outcome,
+    CONVERGED where the motion settled or came to rest, LIMIT_REACHED where it was still changing, NO_CONVERGENCE where
+    it diverged; at_rest: (starts,), True where it came to rest.
     """
 
     size: FloatArray
@@ -42,44 +42,46 @@ class Runs:
 
 
 @dataclass(frozen=True, slots=True)
-class Flow:
-    """The equations of a stack of starts, with the starts on the last axis.
+class LawsonEquations:
+    """The equations of motion of a stack of starts in the form that Lawson's method steps; starts on the last axis.
 
-    half: (2 m, 2 m, starts), the exponential of half a step of the linear part; bend: (points, m, monomials of degree 2
-    and 3, starts), the rest of q''; forms: (points, locals, 2 m, starts), the linear forms in (q, q') that it is a
-    polynomial of; step: (starts,) [s]; angle: (2 m, starts), the largest coefficients of the angle of attack along the
-    span.
+    half_step: (2 m, 2 m, starts), matrix exponential of the linear part over half a step; nonlinear: (points, m,
+    monomials of degree 2 and 3, starts), coefficients of the nonlinear part of q''; forms: (points, local variables,
+    2 m, starts), the linear forms in (q, q') that these monomials are taken of; step: (starts,) [s]; angle:
+    (2 m, starts), largest coefficients of the angle of attack along the span.
     """
 
-    half: FloatArray
-    bend: FloatArray
+    half_step: FloatArray
+    nonlinear: FloatArray
     forms: FloatArray
     step: FloatArray
     angle: FloatArray
 
-    def pick(self, index: IntArray) -> "Flow":
-        """Pick starts."""
-        return Flow(*(part[..., index] for part in self.parts))
+    def select(self, index: IntArray) -> "LawsonEquations":
+        """Select starts by their indices."""
+        return LawsonEquations(*(part[..., index] for part in self.parts))
 
     @property
     def parts(self) -> tuple[FloatArray, ...]:
-        """The fields one after another."""
-        return self.half, self.bend, self.forms, self.step, self.angle
+        """The fields in their order."""
+        return self.half_step, self.nonlinear, self.forms, self.step, self.angle
 
 
-def natural_rates(model: ReducedModel, member: IntArray) -> FloatArray:
+def natural_frequency_range(model: ReducedModel, member: IntArray) -> FloatArray:
     """Return the lowest and the highest natural angular frequency of members (starts,): (2, starts) [rad/s].
 
-    Others of the stack may be statically unstable.
+    The members must be statically stable; the other models of the stack need not be.
     """
     known, own = np.unique(member, return_inverse=True)
     square = np.linalg.eigvals(np.linalg.solve(model.mass[known], model.stiffness[known])).real
     return np.asarray(np.sqrt(np.stack([square.min(axis=-1), square.max(axis=-1)]))[:, own])
 
 
-def flow(model: ReducedModel, member: IntArray, wind_speed: FloatArray, steps: int = STEPS) -> Flow:
+def lawson_equations(
+    model: ReducedModel, member: IntArray, wind_speed: FloatArray, steps: int = STEPS
+) -> LawsonEquations:
     """Set up the equations of members (starts,) of a stack of models at wind speeds (starts,)."""
-    from scipy.linalg import expm  # noqa: PLC0415 - only who asks for the integration waits for scipy
+    from scipy.linalg import expm  # noqa: PLC0415 - import scipy only when integration is asked for
 
     m, load = model.mass.shape[-1], model.load
     inverse = np.linalg.inv(model.mass)[member]
@@ -90,54 +92,56 @@ def flow(model: ReducedModel, member: IntArray, wind_speed: FloatArray, steps: i
     linear = np.zeros((member.size, 2 * m, 2 * m))
     linear[:, :m, m:] = np.eye(m)
     linear[:, m:] = np.concatenate([by_q, by_rate], axis=-1)
-    bend = speed[..., None] ** 2 * (inverse[:, None] @ load.table[member][..., load.forms.shape[-2] :])
+    nonlinear = speed[..., None] ** 2 * (inverse[:, None] @ load.table[member][..., load.forms.shape[-2] :])
     by_wind = np.repeat([np.ones(member.size), wind_speed], m, axis=0)
     forms = np.moveaxis(load.forms[member], 0, -1) / by_wind
-    step = 2.0 * np.pi / (natural_rates(model, member)[1] * steps)
+    step = 2.0 * np.pi / (natural_frequency_range(model, member)[1] * steps)
     angle = np.abs(load.angle[member]).max(axis=1).T / by_wind
-    half = expm(0.5 * step[:, None, None] * linear)
-    return Flow(np.moveaxis(half, 0, -1).copy(), np.moveaxis(bend, 0, -1).copy(), forms.copy(), step, angle.copy())
+    half_step = expm(0.5 * step[:, None, None] * linear)
+    return LawsonEquations(
+        np.moveaxis(half_step, 0, -1).copy(), np.moveaxis(nonlinear, 0, -1).copy(), forms.copy(), step, angle.copy()
+    )
 
 
-def advanced(equations: Flow, state: FloatArray) -> FloatArray:
-    """Return the states (2 m, starts) one step later."""
-    step, half = equations.step, equations.half
-    m = equations.bend.shape[1]
+def lawson_step(equations: LawsonEquations, state: FloatArray) -> FloatArray:
+    """Return the states (2 m, starts) after one step of Lawson's fourth-order Runge-Kutta method."""
+    step, half_step = equations.step, equations.half_step
+    m = equations.nonlinear.shape[1]
 
-    def turned(y: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("ijs,js->is", half, y))
+    def propagate(y: FloatArray) -> FloatArray:
+        return np.asarray(np.einsum("ijs,js->is", half_step, y))
 
-    def kick(y: FloatArray, share: float, k: FloatArray) -> FloatArray:
+    def add_acceleration(y: FloatArray, share: float, k: FloatArray) -> FloatArray:
         return np.concatenate([y[:m], y[m:] + share * step * k])
 
-    first = _bend(equations, state)
-    here = turned(state)
-    second = _bend(equations, turned(kick(state, 0.5, first)))
-    third = _bend(equations, kick(here, 0.5, second))
-    fourth = _bend(equations, turned(kick(here, 1.0, third)))
-    middle = kick(turned(kick(state, 1.0 / 6.0, first)), 1.0 / 3.0, second + third)
-    return kick(turned(middle), 1.0 / 6.0, fourth)
+    first = _nonlinear_acceleration(equations, state)
+    here = propagate(state)
+    second = _nonlinear_acceleration(equations, propagate(add_acceleration(state, 0.5, first)))
+    third = _nonlinear_acceleration(equations, add_acceleration(here, 0.5, second))
+    fourth = _nonlinear_acceleration(equations, propagate(add_acceleration(here, 1.0, third)))
+    middle = add_acceleration(propagate(add_acceleration(state, 1.0 / 6.0, first)), 1.0 / 3.0, second + third)
+    return add_acceleration(propagate(middle), 1.0 / 6.0, fourth)
 
 
-def _bend(equations: Flow, state: FloatArray) -> FloatArray:
-    """Return the quadratic and cubic part of q'': (m, starts)."""
+def _nonlinear_acceleration(equations: LawsonEquations, state: FloatArray) -> FloatArray:
+    """Return the quadratic and cubic part of q'' at states (2 m, starts): (m, starts)."""
     x = np.einsum("plks,ks->lps", equations.forms, state)
     numbers = range(x.shape[0])
     square = {pair: x[pair[0]] * x[pair[1]] for pair in itertools.combinations_with_replacement(numbers, 2)}
     cubes = itertools.combinations_with_replacement(numbers, 3)
     terms = np.stack([*square.values(), *(square[i, j] * x[k] for i, j, k in cubes)])
-    return np.asarray(np.einsum("pots,tps->os", equations.bend, terms))
+    return np.asarray(np.einsum("pots,tps->os", equations.nonlinear, terms))
 
 
-def settled(
+def integrate_until_settled(
     model: ReducedModel,
     member: IntArray,
     wind_speed: FloatArray,
     start: FloatArray,
-    longest: IntArray | int,
+    most_blocks: IntArray | int,
     steps: int = STEPS,
-) -> Runs:
-    """Integrate starts until their motion changes no more.
+) -> SettledMotions:
+    """Integrate starts until their motion no longer changes.
 
     Parameters
     ----------
@@ -146,43 +150,44 @@ def settled(
     member, wind_speed : (starts,)
     start : (starts, 2 m)
         q and q'.
-    longest : (starts,) or int
-        Number of blocks after which a start is given up.
+    most_blocks : (starts,) or int
+        Number of blocks after which the integration of a start stops.
     steps : int
-        In the shortest natural period.
+        Number of steps in the shortest natural period.
 
     Returns
     -------
-    Runs
+    SettledMotions
     """
-    equations = flow(model, member, wind_speed, steps)
-    decays = np.abs(np.linalg.eigvals(np.moveaxis(equations.half, -1, 0))).max(axis=-1, initial=0.0) < 1.0
+    equations = lawson_equations(model, member, wind_speed, steps)
+    linearly_stable = np.abs(np.linalg.eigvals(np.moveaxis(equations.half_step, -1, 0))).max(axis=-1, initial=0.0) < 1.0
     mass = np.diagonal(model.mass, axis1=-2, axis2=-1)[member].T
     rate = np.sqrt(np.diagonal(model.stiffness, axis1=-2, axis2=-1)[member].T / mass)
     weight = np.sqrt(np.concatenate([mass * rate**2, mass]))
     state, size, before = start.T.copy(), np.full_like(start.T, np.inf), np.full_like(start.T, np.inf)
     blocks, at_rest = np.zeros(member.size, dtype=np.intp), np.zeros(member.size, dtype=np.bool_)
     outcome = np.full(member.size, Outcome.LIMIT_REACHED, dtype=np.object_)
-    first, last = np.linalg.norm(weight * start.T, axis=0), np.broadcast_to(longest, member.shape)
+    first, last = np.linalg.norm(weight * start.T, axis=0), np.broadcast_to(most_blocks, member.shape)
     active = np.arange(member.size)
     while active.size:
         state[:, active], now, angle = _block(equations, state[:, active], steps)
         before[:, active], size[:, active] = size[:, active], now
         blocks[active] += 1
-        whole, change = (np.linalg.norm(weight[:, active] * x, axis=0) for x in (now, now - before[:, active]))
-        far, rest = ~(angle < FARTHEST), (whole < REST * first[active]) & decays[active]
-        done = rest | (change < CHANGE * whole)
-        at_rest[active], outcome[active[done]] = rest, Outcome.CONVERGED
-        outcome[active[far]] = Outcome.NO_CONVERGENCE
-        kept = np.flatnonzero(~done & ~far & (blocks[active] < last[active]))
-        active, equations = active[kept], equations.pick(kept)
-    return Runs(size.T, before.T, state.T, blocks, outcome, at_rest)
+        total, change = (np.linalg.norm(weight[:, active] * x, axis=0) for x in (now, now - before[:, active]))
+        diverged, at_rest_now = ~(angle < LARGEST_ANGLE), (total < REST * first[active]) & linearly_stable[active]
+        done = at_rest_now | (change < SETTLED_CHANGE * total)
+        at_rest[active], outcome[active[done]] = at_rest_now, Outcome.CONVERGED
+        outcome[active[diverged]] = Outcome.NO_CONVERGENCE
+        kept = np.flatnonzero(~done & ~diverged & (blocks[active] < last[active]))
+        active, equations = active[kept], equations.select(kept)
+    return SettledMotions(size.T, before.T, state.T, blocks, outcome, at_rest)
 
 
-def _block(equations: Flow, state: FloatArray, steps: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Integrate one block: the state after it, the root mean square of q and q' under Hann's window, and the angle.
+def _block(equations: LawsonEquations, state: FloatArray, steps: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Integrate one block.
 
-    The window falls off smoothly to both ends, so that the part of a period that does not fill the block counts little.
+    Returns the state at its end, the root mean square of q and q' weighted with Hann's window, and the largest angle of
+    attack [rad]. The window falls off smoothly towards both ends, so an incomplete period at the end counts little.
     """
     count = BLOCK_PERIODS * steps
     window = 2.0 / count * np.sin(np.pi * np.arange(count) / count) ** 2
@@ -192,7 +197,7 @@ def _block(equations: Flow, state: FloatArray, steps: int) -> tuple[FloatArray, 
     square, largest = np.zeros_like(state), np.zeros(state.shape[1])
     with np.errstate(over="ignore", invalid="ignore"):
         for share in window.tolist():
-            state = advanced(equations, state)
+            state = lawson_step(equations, state)
             square += share * state**2
             largest = np.maximum(largest, np.linalg.norm(equations.angle * state, axis=0))
     return state, np.sqrt(square), largest

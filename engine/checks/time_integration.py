@@ -17,10 +17,10 @@ BLOCK = 50  # cycles between two looks at the amplitude
 
 
 @dataclass(frozen=True, slots=True)
-class Settled:
+class IntegratedMotion:
     """Where direct integration ended.
 
-    extremes: (m, 2), smallest and largest of each co-ordinate over the last block; state: (2 m,), (q, q') at the end;
+    extremes: (m, 2), smallest and largest of each coordinate over the last block; state: (2 m,), (q, q') at the end;
     cycles: number integrated; outcome: LIMIT_REACHED if the amplitude still moved; history: (samples, m), the last
     block.
     """
@@ -33,14 +33,14 @@ class Settled:
 
     @property
     def amplitude(self) -> FloatArray:
-        """Half of the peak-to-peak of each co-ordinate, (m,)."""
+        """Half of the peak-to-peak of each coordinate, (m,)."""
         return np.asarray(0.5 * (self.extremes[:, 1] - self.extremes[:, 0]))
 
 
 def integrate(
     model: ReducedModel, wind_speed: float, start: FloatArray, *, change: float = 1e-4, longest: int = 20_000
-) -> Settled:
-    """Integrate until the amplitude of every co-ordinate moves less than a fraction over a block of 50 cycles.
+) -> IntegratedMotion:
+    """Integrate until the amplitude of every coordinate moves less than a fraction over a block of 50 cycles.
 
     Parameters
     ----------
@@ -51,13 +51,13 @@ def integrate(
     start : (2 m,)
         q and q'.
     change : float
-        Fraction of the largest amplitude of a co-ordinate in two successive blocks.
+        Fraction of the largest amplitude of a coordinate in two successive blocks.
     longest : int
         Number of cycles after which the integration stops.
 
     Returns
     -------
-    Settled
+    IntegratedMotion
     """
     period = 2.0 * np.pi / _slowest(model)
     times = np.linspace(0.0, BLOCK * period, BLOCK * SAMPLES + 1)
@@ -71,12 +71,12 @@ def integrate(
         if not np.isfinite(amplitude).all():
             break
         if (np.abs(amplitude - before) <= change * amplitude).all():
-            return Settled(extremes, state, block * BLOCK, Outcome.CONVERGED, history[:, :m])
+            return IntegratedMotion(extremes, state, block * BLOCK, Outcome.CONVERGED, history[:, :m])
         before = amplitude
-    return Settled(extremes, state, block * BLOCK, Outcome.LIMIT_REACHED, history[:, :m])
+    return IntegratedMotion(extremes, state, block * BLOCK, Outcome.LIMIT_REACHED, history[:, :m])
 
 
-def held_amplitude(model: ReducedModel, orbit: Orbits, periods: int) -> FloatArray:
+def amplitude_after_periods(model: ReducedModel, orbit: Orbits, periods: int) -> FloatArray:
     """Integrate from a cycle for some of its periods and measure the last one.
 
     Parameters
@@ -90,7 +90,7 @@ def held_amplitude(model: ReducedModel, orbit: Orbits, periods: int) -> FloatArr
     Returns
     -------
     (m,)
-        Half of the peak-to-peak of each co-ordinate.
+        Half of the peak-to-peak of each coordinate.
     """
     m = model.mass.shape[-1]
     wind, period = float(orbit.wind_speed[0]), 2.0 * np.pi / float(orbit.angular_frequency[0])

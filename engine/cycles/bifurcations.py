@@ -12,16 +12,16 @@ from enum import StrEnum
 import numpy as np
 
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, ObjectArray
-from engine.cycles.branches import CycleProblem, Traces, orbits_of, points_of, reaches
+from engine.cycles.branches import BranchSet, CycleProblem, ends_at_hopf_points, orbits_of, points_of
 from engine.cycles.floquet import Floquet, floquet
 from engine.cycles.harmonic_balance import Orbits, resized
 from engine.mechanics.modes import solve_symmetric
 from engine.models.critical_wind_speeds import Crossings, crossing_error
 from engine.models.reduced_model import ReducedModel
-from engine.numerics.continuation import Points, located, onto, points_at
+from engine.numerics.continuation import BranchPoints, locate_zeros, make_points, project_onto_branches
 
 MORE_HARMONICS = 4  # than the branch was followed with
-FINENESS = 4  # of Floquet's steps
+STEP_FACTOR = 4  # of Floquet's steps
 ACCURACY = 1e-8  # relative change of the wind speed in the last step
 ON_CIRCLE = 1e-5  # distance of the critical multiplier from where it should be
 SAME = 1e-6  # relative distance below which two points are one
@@ -43,7 +43,7 @@ class Bifurcations:
     """Bifurcations of a stack of models; every array is (k,).
 
     member: index of the model; branch: number of the connected family; kind: of Kind; wind_speed, uncertainty [m/s];
-    angular_frequency, second [rad/s], the second NaN but at a torus point; co_ordinate: the one that moves most;
+    angular_frequency, second [rad/s], the second NaN but at a torus point; coordinate: the one that moves most;
     may_end_stability: False where the cycle is unstable on both sides for certain.
     """
 
@@ -52,8 +52,8 @@ class Bifurcations:
     kind: ObjectArray
     wind_speed: FloatArray
     angular_frequency: FloatArray
-    second: FloatArray
-    co_ordinate: IntArray
+    second_frequency: FloatArray
+    coordinate: IntArray
     uncertainty: FloatArray
     may_end_stability: BoolArray
 
@@ -61,35 +61,35 @@ class Bifurcations:
 Factors = Callable[[ComplexArray], ComplexArray]
 
 
-def _pairs(multipliers: ComplexArray) -> ComplexArray:
+def _pair_factors(multipliers: ComplexArray) -> ComplexArray:
     i, j = np.triu_indices(multipliers.shape[-1], 1)
     with np.errstate(over="ignore", invalid="ignore"):  # see `_product`
         return 1.0 - multipliers[..., i] * multipliers[..., j]
 
 
-def _doubled(multipliers: ComplexArray) -> ComplexArray:
+def _period_doubling_factors(multipliers: ComplexArray) -> ComplexArray:
     return 1.0 + multipliers
 
 
-def _single(multipliers: ComplexArray) -> ComplexArray:
+def _branch_point_factors(multipliers: ComplexArray) -> ComplexArray:
     return 1.0 - multipliers
 
 
 FACTORS: dict[Kind, Factors] = {
-    Kind.TORUS: _pairs,
-    Kind.PERIOD_DOUBLING: _doubled,
-    Kind.BRANCH_POINT: _single,
+    Kind.TORUS: _pair_factors,
+    Kind.PERIOD_DOUBLING: _period_doubling_factors,
+    Kind.BRANCH_POINT: _branch_point_factors,
 }
 
 
 def bifurcations(
-    traces: Sequence[Traces], followed: IntArray, model: ReducedModel, crossings: Crossings
+    branch_sets: Sequence[BranchSet], followed: IntArray, model: ReducedModel, crossings: Crossings
 ) -> Bifurcations:
     """Locate every bifurcation on branches that were followed, and list the Hopf points of the static state.
 
     Parameters
     ----------
-    traces : sequence of Traces
+    branch_sets : sequence of BranchSet
     followed : (branches,)
         Of all traces one after another: number of the family that each followed branch belongs to.
     model : ReducedModel
@@ -102,42 +102,48 @@ def bifurcations(
     Bifurcations
         Sorted by member, branch and wind speed; points met on two passes over a branch are listed once.
     """
-    branch = np.split(followed, np.cumsum([trace.problem.member.size for trace in traces])[:-1]) if traces else []
-    found = [_hopf(traces, branch, model, crossings)]
-    return distinct([*found, *(part for one in zip(traces, branch, strict=True) for part in on_branches(*one))])
+    branch = (
+        np.split(followed, np.cumsum([branch_set.problem.member.size for branch_set in branch_sets])[:-1])
+        if branch_sets
+        else []
+    )
+    found = [_hopf_points(branch_sets, branch, model, crossings)]
+    return distinct(
+        [*found, *(part for one in zip(branch_sets, branch, strict=True) for part in bifurcations_on(*one))]
+    )
 
 
-def on_branches(trace: Traces, numbers: IntArray) -> Iterator[Bifurcations]:
-    """Locate the bifurcations on branches that were followed; numbers: (branches,), the family of each."""
-    problem, points = trace.problem, trace.points
-    judged = floquet(*problem.models(points.z, points.branch), trace.orbits)
-    segment, turns = _segments(trace), points.tangent[:, -1]
-    crosses = {Kind.FOLD: turns[segment] * turns[segment + 1] < 0.0}
+def bifurcations_on(branch_set: BranchSet, families: IntArray) -> Iterator[Bifurcations]:
+    """Locate the bifurcations on branches that were followed; families: (branches,), the family of each."""
+    problem, points = branch_set.problem, branch_set.points
+    floquet_result = floquet(*problem.models(points.z, points.branch), branch_set.orbits)
+    segment, slopes = _segments(branch_set), points.tangent[:, -1]
+    changes = {Kind.FOLD: slopes[segment] * slopes[segment + 1] < 0.0}
     for kind in FACTORS:
-        crosses[kind] = _crosses(judged, segment, kind)
-    crosses[Kind.BRANCH_POINT] &= ~crosses[Kind.FOLD]
-    growing = np.asarray((np.abs(judged.multipliers[:, 1:]) > 1.0).any(axis=-1))
+        changes[kind] = _sign_changes(floquet_result, segment, kind)
+    changes[Kind.BRANCH_POINT] &= ~changes[Kind.FOLD]
+    growing = np.asarray((np.abs(floquet_result.multipliers[:, 1:]) > 1.0).any(axis=-1))
     # Between points that lose their stability in several steps it may exist without being seen.
-    several = np.sum(list(crosses.values()), axis=0) > 1
-    limit = np.asarray(several | ~(growing[segment] & growing[segment + 1]))
-    for kind, here in crosses.items():
+    several = np.sum(list(changes.values()), axis=0) > 1
+    may_end = np.asarray(several | ~(growing[segment] & growing[segment + 1]))
+    for kind, here in changes.items():
         if here.any():
-            yield _located(trace, numbers, segment[here], kind, limit[here])
+            yield _locate_bifurcations(branch_set, families, segment[here], kind, may_end[here])
 
 
-def _segments(trace: Traces) -> IntArray:
+def _segments(branch_set: BranchSet) -> IntArray:
     """Return the first point of every pair of successive ones; rest, where a branch is born, is no cycle."""
-    branch = trace.points.branch
+    branch = branch_set.points.branch
     first = np.append(True, branch[1:] != branch[:-1])[: branch.size]
-    rest = first & np.isfinite(trace.born[branch])
-    return np.flatnonzero((branch[1:] == branch[:-1]) & ~rest[:-1])
+    at_equilibrium = first & np.isfinite(branch_set.hopf_wind_speed[branch])
+    return np.flatnonzero((branch[1:] == branch[:-1]) & ~at_equilibrium[:-1])
 
 
-def _crosses(judged: Floquet, segment: IntArray, kind: Kind) -> BoolArray:
+def _sign_changes(floquet_result: Floquet, segment: IntArray, kind: Kind) -> BoolArray:
     """Tell in which segments the product of the factors changes its sign by more than the error of the multipliers."""
-    factors = FACTORS[kind](judged.multipliers[:, 1:])
+    factors = FACTORS[kind](floquet_result.multipliers[:, 1:])
     value = _product(factors)
-    clear = np.abs(factors).min(axis=-1, initial=np.inf) > 3.0 * judged.trivial_error
+    clear = np.abs(factors).min(axis=-1, initial=np.inf) > 3.0 * floquet_result.trivial_error
     return np.asarray((value[segment] * value[segment + 1] < 0.0) & clear[segment] & clear[segment + 1])
 
 
@@ -147,17 +153,19 @@ def _product(factors: ComplexArray) -> FloatArray:
         return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
 
 
-def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind, limit: BoolArray) -> Bifurcations:
+def _locate_bifurcations(
+    branch_set: BranchSet, families: IntArray, segment: IntArray, kind: Kind, may_end: BoolArray
+) -> Bifurcations:
     """Locate the zero in each of these segments with more harmonics; where that fails the segment is what is known.
 
-    limit: (segments,), whether the cycles of each may be stable at one end.
+    may_end: (segments,), whether the cycles of each may be stable at one end.
     """
-    problem = trace.problem
-    ends = [_finer(problem, trace.points.pick(segment + step)) for step in (0, 1)]
-    zero = located(problem, ends[0], ends[1], lambda points: _test(problem, points, kind), ACCURACY)
+    problem = branch_set.problem
+    ends = [_with_more_harmonics(problem, branch_set.points.select(segment + step)) for step in (0, 1)]
+    zero = locate_zeros(problem, ends[0], ends[1], lambda points: _test_function(problem, points, kind), ACCURACY)
     multipliers, error = _multipliers(problem, zero.points)
-    critical, distance = _critical(multipliers, kind)
-    speed = [trace.points.z[segment + step, -1] for step in (0, 1)]
+    critical, distance = _critical_multiplier(multipliers, kind)
+    speed = [branch_set.points.z[segment + step, -1] for step in (0, 1)]
     inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE)
     z = np.where(inside[:, None], zero.points.z, ends[0].z)
     orbits = problem.orbits(z, zero.points.branch)
@@ -171,47 +179,47 @@ def _located(trace: Traces, numbers: IntArray, segment: IntArray, kind: Kind, li
     moved = np.where(np.isfinite(moved), moved, speed[1])
     result = Bifurcations(
         member=member,
-        branch=numbers[zero.points.branch],
+        branch=families[zero.points.branch],
         kind=_repeated(kind, member.size),
         wind_speed=np.where(inside, z[:, -1], 0.5 * (speed[0] + speed[1])),
         angular_frequency=orbits.angular_frequency,
-        second=_second(problem.model, member, orbits, critical, kind),
-        co_ordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
+        second_frequency=_second_frequency(problem.model, member, orbits, critical, kind),
+        coordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
         uncertainty=np.where(inside, zero.uncertainty + noise, width + moved),
-        may_end_stability=limit,
+        may_end_stability=may_end,
     )
-    return _pick(result, np.flatnonzero(~real))
+    return _select(result, np.flatnonzero(~real))
 
 
-def _finer(problem: CycleProblem, points: Points) -> Points:
+def _with_more_harmonics(problem: CycleProblem, points: BranchPoints) -> BranchPoints:
     """Solve for points of branches with more harmonics."""
     m = problem.model.mass.shape[-1]
     z, tangent = (orbits_of(part, m) for part in (points.z, points.tangent))
     harmonics = z.coefficients.shape[-1] // 2 + MORE_HARMONICS
     more = [points_of(resized(part, harmonics)) for part in (z, tangent)]
-    return onto(problem, points_at(problem, points.branch, more[0], more[1]))
+    return project_onto_branches(problem, make_points(problem, points.branch, more[0], more[1]))
 
 
-def _multipliers(problem: CycleProblem, points: Points) -> tuple[ComplexArray, FloatArray]:
+def _multipliers(problem: CycleProblem, points: BranchPoints) -> tuple[ComplexArray, FloatArray]:
     known = np.flatnonzero(np.isfinite(points.z).all(axis=-1))
     size = 2 * problem.model.mass.shape[-1] - 1
     values = np.full((points.branch.size, size), np.nan, dtype=np.complex128)
     error = np.full(points.branch.size, np.nan)
     here = (points.z[known], points.branch[known])
-    judged = floquet(*problem.models(*here), problem.orbits(*here), FINENESS)
-    values[known], error[known] = judged.multipliers[:, 1:], judged.trivial_error
+    floquet_result = floquet(*problem.models(*here), problem.orbits(*here), STEP_FACTOR)
+    values[known], error[known] = floquet_result.multipliers[:, 1:], floquet_result.trivial_error
     return values, error
 
 
-def _test(problem: CycleProblem, points: Points, kind: Kind) -> FloatArray:
+def _test_function(problem: CycleProblem, points: BranchPoints, kind: Kind) -> FloatArray:
     if kind is Kind.FOLD:
         return points.tangent[:, -1]
     return _product(FACTORS[kind](_multipliers(problem, points)[0]))
 
 
-def _critical(multipliers: ComplexArray, kind: Kind) -> tuple[ComplexArray, FloatArray]:
+def _critical_multiplier(multipliers: ComplexArray, kind: Kind) -> tuple[ComplexArray, FloatArray]:
     """Return the multiplier of the smallest factor and that factor's size; at a fold it is the one nearest to 1."""
-    factors = np.abs(FACTORS.get(kind, _single)(multipliers))
+    factors = np.abs(FACTORS.get(kind, _branch_point_factors)(multipliers))
     if factors.size == 0:
         return np.zeros(0, dtype=np.complex128), np.zeros(0)
     smallest = np.where(np.isnan(factors), np.inf, factors).argmin(axis=-1)
@@ -221,7 +229,9 @@ def _critical(multipliers: ComplexArray, kind: Kind) -> tuple[ComplexArray, Floa
     return multipliers[row, index], distance
 
 
-def _second(model: ReducedModel, member: IntArray, orbits: Orbits, critical: ComplexArray, kind: Kind) -> FloatArray:
+def _second_frequency(
+    model: ReducedModel, member: IntArray, orbits: Orbits, critical: ComplexArray, kind: Kind
+) -> FloatArray:
     """Return the second frequency at torus points: w (k +- theta / 2 pi), the one nearest to a natural frequency."""
     none = np.full(member.size, np.nan)
     if kind is not Kind.TORUS or member.size == 0:
@@ -239,17 +249,20 @@ def _dominant(model: ReducedModel, member: IntArray, coefficients: FloatArray) -
     return np.asarray((mass * (coefficients**2).sum(axis=-1)).argmax(axis=-1), dtype=np.intp)
 
 
-def _hopf(
-    traces: Sequence[Traces], branch: Sequence[IntArray], model: ReducedModel, crossings: Crossings
+def _hopf_points(
+    branch_sets: Sequence[BranchSet], branch: Sequence[IntArray], model: ReducedModel, crossings: Crossings
 ) -> Bifurcations:
     """List the Hopf points at which a branch that was followed begins or ends."""
     hopf = np.flatnonzero(crossings.oscillation)
     number = np.full(hopf.size, -1, dtype=np.intp)
-    for trace, numbers in zip(traces, branch, strict=True):
-        same = trace.problem.member[:, None] == crossings.member[hopf]
-        reached = same & (reaches(trace, crossings, hopf) | (trace.born[:, None] == crossings.wind_speed[hopf]))
+    for branch_set, families in zip(branch_sets, branch, strict=True):
+        same = branch_set.problem.member[:, None] == crossings.member[hopf]
+        reached = same & (
+            ends_at_hopf_points(branch_set, crossings, hopf)
+            | (branch_set.hopf_wind_speed[:, None] == crossings.wind_speed[hopf])
+        )
         which, where = np.nonzero(reached)
-        number[where] = numbers[which]
+        number[where] = families[which]
     index = hopf[number >= 0]
     member, speed = crossings.member[index], crossings.wind_speed[index]
     return Bifurcations(
@@ -258,8 +271,8 @@ def _hopf(
         kind=_repeated(Kind.HOPF, index.size),
         wind_speed=speed,
         angular_frequency=crossings.angular_frequency[index],
-        second=np.full(index.size, np.nan),
-        co_ordinate=crossings.co_ordinate[index],
+        second_frequency=np.full(index.size, np.nan),
+        coordinate=crossings.coordinate[index],
         uncertainty=crossing_error(model, member, speed),
         may_end_stability=np.ones(index.size, dtype=np.bool_),
     )
@@ -269,31 +282,31 @@ def _repeated(kind: Kind, count: int) -> ObjectArray:
     return np.array([kind], dtype=np.object_)[np.zeros(count, dtype=np.intp)]
 
 
-def _joined(parts: list[Bifurcations]) -> Bifurcations:
+def _concatenated(parts: list[Bifurcations]) -> Bifurcations:
     return Bifurcations(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Bifurcations)))
 
 
-def _pick(all_of: Bifurcations, index: IntArray) -> Bifurcations:
-    return Bifurcations(*(getattr(all_of, f.name)[index] for f in fields(Bifurcations)))
+def _select(points: Bifurcations, index: IntArray) -> Bifurcations:
+    return Bifurcations(*(getattr(points, f.name)[index] for f in fields(Bifurcations)))
 
 
 def distinct(parts: list[Bifurcations]) -> Bifurcations:
     """Keep the best located of points that are one, sorted by member, branch and wind speed."""
-    found = _joined(parts)
+    found = _concatenated(parts)
     order = np.lexsort((found.wind_speed, found.branch, found.member))
-    found = _pick(found, order)
+    found = _select(found, order)
     kept: dict[tuple[int, Kind], list[int]] = {}
     for i, member in enumerate(found.member.tolist()):
         known = kept.setdefault((member, found.kind[i]), [])
-        twin = next((place for place, j in enumerate(known) if _same(found, i, j)), None)
+        twin = next((place for place, j in enumerate(known) if _same_point(found, i, j)), None)
         if twin is None:
             known.append(i)
         elif found.uncertainty[i] < found.uncertainty[known[twin]]:
             known[twin] = i
-    return _pick(found, np.array(sorted(i for known in kept.values() for i in known), dtype=np.intp))
+    return _select(found, np.array(sorted(i for known in kept.values() for i in known), dtype=np.intp))
 
 
-def _same(found: Bifurcations, i: int, j: int) -> bool:
+def _same_point(found: Bifurcations, i: int, j: int) -> bool:
     """Tell whether two points of one model and kind are one."""
     apart = abs(found.wind_speed[i] - found.wind_speed[j])
     near = abs(found.angular_frequency[i] / found.angular_frequency[j] - 1.0) < SAME

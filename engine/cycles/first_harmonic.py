@@ -38,7 +38,7 @@ class FirstHarmonic:
 
 
 @dataclass(frozen=True, slots=True)
-class _Scalar:
+class _ScalarEquation:
     """The scalar problem of each member: gains act through U^2 B_j, alpha' is read by a form in q and q'.
 
     polynomials: (members, 4, 7), coefficients in s/scale of det Z and of r adj(Z) U^2 B_j; static: (members, 3),
@@ -64,24 +64,26 @@ def explicit_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmoni
     -------
     FirstHarmonic
     """
-    scalar = _scalar_problem(model, wind_speed)
+    equation = _scalar_equation(model, wind_speed)
     angle = np.concatenate([[0.0], np.geomspace(1e-4, LARGEST_ANGLE, GRID - 1)])
     angles = np.broadcast_to(angle, (wind_speed.size, GRID))
-    even, _ = _even_part(scalar, np.arange(wind_speed.size)[:, None], angles)
+    even, _ = _even_part(equation, np.arange(wind_speed.size)[:, None], angles)
     known = np.isfinite(even)
     changes = known[:, 1:] & known[:, :-1] & (np.sign(even[:, 1:]) != np.sign(even[:, :-1]))
     member, cell, root = np.nonzero(changes | (known[:, 1:] ^ known[:, :-1]))
-    left, right = _real_part(scalar, member, root, angle[cell], angle[cell + 1])
-    ends = [np.sign(_branch(scalar, member, root, end)) for end in (left, right)]
+    left, right = _cut_to_real_roots(equation, member, root, angle[cell], angle[cell + 1])
+    ends = [np.sign(_even_part_at_root(equation, member, root, end)) for end in (left, right)]
     bracket = ends[0] * ends[1] < 0.0
     member, root, sign = member[bracket], root[bracket], ends[0][bracket]
-    refined = _bisected(
-        lambda middle: np.sign(_branch(scalar, member, root, middle)) == sign, left[bracket], right[bracket]
+    refined = _bisect(
+        lambda middle: np.sign(_even_part_at_root(equation, member, root, middle)) == sign,
+        left[bracket],
+        right[bracket],
     )
-    return _cycles(model, wind_speed, scalar, member, root, 0.5 * (refined[0] + refined[1]))
+    return _cycles_at_roots(model, wind_speed, equation, member, root, 0.5 * (refined[0] + refined[1]))
 
 
-def _scalar_problem(model: ReducedModel, wind_speed: FloatArray) -> _Scalar:
+def _scalar_equation(model: ReducedModel, wind_speed: FloatArray) -> _ScalarEquation:
     """Interpolate the characteristic polynomials on a circle and solve the statics."""
     square = wind_speed[:, None] ** 2
     vectors = square[..., None] * model.load.table[:, 0].swapaxes(-1, -2)
@@ -91,15 +93,15 @@ def _scalar_problem(model: ReducedModel, wind_speed: FloatArray) -> _Scalar:
     points = np.exp(2j * np.pi * np.arange(ORDER + 1) / (ORDER + 1))
     s = points * scale[:, None]
     dynamic = _dynamic_stiffness(model, s)
-    reader = _reader(model, wind_speed, s)
+    angle_rows = _angle_rows(model, wind_speed, s)
     response = np.linalg.solve(dynamic, np.swapaxes(vectors, -1, -2)[:, None].astype(np.complex128))
     determinant = np.linalg.det(dynamic)
-    numerators = determinant[..., None] * (reader[..., None, :] @ response)[..., 0, :]
+    numerators = determinant[..., None] * (angle_rows[..., None, :] @ response)[..., 0, :]
     values = np.concatenate([determinant[..., None], numerators], axis=-1)
     coefficients = np.fft.fft(values, axis=1).real / (ORDER + 1)
     at_rest = np.linalg.solve(model.stiffness, np.swapaxes(vectors, -1, -2))
     form = model.load.forms[:, 0, 0, : model.mass.shape[-1]]
-    return _Scalar(coefficients.swapaxes(-1, -2), (form[:, None, :] @ at_rest)[:, 0], scale)
+    return _ScalarEquation(coefficients.swapaxes(-1, -2), (form[:, None, :] @ at_rest)[:, 0], scale)
 
 
 def _dynamic_stiffness(model: ReducedModel, s: ComplexArray) -> ComplexArray:
@@ -108,7 +110,7 @@ def _dynamic_stiffness(model: ReducedModel, s: ComplexArray) -> ComplexArray:
     return np.asarray(model.mass[:, None] * laplace**2 + model.damping[:, None] * laplace + model.stiffness[:, None])
 
 
-def _reader(model: ReducedModel, wind_speed: FloatArray, s: ComplexArray) -> ComplexArray:
+def _angle_rows(model: ReducedModel, wind_speed: FloatArray, s: ComplexArray) -> ComplexArray:
     """Return the row r(s) with alpha' = r(s) q, eq. (A16): (members, points, 3)."""
     m = model.mass.shape[-1]
     form = model.load.forms[:, None, 0, 0]
@@ -133,13 +135,13 @@ def _gains(alpha: FloatArray, angle: FloatArray) -> FloatArray:
     return np.stack([np.ones_like(alpha), 2.0 * alpha, 3.0 * alpha**2 + 0.75 * angle**2], axis=-1)
 
 
-def _even_part(scalar: _Scalar, member: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _even_part(equation: _ScalarEquation, member: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the even part of the polynomial at both roots w^2 of its odd part, and those roots: (..., 2) each."""
     if compiled.AVAILABLE:
-        return compiled.even_part(scalar.polynomials, scalar.static, member, angle)
-    gains = _gains(_mean_angle(scalar.static[member], angle), angle)
+        return compiled.even_part(equation.polynomials, equation.static, member, angle)
+    gains = _gains(_mean_angle(equation.static[member], angle), angle)
     factors = np.concatenate([np.ones((*angle.shape, 1)), -gains], axis=-1)
-    p = (factors[..., None, :] @ scalar.polynomials[member])[..., 0, :]
+    p = (factors[..., None, :] @ equation.polynomials[member])[..., 0, :]
     discriminant = p[..., 3] ** 2 - 4.0 * p[..., 5] * p[..., 1]
     root = np.sqrt(np.where(discriminant >= 0.0, discriminant, np.nan))
     far = p[..., 3] + np.copysign(root, p[..., 3])
@@ -150,23 +152,25 @@ def _even_part(scalar: _Scalar, member: IntArray, angle: FloatArray) -> tuple[Fl
     return even, square
 
 
-def _branch(scalar: _Scalar, member: IntArray, root: IntArray, angle: FloatArray) -> FloatArray:
+def _even_part_at_root(equation: _ScalarEquation, member: IntArray, root: IntArray, angle: FloatArray) -> FloatArray:
     """Return the even part at one of the two roots of the odd part: (brackets,)."""
-    return np.asarray(_even_part(scalar, member, angle)[0][np.arange(member.size), root])
+    return np.asarray(_even_part(equation, member, angle)[0][np.arange(member.size), root])
 
 
-def _real_part(
-    scalar: _Scalar, member: IntArray, root: IntArray, left: FloatArray, right: FloatArray
+def _cut_to_real_roots(
+    equation: _ScalarEquation, member: IntArray, root: IntArray, left: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Cut each cell to where the root of the odd part is real and positive: pairs of roots may be born inside."""
-    known = [np.isfinite(_branch(scalar, member, root, end)) for end in (left, right)]
-    low, high = _bisected(
-        lambda middle: np.isfinite(_branch(scalar, member, root, middle)) == known[0], left.copy(), right.copy()
+    known = [np.isfinite(_even_part_at_root(equation, member, root, end)) for end in (left, right)]
+    low, high = _bisect(
+        lambda middle: np.isfinite(_even_part_at_root(equation, member, root, middle)) == known[0],
+        left.copy(),
+        right.copy(),
     )
     return np.where(known[0], left, high), np.where(known[1], right, low)
 
 
-def _bisected(
+def _bisect(
     like_left: Callable[[FloatArray], BoolArray], left: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Halve brackets; cells of the grid are a third of the angle wide, so that 14 times leave 2e-5 of it."""
@@ -177,17 +181,17 @@ def _bisected(
     return left, right
 
 
-def _cycles(
+def _cycles_at_roots(
     model: ReducedModel,
     wind_speed: FloatArray,
-    scalar: _Scalar,
+    equation: _ScalarEquation,
     member: IntArray,
     root: IntArray,
     angle: FloatArray,
 ) -> FirstHarmonic:
-    _, square = _even_part(scalar, member, angle)
-    frequency = np.sqrt(square[np.arange(member.size), root]) * scalar.scale[member]
-    alpha = _mean_angle(scalar.static[member], angle)
+    _, square = _even_part(equation, member, angle)
+    frequency = np.sqrt(square[np.arange(member.size), root]) * equation.scale[member]
+    alpha = _mean_angle(equation.static[member], angle)
     vectors = wind_speed[member, None, None] ** 2 * model.load.table[member, 0].swapaxes(-1, -2)
     gain = (_gains(alpha, angle)[:, None] @ vectors)[:, 0]
     dynamic = _dynamic_stiffness(take(model, member), _complex(1j * frequency[:, None]))[:, 0]
@@ -223,18 +227,18 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     m = model.mass.shape[-1]
     weight = 1.0 / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
     frequency = values.imag[member, mode]
-    shape = _complex(_modes(matrices[member], values[member, mode]) * weight)
+    shape = _complex(_unstable_modes(matrices[member], values[member, mode]) * weight)
     linear, cubic = _work(take(model, member), wind_speed[member], frequency, shape)
     grows = (linear > 0.0) & (cubic < 0.0)
     size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
-    chosen = np.flatnonzero(grows)
-    amplitude = _complex(size[chosen, None] * shape[chosen])
-    none = np.full(chosen.size, np.nan)
-    return FirstHarmonic(member[chosen], frequency[chosen], none, np.zeros((chosen.size, m)), amplitude)
+    growing = np.flatnonzero(grows)
+    amplitude = _complex(size[growing, None] * shape[growing])
+    none = np.full(growing.size, np.nan)
+    return FirstHarmonic(member[growing], frequency[growing], none, np.zeros((growing.size, m)), amplitude)
 
 
-def _modes(matrices: FloatArray, values: ComplexArray) -> ComplexArray:
-    """Return the co-ordinates of unit length of the eigenvectors to eigenvalues (k,) of matrices (k, 2 m, 2 m): (k, m).
+def _unstable_modes(matrices: FloatArray, values: ComplexArray) -> ComplexArray:
+    """Return the coordinates of unit length of the eigenvectors to eigenvalues (k,) of matrices (k, 2 m, 2 m): (k, m).
 
     Of y' = A y with y = (q, q'), by two steps of inverse iteration beside each eigenvalue, exact enough for a guess.
     """

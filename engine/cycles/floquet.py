@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
-from engine.cycles.harmonic_balance import Orbits, basis, fourier, pick, states
+from engine.cycles.harmonic_balance import Orbits, basis, fourier, select, states
 from engine.kernels import compiled
 from engine.models.aerodynamic_load import force_gradient
 from engine.models.reduced_model import ReducedModel, take
@@ -58,10 +58,10 @@ def floquet(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int
     values = np.take_along_axis(values, order, axis=-1)
     error = np.abs(values[:, 0] - 1.0)
     largest = np.abs(values[:, 1:]).max(axis=-1, initial=0.0)
-    return Floquet(values, error, judged(largest, error))
+    return Floquet(values, error, stability_verdicts(largest, error))
 
 
-def judged(largest: FloatArray, error: FloatArray) -> ObjectArray:
+def stability_verdicts(largest: FloatArray, error: FloatArray) -> ObjectArray:
     """Judge by the largest modulus of the other multipliers: what the error does not decide is unknown."""
     margin = np.maximum(3.0 * error, 1e-7)
     verdicts = np.array([Stability.UNKNOWN, Stability.STABLE, Stability.UNSTABLE], dtype=np.object_)
@@ -84,7 +84,7 @@ def monodromy(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: i
         block = max(1, BLOCK_NUMBERS // (count * size**2))
         for first in range(0, here.size, block):
             some = here[first : first + block]
-            matrices[some] = _product_over_period(take(model, member[some]), pick(orbits, some), count)
+            matrices[some] = _product_over_period(take(model, member[some]), select(orbits, some), count)
     return matrices
 
 
@@ -94,8 +94,8 @@ def _compiled_products(
     """Return the products of all steps over one period, NaN where there are none."""
     harmonics = orbits.coefficients.shape[-1] // 2
     counts = np.unique(np.append(steps, 0))
-    made = [_gauss_basis(count, harmonics) for count in counts.tolist()]
-    values, slopes = (np.concatenate(parts) for parts in zip(*made, strict=True))
+    bases = [_gauss_basis(count, harmonics) for count in counts.tolist()]
+    values, slopes = (np.concatenate(parts) for parts in zip(*bases, strict=True))
     first = (np.cumsum(2 * counts) - 2 * counts)[np.searchsorted(counts, steps)]
     motion = (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
     return compiled.products_over_period(model, (member, inverse, *motion), (values, slopes), (steps, first))
@@ -109,13 +109,13 @@ def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> Flo
     width = 2.0 * np.pi / steps
     with np.errstate(over="ignore", invalid="ignore"):
         first, second = (
-            generator(model, states(orbits, tau), orbits.angular_frequency, orbits.wind_speed)
+            state_matrix(model, states(orbits, tau), orbits.angular_frequency, orbits.wind_speed)
             for tau in gauss_phases(steps)
         )
-        return ordered_product(transfers(first, second, width))
+        return ordered_product(step_maps(first, second, width))
 
 
-def transfers(first: FloatArray, second: FloatArray, width: float) -> FloatArray:
+def step_maps(first: FloatArray, second: FloatArray, width: float) -> FloatArray:
     """Return the maps over steps of this width from the generators at their two Gauss points, all (..., n, n)."""
     commutator = second @ first - first @ second
     return _exponential(0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator)
@@ -141,7 +141,7 @@ def steps_needed(square: FloatArray, angular_frequency: FloatArray) -> IntArray:
     return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, FEWEST_STEPS, 2 * MOST_STEPS))), dtype=np.intp)
 
 
-def generator(
+def state_matrix(
     model: ReducedModel, state: FloatArray, angular_frequency: FloatArray, wind_speed: FloatArray
 ) -> FloatArray:
     """Return A of y' = A y, y = (q, dq/dtau), about states (cycles, samples, 2 m): (cycles, samples, 2 m, 2 m)."""

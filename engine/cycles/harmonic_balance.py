@@ -1,6 +1,6 @@
 """Harmonic balance of the reduced models: periodic solutions with H harmonics. Theory section 7.2.
 
-Co-efficients of each co-ordinate stand in the order mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The load is a
+Coefficients of each coordinate stand in the order mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The load is a
 cubic polynomial of (q, q'/U), so 4 H + 2 samples in time give its first H harmonics without aliasing.
 """
 
@@ -9,11 +9,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray, merged
+from engine.arrays import FloatArray, IntArray, merge_axes
 from engine.kernels import compiled
 from engine.models.aerodynamic_load import force, force_gradient
 from engine.models.reduced_model import ReducedModel, take
-from engine.numerics.newton import Options, Solution, newton
+from engine.numerics.newton import NewtonOptions, Solution, newton
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,31 +67,31 @@ def fourier(tau: FloatArray, harmonics: int) -> FloatArray:
 def states(orbits: Orbits, tau: FloatArray) -> FloatArray:
     """Return (q, q'/U) at phases tau (samples,): (cycles, samples, 2 m)."""
     harmonics = orbits.coefficients.shape[-1] // 2
-    made = basis(harmonics)
+    fourier_basis = basis(harmonics)
     values = fourier(tau, harmonics)
     rate = (orbits.angular_frequency / orbits.wind_speed)[:, None, None]
     q = orbits.coefficients @ values.T
-    velocity = rate * (orbits.coefficients @ (values @ made.derivative).T)
+    velocity = rate * (orbits.coefficients @ (values @ fourier_basis.derivative).T)
     return np.concatenate([q, velocity], axis=1).swapaxes(-1, -2)
 
 
 def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
     """Return the harmonics of M q'' + C q' + K q - U^2 f: (cycles, m, 2 H + 1), generalized force."""
-    made = basis(orbits.coefficients.shape[-1] // 2)
-    load = force(model.load, _sampled(orbits, made))
+    fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
+    load = force(model.load, _sampled(orbits, fourier_basis))
     square = orbits.wind_speed[:, None, None] ** 2
-    return _linear_part(model, orbits, made) - square * (made.projection @ load).swapaxes(-1, -2)
+    return _linear_part(model, orbits, fourier_basis) - square * (fourier_basis.projection @ load).swapaxes(-1, -2)
 
 
 def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     """Differentiate the residual by the coefficients and by w: (cycles, m (2 H + 1), m (2 H + 1) + 1).
 
-    Each block of two co-ordinates is linear in M_ij, C_ij, K_ij and the samples of the load's gradient, so one product
+    Each block of two coordinates is linear in M_ij, C_ij, K_ij and the samples of the load's gradient, so one product
     with a constant matrix makes all blocks.
     """
-    made = basis(orbits.coefficients.shape[-1] // 2)
+    fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
     cycles, m, size = orbits.coefficients.shape
-    gradient = force_gradient(model.load, _sampled(orbits, made))
+    gradient = force_gradient(model.load, _sampled(orbits, fourier_basis))
     omega = orbits.angular_frequency[:, None, None]
     speed = orbits.wind_speed[:, None, None]
     samples = np.moveaxis(gradient, 1, -1)
@@ -100,25 +100,27 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     flat = np.concatenate(parts, axis=-1).reshape(cycles * m * m, -1 if cycles else 0)
     blocks = (flat @ _block_basis(size // 2)).reshape(cycles, m, m, size, size)
     by_coefficients = blocks.swapaxes(2, 3).reshape(cycles, m * size, m * size)
-    slope = orbits.coefficients @ made.derivative.T
-    by_omega = 2.0 * omega * model.mass @ (slope @ made.derivative.T) + model.damping @ slope
-    velocity = (orbits.coefficients @ made.slopes.T).swapaxes(-1, -2)[..., None] * speed[..., None]
-    by_omega -= (made.projection @ (gradient[..., m:] @ velocity)[..., 0]).swapaxes(-1, -2)
-    return np.concatenate([by_coefficients, merged(by_omega, -2)[..., None]], axis=-1)
+    slope = orbits.coefficients @ fourier_basis.derivative.T
+    by_omega = 2.0 * omega * model.mass @ (slope @ fourier_basis.derivative.T) + model.damping @ slope
+    velocity = (orbits.coefficients @ fourier_basis.slopes.T).swapaxes(-1, -2)[..., None] * speed[..., None]
+    by_omega -= (fourier_basis.projection @ (gradient[..., m:] @ velocity)[..., 0]).swapaxes(-1, -2)
+    return np.concatenate([by_coefficients, merge_axes(by_omega, -2)[..., None]], axis=-1)
 
 
 def wind_slopes(model: ReducedModel, orbits: Orbits) -> FloatArray:
-    """Differentiate the residual by the wind speed, the co-ordinates held: (cycles, m, 2 H + 1)."""
-    made = basis(orbits.coefficients.shape[-1] // 2)
+    """Differentiate the residual by the wind speed, the coordinates held: (cycles, m, 2 H + 1)."""
+    fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
     m = model.mass.shape[-1]
-    state = _sampled(orbits, made)
+    state = _sampled(orbits, fourier_basis)
     speed = orbits.wind_speed[:, None, None]
     by_rate = (force_gradient(model.load, state)[..., m:] @ state[..., m:, None])[..., 0]
-    return np.asarray((made.projection @ (speed * by_rate - 2.0 * speed * force(model.load, state))).swapaxes(-1, -2))
+    return np.asarray(
+        (fourier_basis.projection @ (speed * by_rate - 2.0 * speed * force(model.load, state))).swapaxes(-1, -2)
+    )
 
 
 def balance(
-    model: ReducedModel, member: IntArray, start: Orbits, options: Options | None = None
+    model: ReducedModel, member: IntArray, start: Orbits, options: NewtonOptions | None = None
 ) -> tuple[Orbits, Solution]:
     """Solve the harmonic balance from many starts at once.
 
@@ -130,7 +132,7 @@ def balance(
         The model of each start.
     start : Orbits
         The phase of each solution is that of its start: <q - q_start, dq_start/dtau> = 0 in the mass.
-    options : Options, optional
+    options : NewtonOptions, optional
 
     Returns
     -------
@@ -141,23 +143,23 @@ def balance(
     """
     _, m, size = start.coefficients.shape
     weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
-    given = merged(start.coefficients, -2)
-    reference = merged(weight[..., None] ** 2 * (start.coefficients @ basis(size // 2).derivative.T), -2)
+    start_coefficients = merge_axes(start.coefficients, -2)
+    reference = merge_axes(weight[..., None] ** 2 * (start.coefficients @ basis(size // 2).derivative.T), -2)
     norm = np.sqrt(np.einsum("cms,cm->c", start.coefficients**2, weight**2))
     scale = np.repeat(norm[:, None] / weight, size, axis=-1) / np.sqrt(m * size)
     scale = np.concatenate([scale, start.angular_frequency[:, None] / np.sqrt(m * size)], axis=-1)
-    x = np.concatenate([given, start.angular_frequency[:, None]], axis=-1)
+    x = np.concatenate([start_coefficients, start.angular_frequency[:, None]], axis=-1)
 
     def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
         here = take(model, member[active])
         orbits = _unpacked(x, m, start.wind_speed[active])
-        rows = merged(residual(here, orbits), -2)
-        drift = np.einsum("cx,cx->c", reference[active], x[:, :-1] - given[active])
+        rows = merge_axes(residual(here, orbits), -2)
+        drift = np.einsum("cx,cx->c", reference[active], x[:, :-1] - start_coefficients[active])
         phase = np.concatenate([reference[active], np.zeros((active.size, 1))], axis=-1)
         matrix = np.concatenate([jacobian(here, orbits), phase[:, None]], axis=1)
         return np.concatenate([rows, drift[:, None]], axis=-1), matrix
 
-    options = options or Options()
+    options = options or NewtonOptions()
     if compiled.AVAILABLE:
         solution = compiled.solved_balances(model, member, start.wind_speed, reference, (x, scale, options))
     else:
@@ -178,11 +180,11 @@ def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[F
             model, member, (orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
         )
     here = take(model, member)
-    by_wind = merged(wind_slopes(here, orbits), -2)[..., None]
-    return merged(residual(here, orbits), -2), np.concatenate([jacobian(here, orbits), by_wind], axis=-1)
+    by_wind = merge_axes(wind_slopes(here, orbits), -2)[..., None]
+    return merge_axes(residual(here, orbits), -2), np.concatenate([jacobian(here, orbits), by_wind], axis=-1)
 
 
-def whole_size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
+def total_size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
     """Return the root of sum M_ii |q_i|^2 over coefficients (cycles, m, 2 H + 1), the mean among them: (cycles,)."""
     weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
     return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
@@ -194,7 +196,7 @@ def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> F
     return np.asarray(np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight)))
 
 
-def first_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+def first_harmonic_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
     """Return the largest amplitude along the span of the angle of attack in the first harmonic: (k,) [rad]."""
     forms = model.load.angle[member]
     m = orbits.coefficients.shape[1]
@@ -215,7 +217,7 @@ def resized(orbits: Orbits, harmonics: int) -> Orbits:
     return Orbits(padded, orbits.angular_frequency, orbits.wind_speed)
 
 
-def pick(orbits: Orbits, index: IntArray) -> Orbits:
+def select(orbits: Orbits, index: IntArray) -> Orbits:
     """Pick or repeat orbits of a stack."""
     return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
 
@@ -245,23 +247,25 @@ def _peak(values: FloatArray) -> FloatArray:
 @lru_cache
 def _block_basis(harmonics: int) -> FloatArray:
     """Return the blocks of the Jacobian per unit of w^2 M, w C, K and of each sample of the gradient, flattened."""
-    made = basis(harmonics)
-    linear = np.stack([made.derivative @ made.derivative, made.derivative, np.eye(2 * harmonics + 1)])
-    by_value = np.einsum("as,sb->sab", made.projection, made.values)
-    by_slope = np.einsum("as,sb->sab", made.projection, made.slopes)
-    return merged(np.concatenate([linear, by_value, by_slope]), -2)
+    fourier_basis = basis(harmonics)
+    linear = np.stack(
+        [fourier_basis.derivative @ fourier_basis.derivative, fourier_basis.derivative, np.eye(2 * harmonics + 1)]
+    )
+    by_value = np.einsum("as,sb->sab", fourier_basis.projection, fourier_basis.values)
+    by_slope = np.einsum("as,sb->sab", fourier_basis.projection, fourier_basis.slopes)
+    return merge_axes(np.concatenate([linear, by_value, by_slope]), -2)
 
 
-def _sampled(orbits: Orbits, made: Basis) -> FloatArray:
+def _sampled(orbits: Orbits, fourier_basis: Basis) -> FloatArray:
     rate = (orbits.angular_frequency / orbits.wind_speed)[:, None, None]
-    q = orbits.coefficients @ made.values.T
-    return np.concatenate([q, rate * (orbits.coefficients @ made.slopes.T)], axis=1).swapaxes(-1, -2)
+    q = orbits.coefficients @ fourier_basis.values.T
+    return np.concatenate([q, rate * (orbits.coefficients @ fourier_basis.slopes.T)], axis=1).swapaxes(-1, -2)
 
 
-def _linear_part(model: ReducedModel, orbits: Orbits, made: Basis) -> FloatArray:
+def _linear_part(model: ReducedModel, orbits: Orbits, fourier_basis: Basis) -> FloatArray:
     omega = orbits.angular_frequency[:, None, None]
-    slope = orbits.coefficients @ made.derivative.T
-    bend = slope @ made.derivative.T
+    slope = orbits.coefficients @ fourier_basis.derivative.T
+    bend = slope @ fourier_basis.derivative.T
     result = omega**2 * model.mass @ bend + omega * model.damping @ slope + model.stiffness @ orbits.coefficients
     return np.asarray(result)
 

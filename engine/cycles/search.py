@@ -9,19 +9,28 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.cycles.branches import SLOWEST, Traces, at_winds, reaches, traced_from_cycles, traced_from_hopf
-from engine.cycles.families import CycleFamily, Starts
+from engine.cycles.branches import (
+    SLOWEST,
+    BranchSet,
+    ends_at_hopf_points,
+    follow_from_cycles,
+    follow_from_hopf_points,
+    guessed_cycles,
+)
 from engine.cycles.first_harmonic import FirstHarmonic, energy_balance_cycles, explicit_cycles
 from engine.cycles.floquet import Floquet, floquet
-from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, pick, resized
+from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
+from engine.cycles.known_cycles import KnownCycles, Starts
 from engine.models.critical_wind_speeds import Crossings
 from engine.models.reduced_model import ReducedModel, lowest_frequency, take
 from engine.result import FoundBy
 
-TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which more effort is taken
+LARGEST_TAIL = (
+    1e-4  # share of the last harmonics, or relative error of the multipliers, above which more effort is taken
+)
 SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
 MOST_HARMONICS = 12
-FINENESS = 4  # times the steps of the Floquet integration for cycles that need more harmonics
+STEP_FACTOR = 4  # times the steps of the Floquet integration for cycles that need more harmonics
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +50,7 @@ class Cycles:
     orbits: Orbits
     floquet: Floquet
     dropped: IntArray
-    traces: tuple[Traces, ...]
+    branch_sets: tuple[BranchSet, ...]
     followed: IntArray
     found_by: tuple[FoundBy, ...]
     harmonics: IntArray
@@ -49,14 +58,14 @@ class Cycles:
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
     """Guess cycles of every unstable mode at every wind speed by the balance of energy."""
-    member, wind = _grid(model, wind_speeds)
+    member, wind = _grid_points(model, wind_speeds)
     guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
 def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
     """Take the explicit cycles of the published closure as guesses, for members that are statically stable."""
-    member, wind = _grid(published, wind_speeds)
+    member, wind = _grid_points(published, wind_speeds)
     guess = explicit_cycles(take(published, member), wind_speeds[wind])
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
@@ -91,49 +100,49 @@ def find_cycles(
     Cycles
         Sorted by member, wind speed and branch.
     """
-    family = CycleFamily(model)
+    known = KnownCycles(model)
     if wind_speeds.size == 0:
-        return _judged(model, family, ())
-    traces = _from_hopf(model, crossings, wind_speeds, harmonics)
-    for trace in traces:
-        _cover(family, trace, wind_speeds, "hopf_branch")
-    family.add(*solved_starts(model, family.unlike_known(starts)), "explicit")
-    family.add(
-        *solved_starts(model, family.unlike_known(energy_starts(model, wind_speeds, harmonics))), "energy_balance"
-    )
+        return _sorted_cycles(model, known, ())
+    branch_sets = _branches_from_hopf_points(model, crossings, wind_speeds, harmonics)
+    for branch_set in branch_sets:
+        _add_cycles_on(known, branch_set, wind_speeds, "hopf_branch")
+    known.add(*solve_starts(model, known.new_starts(starts)), "explicit")
+    known.add(*solve_starts(model, known.new_starts(energy_starts(model, wind_speeds, harmonics))), "energy_balance")
     if integrated is not None:
-        family.add(*solved_starts(model, integrated), "direct_integration")
-    while (apart := family.apart()).size:
-        member, _ = family.places(apart)
-        trace = traced_from_cycles(model, member, family.orbits_of(apart), wind_speeds)
-        family.join(_cover(family, trace, wind_speeds, "branch"), np.tile(apart, 2))
-        traces.append(trace)
-    return _judged(model, family, tuple(traces))
+        known.add(*solve_starts(model, integrated), "direct_integration")
+    while (unfollowed := known.unfollowed()).size:
+        member, _ = known.locations(unfollowed)
+        branch_set = follow_from_cycles(model, member, known.orbits(unfollowed), wind_speeds)
+        known.link(_add_cycles_on(known, branch_set, wind_speeds, "branch"), np.tile(unfollowed, 2))
+        branch_sets.append(branch_set)
+    return _sorted_cycles(model, known, tuple(branch_sets))
 
 
-def _from_hopf(model: ReducedModel, crossings: Crossings, winds: FloatArray, harmonics: int) -> list[Traces]:
+def _branches_from_hopf_points(
+    model: ReducedModel, crossings: Crossings, winds: FloatArray, harmonics: int
+) -> list[BranchSet]:
     """Follow the branches of all onsets, then of the Hopf points at which none of those ended."""
     onset = np.flatnonzero(crossings.oscillation & crossings.onset)
-    first = traced_from_hopf(model, crossings, onset, harmonics, winds)
-    rest = np.flatnonzero(crossings.oscillation & ~crossings.onset)
-    same = first.problem.member[:, None] == crossings.member[rest]
-    unreached = rest[~(same & reaches(first, crossings, rest)).any(axis=0)]
+    first = follow_from_hopf_points(model, crossings, onset, harmonics, winds)
+    restabilizations = np.flatnonzero(crossings.oscillation & ~crossings.onset)
+    same = first.problem.member[:, None] == crossings.member[restabilizations]
+    unreached = restabilizations[~(same & ends_at_hopf_points(first, crossings, restabilizations)).any(axis=0)]
     if not unreached.size:
         return [first]
-    return [first, traced_from_hopf(model, crossings, unreached, harmonics, winds)]
+    return [first, follow_from_hopf_points(model, crossings, unreached, harmonics, winds)]
 
 
-def _cover(family: CycleFamily, trace: Traces, winds: FloatArray, found_by: FoundBy) -> IntArray:
+def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray, found_by: FoundBy) -> IntArray:
     """Solve for the cycles at the wind speeds that followed branches pass; return the numbers of these branches."""
-    followed = family.follow(trace.problem.member, trace.born)
-    branch, wind, orbits = at_winds(trace, winds)
-    starts, good = solved_starts(trace.problem.model, Starts(trace.problem.member[branch], wind, orbits))
-    numbers = family.add(starts, good, found_by)
-    family.join(followed[branch[good]], numbers[good])
+    followed = known.add_branches(branch_set.problem.member, branch_set.hopf_wind_speed)
+    branch, wind, orbits = guessed_cycles(branch_set, winds)
+    starts, good = solve_starts(branch_set.problem.model, Starts(branch_set.problem.member[branch], wind, orbits))
+    numbers = known.add(starts, good, found_by)
+    known.link(followed[branch[good]], numbers[good])
     return followed
 
 
-def _grid(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
+def _grid_points(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
     usable = np.flatnonzero(~model.statically_unstable)
     return np.repeat(usable, wind_speeds.size), np.tile(np.arange(wind_speeds.size), usable.size)
 
@@ -151,7 +160,7 @@ def _starts(
     return Starts(member[guess.member], wind[guess.member], resized(orbits, harmonics))
 
 
-def solved_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
+def solve_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
     """Balance all starts at members of a stack of models and tell which ended on a cycle."""
     orbits, solution = balance(model, starts.member, starts.orbits)
     before = oscillation_size(model, starts.member, starts.orbits)
@@ -161,32 +170,36 @@ def solved_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArra
     return Starts(starts.member, starts.wind, orbits), good
 
 
-def _judged(model: ReducedModel, family: CycleFamily, traces: tuple[Traces, ...]) -> Cycles:
+def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[BranchSet, ...]) -> Cycles:
     """Judge the stability of all cycles and sort them."""
-    if not len(family):
-        return _nothing(model, traces, family.branches()[1])
-    everything = np.arange(len(family))
-    member, wind = family.places(everything)
-    orbits = family.orbits_of(everything)
-    orbits, judged, kept, harmonics = judged_orbits(model, member, orbits)
-    (branch, followed), found_by = family.branches(), family.found_by
-    order = np.flatnonzero(kept)
+    if not len(known):
+        return _no_cycles(model, branch_sets, known.families()[1])
+    every_cycle = np.arange(len(known))
+    member, wind = known.locations(every_cycle)
+    orbits = known.orbits(every_cycle)
+    orbits, floquet_result, resolved, harmonics = resolved_stability(model, member, orbits)
+    (branch, followed), found_by = known.families(), known.found_by
+    order = np.flatnonzero(resolved)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]
     return Cycles(
         member[order],
         wind[order],
         branch[order],
-        pick(orbits, order),
-        Floquet(judged.multipliers[order], judged.trivial_error[order], judged.stability[order]),
-        np.bincount(member[~kept], minlength=model.mass.shape[0]),
-        traces,
+        select(orbits, order),
+        Floquet(
+            floquet_result.multipliers[order], floquet_result.trivial_error[order], floquet_result.stability[order]
+        ),
+        np.bincount(member[~resolved], minlength=model.mass.shape[0]),
+        branch_sets,
         followed,
         tuple(found_by[i] for i in order.tolist()),
         harmonics[order],
     )
 
 
-def judged_orbits(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[Orbits, Floquet, BoolArray, IntArray]:
+def resolved_stability(
+    model: ReducedModel, member: IntArray, orbits: Orbits
+) -> tuple[Orbits, Floquet, BoolArray, IntArray]:
     """Judge the stability of cycles (k,), with more harmonics and finer steps where those taken are too few.
 
     Returns
@@ -194,15 +207,17 @@ def judged_orbits(model: ReducedModel, member: IntArray, orbits: Orbits) -> tupl
     Orbits, Floquet, (k,), (k,)
         Which of them are resolved, and the number of harmonics that each took.
     """
-    judged = floquet(model, member, orbits)
-    largest = np.abs(judged.multipliers).max(axis=-1, initial=1.0)
-    coarse = np.flatnonzero((_tail(model, member, orbits) > TAIL) | (judged.trivial_error > TAIL * largest))
-    kept = np.ones(member.size, dtype=np.bool_)
+    floquet_result = floquet(model, member, orbits)
+    largest = np.abs(floquet_result.multipliers).max(axis=-1, initial=1.0)
+    coarse = np.flatnonzero(
+        (_tail(model, member, orbits) > LARGEST_TAIL) | (floquet_result.trivial_error > LARGEST_TAIL * largest)
+    )
+    resolved = np.ones(member.size, dtype=np.bool_)
     harmonics = np.full(member.size, orbits.coefficients.shape[-1] // 2)
     if coarse.size:
-        orbits, judged, kept[coarse] = _refined(model, member, orbits, judged, coarse)
+        orbits, floquet_result, resolved[coarse] = _refined(model, member, orbits, floquet_result, coarse)
         harmonics[coarse] = orbits.coefficients.shape[-1] // 2
-    return orbits, judged, kept, harmonics
+    return orbits, floquet_result, resolved, harmonics
 
 
 def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
@@ -214,27 +229,31 @@ def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
 
 
 def _refined(
-    model: ReducedModel, member: IntArray, orbits: Orbits, judged: Floquet, coarse: IntArray
+    model: ReducedModel, member: IntArray, orbits: Orbits, floquet_result: Floquet, coarse: IntArray
 ) -> tuple[Orbits, Floquet, BoolArray]:
     """Balance some cycles again with more harmonics, judge them anew, and tell which of them that resolved."""
     harmonics = max(MOST_HARMONICS, orbits.coefficients.shape[-1] // 2)
-    finer, solution = balance(model, member[coarse], resized(pick(orbits, coarse), harmonics))
-    again = floquet(model, member[coarse], finer, FINENESS)
+    finer, solution = balance(model, member[coarse], resized(select(orbits, coarse), harmonics))
+    finer_result = floquet(model, member[coarse], finer, STEP_FACTOR)
     orbits = resized(orbits, harmonics)
     orbits.coefficients[coarse] = finer.coefficients
-    frequency, multipliers = orbits.angular_frequency.copy(), judged.multipliers.copy()
-    error, stability = judged.trivial_error.copy(), judged.stability.copy()
-    frequency[coarse], multipliers[coarse] = finer.angular_frequency, again.multipliers
-    error[coarse], stability[coarse] = again.trivial_error, again.stability
-    resolved = solution.converged & (_tail(model, member[coarse], finer) <= TAIL)
-    return Orbits(orbits.coefficients, frequency, orbits.wind_speed), Floquet(multipliers, error, stability), resolved
+    frequency, multipliers = orbits.angular_frequency.copy(), floquet_result.multipliers.copy()
+    error, stability = floquet_result.trivial_error.copy(), floquet_result.stability.copy()
+    frequency[coarse], multipliers[coarse] = finer.angular_frequency, finer_result.multipliers
+    error[coarse], stability[coarse] = finer_result.trivial_error, finer_result.stability
+    resolved_again = solution.converged & (_tail(model, member[coarse], finer) <= LARGEST_TAIL)
+    return (
+        Orbits(orbits.coefficients, frequency, orbits.wind_speed),
+        Floquet(multipliers, error, stability),
+        resolved_again,
+    )
 
 
-def _nothing(model: ReducedModel, traces: tuple[Traces, ...], followed: IntArray) -> Cycles:
+def _no_cycles(model: ReducedModel, branch_sets: tuple[BranchSet, ...], followed: IntArray) -> Cycles:
     m = model.mass.shape[-1]
     none = np.zeros(0, dtype=np.intp)
     empty = np.zeros(0)
-    judged = Floquet(np.zeros((0, 2 * m), dtype=np.complex128), empty, np.zeros(0, dtype=np.object_))
+    floquet_result = Floquet(np.zeros((0, 2 * m), dtype=np.complex128), empty, np.zeros(0, dtype=np.object_))
     orbits = Orbits(np.zeros((0, m, 3)), empty, empty)
     dropped = np.zeros(model.mass.shape[0], dtype=np.intp)
-    return Cycles(none, none, none, orbits, judged, dropped, traces, followed, (), none)
+    return Cycles(none, none, none, orbits, floquet_result, dropped, branch_sets, followed, (), none)

@@ -182,7 +182,7 @@ static void transform_all(System *w)
     }
 }
 
-/* First entry of the block of equation i and co-ordinate j. */
+/* First entry of the block of equation i and coordinate j. */
 static double *block_of(const System *w, int i, int j)
 {
     return w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride + w->place[j * w->size];
@@ -199,7 +199,7 @@ WITHIN void subtract_pairs(double *entries, Lanes x, Lanes y)
     }
 }
 
-/* Subtract U^2 P diag(df/dq) V + U w P diag(df/d(q'/U)) V D from the block of equation i and co-ordinate j, with V the
+/* Subtract U^2 P diag(df/dq) V + U w P diag(df/d(q'/U)) V D from the block of equation i and coordinate j, with V the
  * basis at the samples, P its projection and D its derivative: with E and O the even and the odd spectrum,
  * cos a cos b gives E(b - a) + E(a + b), cos a sin b gives O(a + b) + O(b - a), and so on. */
 WIDE static void subtract_load_block(System *w, int i, int j, double speed, double omega)
@@ -227,7 +227,7 @@ WIDE static void subtract_load_block(System *w, int i, int j, double speed, doub
     }
 }
 
-/* Add K - a^2 w^2 M and a w C to the block of equation i and co-ordinate j. */
+/* Add K - a^2 w^2 M and a w C to the block of equation i and coordinate j. */
 static void add_linear_block(System *w, const Model *model, int i, int j, double omega)
 {
     const int at = i * w->m + j;
@@ -244,7 +244,7 @@ static void add_linear_block(System *w, const Model *model, int i, int j, double
     }
 }
 
-/* Add the linear terms of co-ordinate j to the residual of equation i and to its slope by w. */
+/* Add the linear terms of coordinate j to the residual of equation i and to its slope by w. */
 static void add_motion(System *w, const Model *model, int i, int j, const double *x)
 {
     const int at = i * w->m + j;

@@ -8,7 +8,7 @@ typedef struct {
     int m, harmonics, size, balances, unknowns, stride, samples, groups;  /* balances = m (2 H + 1) */
     int waves_kept;      /* cos k tau for k = 0 ... 2 H, padded to whole Lanes, then sin k tau likewise */
     int orders;          /* of one spectrum: k = -H ... 2 H, padded, of cos k tau, then of sin k tau */
-    int *place;          /* (unknowns), where each stands in the system: idle co-ordinates first */
+    int *place;          /* (unknowns), where each stands in the system: idle coordinates first */
     int *active;         /* (2 m), whether the load depends on this component of (q, q'/U) */
     double *waves;       /* (samples / 2 + 1, 2 waves_kept), cos and sin of k tau over the number of samples */
     double *folded;      /* (2, samples / 2 + 1), sums and differences of the samples at tau and -tau of one row */
@@ -38,7 +38,7 @@ static inline const double *spectrum(const System *w, int row) { return w->spect
 int prepare_system(System *w, const Model *model, int harmonics, int besides);
 void release_system(System *w);
 
-/* Put those co-ordinates first on which the load does not depend: their columns are nearly empty. */
+/* Put those coordinates first on which the load does not depend: their columns are nearly empty. */
 void arrange_system(System *w, const Model *model);
 
 /* Fill the rows of the balance at x with its slopes by the coefficients, by w and, if it is unknown, by U, and with the

@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.arrays import AnyArray, FloatArray, IntArray
 from engine.models.reduced_model import ReducedModel
-from engine.numerics.newton import Options, Solution, solution
+from engine.numerics.newton import NewtonOptions, Solution, solution_from_steps
 
 try:
     from engine.kernels._kernels import even_parts, flows, linearization, monodromies, newton
@@ -22,7 +22,7 @@ def solved_balances(
     member: IntArray,
     wind_speed: FloatArray,
     phase: FloatArray,
-    guess: tuple[FloatArray, FloatArray, Options],
+    guess: tuple[FloatArray, FloatArray, NewtonOptions],
 ) -> Solution:
     """Solve harmonic balances by Newton's method as `engine.numerics.newton.newton` would.
 
@@ -51,7 +51,7 @@ def followed_balances(
     member: IntArray,
     phase: tuple[FloatArray, FloatArray],
     condition: tuple[FloatArray, FloatArray],
-    guess: tuple[FloatArray, FloatArray, Options],
+    guess: tuple[FloatArray, FloatArray, NewtonOptions],
 ) -> tuple[Solution, FloatArray]:
     """Solve harmonic balances with the wind speed as one more unknown and one more linear condition.
 
@@ -80,7 +80,7 @@ def followed_balances(
 
 
 def _newton(
-    model: ReducedModel, cycles: tuple[AnyArray, ...], guess: tuple[FloatArray, FloatArray], options: Options
+    model: ReducedModel, cycles: tuple[AnyArray, ...], guess: tuple[FloatArray, FloatArray], options: NewtonOptions
 ) -> Solution:
     start, tangent = guess
     x = np.array(start, order="C")
@@ -89,7 +89,7 @@ def _newton(
     limits = (options.tolerance, options.largest_step, options.iterations)
     size = (x.shape[0], harmonics, tangent.size > 0)
     newton(_parts(model), _shape(model), size, _contiguous(*cycles), limits, (x, step, iterations, tangent))
-    return solution(x, step, iterations, options)
+    return solution_from_steps(x, step, iterations, options)
 
 
 def balance_slopes(
@@ -180,7 +180,7 @@ def integrated_block(
     Parameters
     ----------
     equations : tuple of arrays
-        The fields of `engine.checks.settled_motion.Flow`.
+        The fields of `engine.checks.settled_motion.LawsonEquations`.
     state : (2 m, starts)
     window : (steps,)
 
@@ -189,8 +189,8 @@ def integrated_block(
     (2 m, starts), (2 m, starts), (starts,)
         The states at the end, the sums of their squares times the window, and the largest angle of attack [rad].
     """
-    _, bend, forms, *_ = equations
-    points, m, _, starts = bend.shape
+    _, nonlinear, forms, *_ = equations
+    points, m, _, starts = nonlinear.shape
     moved = np.array(state, order="C")
     square, largest = np.empty(moved.shape), np.empty(starts)
     size = (starts, window.size, m, points, forms.shape[1])
@@ -199,7 +199,7 @@ def integrated_block(
 
 
 def _shape(model: ReducedModel) -> tuple[int, int, int, int]:
-    """Return members, co-ordinates, points and local variables."""
+    """Return members, coordinates, points and local variables."""
     members, points, local, twice = model.load.forms.shape
     return members, twice // 2, points, local
 

@@ -22,7 +22,7 @@ PIECE_POINTS = 5  # exact to degree 9: cubic loads of quadratic shapes, times a 
 class Sections:
     """Properties at the quadrature points of each element, shape (lines, elements, points) unless said otherwise.
 
-    local is the element co-ordinate in [-1, 1] and local_weight its quadrature weight (0 on padding);
+    local is the element coordinate in [-1, 1] and local_weight its quadrature weight (0 on padding);
     mass [kg/m] and first_moment (..., 2) = m (e_y, e_z) [kg] of a sub-conductor; wind_factor phi;
     aerodynamics (..., 3, 4): rows vertical, horizontal, torsional, columns a_i0 to a_i3 of a sub-conductor.
     fitted_range (lines,): the smallest range of the fits on the line [rad], infinite where none is known; twist:
@@ -111,7 +111,7 @@ def turned_moments(made_of: Sections, twist: FloatArray) -> Sections:
 
 
 def _positions(profile: StaticProfile, local: FloatArray) -> FloatArray:
-    """Return the horizontal positions of points given by their co-ordinates in the elements [m]."""
+    """Return the horizontal positions of points given by their coordinates in the elements [m]."""
     elements = local.shape[1]
     arc = (np.arange(elements)[:, None] + 0.5 * (local + 1.0)) * (profile.arc_length[:, None, None] / elements)
     return horizontal_position(profile, arc)
@@ -133,7 +133,7 @@ def boundaries(line: Line) -> list[float]:
 
 
 def _piece_edges(lines: Sequence[Line], profile: StaticProfile, elements: int) -> FloatArray:
-    """Return the local co-ordinates of the piece boundaries, (lines, elements, pieces + 1), padded by empty pieces."""
+    """Return the local coordinates of the piece boundaries, (lines, elements, pieces + 1), padded by empty pieces."""
     marks = [np.array(boundaries(line)) for line in lines]
     most = max(m.size for m in marks)
     padded = np.stack([np.append(m, [x.span.length] * (most - m.size)) for m, x in zip(marks, lines, strict=True)])

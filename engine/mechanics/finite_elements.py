@@ -136,7 +136,7 @@ def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
 
 
 def element_nodes(profile: StaticProfile, elements: int) -> FloatArray:
-    """Return the node positions of each element, (lines, elements, 3 nodes, 3 co-ordinates)."""
+    """Return the node positions of each element, (lines, elements, 3 nodes, 3 coordinates)."""
     arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, 2 * elements + 1)
     first = 2 * np.arange(elements)[:, None] + np.arange(3)
     return coordinates(profile, arc)[:, first]

@@ -140,8 +140,8 @@ def _labelled(
     overlap = (reach / norm[..., None]) @ inverse.swapaxes(-1, -2) @ vectors
     chosen = assign(overlap**2)
     sign = np.sign(np.take_along_axis(overlap, chosen[..., None], axis=-1))
-    picked = np.take_along_axis(vectors.swapaxes(-1, -2), chosen[..., None], axis=1)
-    return (picked * sign) @ inverse, np.take_along_axis(values, chosen, axis=-1)
+    selected = np.take_along_axis(vectors.swapaxes(-1, -2), chosen[..., None], axis=1)
+    return (selected * sign) @ inverse, np.take_along_axis(values, chosen, axis=-1)
 
 
 def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: BoolArray) -> None:

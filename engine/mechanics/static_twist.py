@@ -35,11 +35,11 @@ from engine.mechanics.finite_elements import (
     turned_sums,
 )
 from engine.mechanics.static_profile import GRAVITY, StaticProfile
-from engine.numerics.newton import Options, newton
+from engine.numerics.newton import NewtonOptions, newton
 from engine.spec import Line
 
 FIRST_GUESS = 0.1  # rad at mid-span
-OPTIONS = Options(tolerance=1e-9, largest_step=0.25, iterations=100)
+OPTIONS = NewtonOptions(tolerance=1e-9, largest_step=0.25, iterations=100)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ def twisted_state(lines: Sequence[Line], profile: StaticProfile, made_of: Sectio
 
     def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
         few = [lines[i] for i in active]
-        gradient, tangent = energy_derivatives(few, _pick(profile, active), _pick(made_of, active), x)
+        gradient, tangent = energy_derivatives(few, _select(profile, active), _select(made_of, active), x)
         return np.where(held[active], 0.0, gradient), _downhill(_held(tangent, held[active]))
 
     solution = newton(system, np.where(held, 0.0, start), np.ones_like(start), OPTIONS)
@@ -229,6 +229,6 @@ def _downhill(tangent: FloatArray) -> FloatArray:
     return np.where(values[:, :1, None] > 0.0, tangent, absolute)
 
 
-def _pick(stack: Any, index: IntArray) -> Any:
+def _select(stack: Any, index: IntArray) -> Any:
     """Pick lines of a stack of profiles or sections."""
     return replace(stack, **{field.name: getattr(stack, field.name)[index] for field in fields(stack)})

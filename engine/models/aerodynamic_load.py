@@ -1,7 +1,7 @@
 """Quasi-steady aerodynamic load as cubic polynomials. Theory section 5, paper eqs. (A11)-(A19).
 
 Whatever fills it, a load is one table of monomials and coefficients that every solver reads: divided by U^2 it depends
-on the generalized co-ordinates q and on q'/U alone, so integrals along the span are taken once per line.
+on the generalized coordinates q and on q'/U alone, so integrals along the span are taken once per line.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import FloatArray, merged
+from engine.arrays import FloatArray, merge_axes
 from engine.mechanics.cross_sections import Sections
 from engine.numerics import polynomial
 from engine.spec import AerodynamicModel, Line
@@ -23,7 +23,7 @@ VERTICAL, HORIZONTAL, TORSIONAL = range(3)
 class PolynomialLoad:
     """Generalized load divided by U^2: a sum over points of cubic polynomials in linear forms of (q, q'/U).
 
-    forms: (..., points, local variables, 2 m), table: (..., points, m, monomials), for m generalized co-ordinates;
+    forms: (..., points, local variables, 2 m), table: (..., points, m, monomials), for m generalized coordinates;
     slopes: (..., points, m, local variables, lower monomials), the table differentiated. One point suffices where the
     integral along the span was taken beforehand (hybrid model). angle: (..., points', 2 m), the linear form of the
     angle of attack at points along the span [rad].
@@ -56,7 +56,7 @@ def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     """
     terms = polynomial.powers(_local(load, state))
     table = load.table.swapaxes(-1, -2)
-    return np.asarray(merged(terms, -2) @ merged(table, -3, -2))
+    return np.asarray(merge_axes(terms, -2) @ merge_axes(table, -3, -2))
 
 
 def force_gradient(load: PolynomialLoad, state: FloatArray) -> FloatArray:
@@ -69,28 +69,28 @@ def force_gradient(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     samples = gradients.shape[-2]
     gradients = gradients.reshape(*gradients.shape[:-1], outputs, variables)
     gradients = np.moveaxis(gradients, -4, -2).reshape(*gradients.shape[:-4], samples, outputs, points * variables)
-    return np.asarray(gradients @ merged(load.forms, -3, -2)[..., None, :, :])
+    return np.asarray(gradients @ merge_axes(load.forms, -3, -2)[..., None, :, :])
 
 
 def _local(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     """Return the local variables (..., samples, points, local variables)."""
-    values = state @ merged(load.forms, -3, -2).swapaxes(-1, -2)
+    values = state @ merge_axes(load.forms, -3, -2).swapaxes(-1, -2)
     return np.asarray(values.reshape(*values.shape[:-1], *load.forms.shape[-3:-1]))
 
 
 def span_load(
-    lines: Sequence[Line], made_of: Sections, weight: FloatArray, fields: FloatArray, model: AerodynamicModel
+    lines: Sequence[Line], sections_of_lines: Sections, weight: FloatArray, fields: FloatArray, model: AerodynamicModel
 ) -> PolynomialLoad:
     """Set up the load point by point along the span for any set of shapes.
 
     Parameters
     ----------
     lines : sequence of Line
-    made_of : Sections
+    sections_of_lines : Sections
     weight : (lines, elements, points)
         ds of each point [m].
     fields : (lines, groups, m, 3, elements, points)
-        V, W [1] and Theta [rad/m or 1] of each generalized co-ordinate.
+        V, W [1] and Theta [rad/m or 1] of each generalized coordinate.
     model : AerodynamicModel
 
     Returns
@@ -98,10 +98,10 @@ def span_load(
     PolynomialLoad
         Of leading axes (lines, groups), with every quadrature point as a point.
     """
-    points = merged(fields, -2)
+    points = merge_axes(fields, -2)
     diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
-    factor = made_of.wind_factor.reshape(len(lines), 1, -1)
-    coefficients = made_of.aerodynamics.reshape(len(lines), 1, -1, 3, 4)
+    factor = sections_of_lines.wind_factor.reshape(len(lines), 1, -1)
+    coefficients = sections_of_lines.aerodynamics.reshape(len(lines), 1, -1, 3, 4)
     angle = _angle_forms(points, diameter, factor)
     if model is AerodynamicModel.PUBLISHED:
         forms, local = angle[..., None, :], coefficients[..., 1:]
@@ -202,7 +202,7 @@ def _table_of(a: _Series) -> FloatArray:
     return np.array([a.get(m, 0.0) for m in polynomial.monomials(3)])
 
 
-def integrated(load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
+def integrate_along_span(load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
     """Take the integral of a load along the span once, over the components of (q, q'/U) that it depends on.
 
     Parameters
@@ -224,7 +224,7 @@ def integrated(load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
 
 
 def published_load(
-    lines: Sequence[Line], made_of: Sections, weight: FloatArray, fields: FloatArray, arc_length: FloatArray
+    lines: Sequence[Line], sections_of_lines: Sections, weight: FloatArray, fields: FloatArray, arc_length: FloatArray
 ) -> PolynomialLoad:
     """Set up the published closure (A14)-(A17) with f_wtheta in C_z (theory section 5): one scalar alpha'.
 
@@ -235,13 +235,13 @@ def published_load(
     count = len(lines)
     f_v, f_w, f_theta = (fields[..., i, i, :, :].reshape(count, fields.shape[1], -1) for i in range(3))
     ds = weight.reshape(count, 1, -1)
-    factor = made_of.wind_factor.reshape(count, 1, -1)
+    factor = sections_of_lines.wind_factor.reshape(count, 1, -1)
     f_vtheta = 2.0 / arc_length[:, None] * (f_v * f_theta * ds).sum(axis=-1)  # (A15)
     f_wtheta = 2.0 / arc_length[:, None] * (f_w * f_theta * ds).sum(axis=-1)
     speed = 2.0 / arc_length[:, None] * (f_theta**2 * factor * ds).sum(axis=-1)
     exponents = np.arange(2, 5)
     shape_powers = f_theta[..., None] ** exponents * (ds * factor**2)[..., None]
-    coefficients = made_of.aerodynamics.reshape(count, -1, 3, 4)[..., 1:]
+    coefficients = sections_of_lines.aerodynamics.reshape(count, -1, 3, 4)[..., 1:]
     integrals = np.einsum("lpij,lgpj->lgij", coefficients, shape_powers)  # (A17)
     diameter = np.array([line.conductor.diameter for line in lines])[:, None]
     density = np.array([line.wind.air_density * len(line.bundle.positions) for line in lines])[:, None]
@@ -251,7 +251,7 @@ def published_load(
     form[..., TORSIONAL] = 1.0
     form[..., 3 + VERTICAL] = -f_vtheta / speed  # (A16)
     form[..., 3 + TORSIONAL] = -0.5 * diameter / speed
-    points = merged(fields, -2)
+    points = merge_axes(fields, -2)
     angle = _angle_forms(points, diameter[..., None], factor)
     return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)
 

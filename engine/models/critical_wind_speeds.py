@@ -14,7 +14,7 @@ NEARLY_IMAGINARY = 1e-6  # real over imaginary part of a pair that the eigenprob
 
 @dataclass(frozen=True, slots=True)
 class StateMatrices:
-    """A(U) = A_0 + U A_1 + U^2 A_2 with y' = A y, y = (q, q'), in co-ordinates of unit mass.
+    """A(U) = A_0 + U A_1 + U^2 A_2 with y' = A y, y = (q, q'), in coordinates of unit mass.
 
     constant, linear, quadratic: (members, 2 m, 2 m).
     """
@@ -29,7 +29,7 @@ class Crossings:
     """Crossings of the imaginary axis, sorted by member and wind speed; every array is (crossings,).
 
     member: index of the model; wind_speed [m/s]; angular_frequency [rad/s], 0 for a divergence; onset: whether the
-    growth rate rises through zero; oscillation: Hopf rather than divergence; co_ordinate: the one of largest
+    growth rate rises through zero; oscillation: Hopf rather than divergence; coordinate: the one of largest
     M_ii |x_i|^2; unstable_after: unstable pairs (a real eigenvalue counts as one) just above.
     """
 
@@ -38,7 +38,7 @@ class Crossings:
     angular_frequency: FloatArray
     onset: BoolArray
     oscillation: BoolArray
-    co_ordinate: IntArray
+    coordinate: IntArray
     unstable_after: IntArray
 
 
@@ -104,26 +104,26 @@ def critical_wind_speeds(model: ReducedModel, limit: float) -> Crossings:
     """
     matrices = state_matrices(model)
     usable = np.flatnonzero(~model.statically_unstable)
-    oscillating = _oscillations(_pick(matrices, usable), limit)
+    oscillating = _oscillations(_select(matrices, usable), limit)
     diverging = _divergences(model, usable, limit)
     member = np.concatenate([usable[oscillating[0]], diverging[0]])
     speed = np.concatenate([oscillating[1], diverging[1]])
     oscillation = np.arange(member.size) < oscillating[0].size
     order = np.lexsort((speed, member))
     member, speed, oscillation = member[order], speed[order], oscillation[order]
-    return _described(_pick(matrices, member), member, speed, oscillation, limit)
+    return _classified(_select(matrices, member), member, speed, oscillation, limit)
 
 
 def critical_modes(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> ComplexArray:
     """Return the mode nearest to the imaginary axis at wind speeds (k,) of models (k,): (k, m), of any size."""
-    _, _, vector = _nearest_pair(_pick(state_matrices(model), member), wind_speed)
+    _, _, vector = _nearest_pair(_select(state_matrices(model), member), wind_speed)
     m = model.mass.shape[-1]
     return np.asarray(vector[:, :m] / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member])
 
 
 def crossing_error(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> FloatArray:
     """Return how far crossings (k,) would still move in a step of Newton's method on the growth rate: (k,) [m/s]."""
-    value, slope, _ = _nearest_pair(_pick(state_matrices(model), member), wind_speed)
+    value, slope, _ = _nearest_pair(_select(state_matrices(model), member), wind_speed)
     return np.asarray(np.abs(value.real / slope.real))
 
 
@@ -155,23 +155,23 @@ def _antisymmetric(n: int) -> tuple[FloatArray, FloatArray]:
     return 0.5 * injection.T, injection
 
 
-def _pick(matrices: StateMatrices, members: IntArray) -> StateMatrices:
+def _select(matrices: StateMatrices, members: IntArray) -> StateMatrices:
     return StateMatrices(matrices.constant[members], matrices.linear[members], matrices.quadratic[members])
 
 
 def _oscillations(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
     """Return members and wind speeds of all imaginary pairs, polished by Newton's method on the growth rate."""
     member, speed = _singular_speeds(matrices, limit)
-    value, _, _ = _nearest_pair(_pick(matrices, member), speed)
+    value, _, _ = _nearest_pair(_select(matrices, member), speed)
     # Two real eigenvalues of equal size also sum to zero: such a speed has no pair near the axis, or only by chance.
     imaginary = np.abs(value.real) < NEARLY_IMAGINARY * np.abs(value.imag)
     member, speed = member[imaginary], speed[imaginary]
-    here = _pick(matrices, member)
+    here = _select(matrices, member)
     for _ in range(2):
         value, slope, _ = _nearest_pair(here, speed)
         speed = speed - value.real / np.where(slope.real == 0.0, np.inf, slope.real)
-    found = (speed > 0.0) & (speed <= limit) & _distinct(member, speed)
-    return member[found], speed[found]
+    valid = (speed > 0.0) & (speed <= limit) & _distinct(member, speed)
+    return member[valid], speed[valid]
 
 
 def _distinct(member: IntArray, speed: FloatArray) -> BoolArray:
@@ -206,11 +206,11 @@ def _nearest_pair(matrices: StateMatrices, speed: FloatArray) -> tuple[ComplexAr
     values, vectors = np.asarray(values, dtype=np.complex128), np.asarray(vectors, dtype=np.complex128)
     size = np.abs(values).max(axis=-1, keepdims=True)
     distance = np.where(values.imag > 1e-9 * size, np.abs(values.real), np.inf)
-    chosen = distance.argmin(axis=-1)
+    nearest = distance.argmin(axis=-1)
     slope = matrices.linear + 2.0 * speed[:, None, None] * matrices.quadratic
     slopes = np.diagonal(np.linalg.solve(vectors, slope @ vectors), axis1=-2, axis2=-1)
     row = np.arange(speed.size)
-    return values[row, chosen], slopes[row, chosen], vectors[row, :, chosen]
+    return values[row, nearest], slopes[row, nearest], vectors[row, :, nearest]
 
 
 def _divergences(model: ReducedModel, usable: IntArray, limit: float) -> tuple[IntArray, FloatArray]:
@@ -225,14 +225,14 @@ def _divergences(model: ReducedModel, usable: IntArray, limit: float) -> tuple[I
     return usable[member], 1.0 / np.sqrt(inverse.real[member, column])
 
 
-def _described(
+def _classified(
     matrices: StateMatrices,
     member: IntArray,
     speed: FloatArray,
     oscillation: BoolArray,
     limit: float,
 ) -> Crossings:
-    """Find direction of crossing, frequency, dominant co-ordinate and the pairs unstable up to the next crossing."""
+    """Find direction of crossing, frequency, dominant coordinate and the pairs unstable up to the next crossing."""
     value, slope, vector = _nearest_pair(matrices, speed)
     m = matrices.constant.shape[-1] // 2
     same = member[1:] == member[:-1]
@@ -241,15 +241,15 @@ def _described(
     between = np.stack([0.5 * (preceding + speed), 0.5 * (speed + following[: speed.size])], axis=-1)
     counts = unstable_pairs(eigenvalues(at_wind(matrices, between)))
     onset = np.where(oscillation, slope.real > 0.0, counts[:, 1] > counts[:, 0])
-    still = _null_vectors(matrices, speed)
-    shape = np.where(oscillation[:, None], np.abs(vector[:, :m]), still)
+    null_vector = _null_vectors(matrices, speed)
+    shape = np.where(oscillation[:, None], np.abs(vector[:, :m]), null_vector)
     return Crossings(
         member=member,
         wind_speed=speed,
         angular_frequency=np.where(oscillation, value.imag, 0.0),
         onset=onset,
         oscillation=oscillation,
-        co_ordinate=(shape**2).argmax(axis=-1),
+        coordinate=(shape**2).argmax(axis=-1),
         unstable_after=counts[:, 1],
     )
 

@@ -33,16 +33,16 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
         If a table of coefficients does not reach around the angle to which its section is twisted.
     """
     profile = static_profile(lines)
-    made_of = sections(lines, profile)
+    sections_of_lines = sections(lines, profile)
     if static_twist is StaticTwist.NEGLECTED:
-        return Discretization(tuple(lines), profile, made_of, matrices(lines, profile, made_of))
-    state = twisted_state(lines, profile, made_of)
-    return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, made_of, state), state)
+        return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
+    state = twisted_state(lines, profile, sections_of_lines)
+    return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, sections_of_lines, state), state)
 
 
-def observation(made: Discretization, shapes: FloatArray, loops: int) -> FloatArray:
-    """Return V, W, Theta at s = L/(2 loops), (..., m, 3), of co-ordinates with shapes (..., m, 3, nodes)."""
-    elements = made.lines[0].span.elements
+def observation(discretization: Discretization, shapes: FloatArray, loops: int) -> FloatArray:
+    """Return V, W, Theta at s = L/(2 loops), (..., m, 3), of coordinates with shapes (..., m, 3, nodes)."""
+    elements = discretization.lines[0].span.elements
     scaled = elements / (2.0 * loops)
     element = min(int(scaled), elements - 1)
     values, _ = shape_functions(np.array(2.0 * (scaled - element) - 1.0))

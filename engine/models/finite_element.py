@@ -14,7 +14,7 @@ TRANSVERSE = (V, W, THETA)
 
 
 def finite_element_model(
-    made: Discretization, modes: FullModes, shapes: DirectionalShapes, analysis: Analysis
+    discretization: Discretization, modes: FullModes, shapes: DirectionalShapes, analysis: Analysis
 ) -> ReducedModel:
     """Reduce to the full modes of several loops a direction, with the exact load; leading axis (lines,).
 
@@ -25,12 +25,18 @@ def finite_element_model(
     values = modes.eigenvalues.reshape(vectors.shape[:2])
     nodes = vectors.shape[-1] // FIELDS
     nodal = vectors.reshape(*vectors.shape[:2], nodes, FIELDS)[..., list(TRANSVERSE)].swapaxes(-1, -2)
-    at = at_points(made.matrices, nodal)
-    load = span_load(made.lines, made.sections, made.matrices.weight, at[:, None], analysis.aerodynamic_model)
+    at = at_points(discretization.matrices, nodal)
+    load = span_load(
+        discretization.lines,
+        discretization.sections,
+        discretization.matrices.weight,
+        at[:, None],
+        analysis.aerodynamic_model,
+    )
     unstable = np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
     return ReducedModel(
         mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
-        damping=_modal_damping(made, vectors, shapes, modes.loops),
+        damping=_modal_damping(discretization, vectors, shapes, modes.loops),
         stiffness=diagonal_matrices(values),
         load=take_load(load, (slice(None), 0)),
         shapes=nodal,
@@ -40,18 +46,22 @@ def finite_element_model(
 
 
 def _modal_damping(
-    made: Discretization, vectors: FloatArray, shapes: DirectionalShapes, loops: tuple[int, ...]
+    discretization: Discretization, vectors: FloatArray, shapes: DirectionalShapes, loops: tuple[int, ...]
 ) -> FloatArray:
-    constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in made.lines])
-    picked = [shapes.loops.index(k) for k in loops]
-    own, first = shapes.angular_frequency[:, picked], shapes.angular_frequency[:, [shapes.loops.index(1)]]
-    rate = 2.0 * damping_ratios(made.lines)[:, None] * np.nan_to_num(np.where(constant[:, None, None], first, own))
+    constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in discretization.lines])
+    selected = [shapes.loops.index(k) for k in loops]
+    own, first = shapes.angular_frequency[:, selected], shapes.angular_frequency[:, [shapes.loops.index(1)]]
+    rate = (
+        2.0
+        * damping_ratios(discretization.lines)[:, None]
+        * np.nan_to_num(np.where(constant[:, None, None], first, own))
+    )
     damping = np.zeros((*vectors.shape[:2], vectors.shape[1]))
     for i, own_fields in enumerate(((U, V), (W,), (THETA,))):
         # Only the mass of the direction itself: the momentum that eccentric ice lends to the others is not damped.
         own_field = np.isin(np.arange(vectors.shape[-1]) % FIELDS, own_fields)
-        mass = made.matrices.mass * (own_field[:, None] & own_field)
-        psi = np.swapaxes(shapes.nodal[:, picked], -1, -2).reshape(vectors.shape[0], len(loops), -1) * own_field
+        mass = discretization.matrices.mass * (own_field[:, None] & own_field)
+        psi = np.swapaxes(shapes.nodal[:, selected], -1, -2).reshape(vectors.shape[0], len(loops), -1) * own_field
         momentum = psi @ mass
         own_mass = np.einsum("lkf,lkf->lk", momentum, psi)
         share = vectors @ momentum.swapaxes(-1, -2)

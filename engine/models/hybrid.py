@@ -10,20 +10,20 @@ import numpy as np
 from engine.arrays import FloatArray
 from engine.mechanics.finite_elements import FIELDS, Matrices
 from engine.mechanics.modes import DirectionalShapes, at_points
-from engine.models.aerodynamic_load import PolynomialLoad, integrated, published_load, span_load, take_load
+from engine.models.aerodynamic_load import PolynomialLoad, integrate_along_span, published_load, span_load, take_load
 from engine.models.discretization import Discretization
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
 from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, LongitudinalInertia
 
 
 def hybrid_model(
-    made: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
+    discretization: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
 ) -> ReducedModel:
     """Reduce to one mode a direction; leading axes (lines, loops).
 
     Parameters
     ----------
-    made : Discretization
+    discretization : Discretization
     shapes : DirectionalShapes
         Of at least these loops and of one loop.
     loops : tuple of int
@@ -34,41 +34,49 @@ def hybrid_model(
     -------
     ReducedModel
     """
-    mass, stiffness = _condensed(made.matrices, shapes.nodal[:, :, :, None], analysis.longitudinal_inertia)
+    mass, stiffness = _condensed(discretization.matrices, shapes.nodal[:, :, :, None], analysis.longitudinal_inertia)
     one_loop = np.diagonal(stiffness, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
     one_loop = one_loop / np.diagonal(mass, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
-    picked = [shapes.loops.index(k) for k in loops]
-    mass, stiffness = mass[:, picked], stiffness[:, picked]
+    selected = [shapes.loops.index(k) for k in loops]
+    mass, stiffness = mass[:, selected], stiffness[:, selected]
     own = np.diagonal(stiffness, axis1=-2, axis2=-1) / np.diagonal(mass, axis1=-2, axis2=-1)
-    constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in made.lines])
+    constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in discretization.lines])
     square = np.where(constant[:, None, None], one_loop[:, None], own)
-    rate = 2.0 * damping_ratios(made.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
+    rate = 2.0 * damping_ratios(discretization.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
     damping = diagonal_matrices(rate * np.diagonal(mass, axis1=-2, axis2=-1))  # (11)
     unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
-    nodal = _diagonal_fields(shapes.nodal[:, picked, 1:])
-    load = _hybrid_load(made, nodal, analysis)
+    nodal = _diagonal_fields(shapes.nodal[:, selected, 1:])
+    load = _hybrid_load(discretization, nodal, analysis)
     return ReducedModel(mass, damping, stiffness, load, nodal, np.arange(3), unstable)
 
 
 def joint_model(
-    made: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
+    discretization: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
 ) -> ReducedModel:
     """Reduce to the hybrid model's shapes of several loops that may move together, with the exact load.
 
-    Parameters are those of `hybrid_model`; leading axis (lines,). The co-ordinates are f_v of each number of loops,
+    Parameters are those of `hybrid_model`; leading axis (lines,). The coordinates are f_v of each number of loops,
     then f_w, then f_theta; damping is that which each has alone.
     """
-    alone = hybrid_model(made, shapes, loops, analysis)
-    picked = [shapes.loops.index(k) for k in loops]
-    together = np.moveaxis(shapes.nodal[:, picked], 1, 2)[:, None]
-    mass, stiffness = (matrix[:, 0] for matrix in _condensed(made.matrices, together, analysis.longitudinal_inertia))
+    alone = hybrid_model(discretization, shapes, loops, analysis)
+    selected = [shapes.loops.index(k) for k in loops]
+    together = np.moveaxis(shapes.nodal[:, selected], 1, 2)[:, None]
+    mass, stiffness = (
+        matrix[:, 0] for matrix in _condensed(discretization.matrices, together, analysis.longitudinal_inertia)
+    )
     rates = np.diagonal(alone.damping, axis1=-2, axis2=-1).swapaxes(-1, -2)
-    nodal = np.moveaxis(alone.shapes, 1, 2).reshape(len(made.lines), -1, *alone.shapes.shape[-2:])
-    values = at_points(made.matrices, nodal)
-    load = span_load(made.lines, made.sections, made.matrices.weight, values[:, None], analysis.aerodynamic_model)
+    nodal = np.moveaxis(alone.shapes, 1, 2).reshape(len(discretization.lines), -1, *alone.shapes.shape[-2:])
+    values = at_points(discretization.matrices, nodal)
+    load = span_load(
+        discretization.lines,
+        discretization.sections,
+        discretization.matrices.weight,
+        values[:, None],
+        analysis.aerodynamic_model,
+    )
     return ReducedModel(
         mass=mass,
-        damping=diagonal_matrices(rates.reshape(len(made.lines), -1)),
+        damping=diagonal_matrices(rates.reshape(len(discretization.lines), -1)),
         stiffness=stiffness,
         load=take_load(load, (slice(None), 0)),
         shapes=nodal,
@@ -79,10 +87,16 @@ def joint_model(
     )
 
 
-def with_published_load(made: Discretization, model: ReducedModel) -> ReducedModel:
+def with_published_load(discretization: Discretization, model: ReducedModel) -> ReducedModel:
     """Return the hybrid model under the published closure, which the explicit formula of section 7.1 needs."""
-    values = at_points(made.matrices, model.shapes)
-    load = published_load(made.lines, made.sections, made.matrices.weight, values, made.profile.arc_length)
+    values = at_points(discretization.matrices, model.shapes)
+    load = published_load(
+        discretization.lines,
+        discretization.sections,
+        discretization.matrices.weight,
+        values,
+        discretization.profile.arc_length,
+    )
     return replace(model, load=load)
 
 
@@ -105,15 +119,27 @@ def _condensed(system: Matrices, nodal: FloatArray, inertia: LongitudinalInertia
     return reduced, condensed
 
 
-def _hybrid_load(made: Discretization, nodal: FloatArray, analysis: Analysis) -> PolynomialLoad:
-    values = at_points(made.matrices, nodal)
+def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: Analysis) -> PolynomialLoad:
+    values = at_points(discretization.matrices, nodal)
     if analysis.closure is Closure.PUBLISHED:
-        return published_load(made.lines, made.sections, made.matrices.weight, values, made.profile.arc_length)
-    load = span_load(made.lines, made.sections, made.matrices.weight, values, analysis.aerodynamic_model)
+        return published_load(
+            discretization.lines,
+            discretization.sections,
+            discretization.matrices.weight,
+            values,
+            discretization.profile.arc_length,
+        )
+    load = span_load(
+        discretization.lines,
+        discretization.sections,
+        discretization.matrices.weight,
+        values,
+        analysis.aerodynamic_model,
+    )
     published = analysis.aerodynamic_model is AerodynamicModel.PUBLISHED
-    return integrated(load, (2, 5, 3) if published else (2, 5, 3, 4))
+    return integrate_along_span(load, (2, 5, 3) if published else (2, 5, 3, 4))
 
 
 def _diagonal_fields(shapes: FloatArray) -> FloatArray:
-    """Spread f_v, f_w, f_theta (..., 3, nodes) to the fields of three co-ordinates (..., 3, 3, nodes)."""
+    """Spread f_v, f_w, f_theta (..., 3, nodes) to the fields of three coordinates (..., 3, 3, nodes)."""
     return shapes[..., None, :] * np.eye(3)[..., None]

@@ -41,8 +41,8 @@ def mode_shapes(line: Line, analysis: Analysis) -> ModeShapes:
     -------
     ModeShapes
     """
-    made = discretize((line,), analysis.static_twist)
-    system, profile = made.matrices, made.profile
+    discretization = discretize((line,), analysis.static_twist)
+    system, profile = discretization.matrices, discretization.profile
     nodal = directional_shapes(system, profile.arc_length, analysis.loops).nodal[0]
     hybrid = np.zeros((len(DIRECTIONS), *nodal.shape))
     for i, fields in enumerate(((0, 1), (2,), (3,))):

@@ -13,10 +13,10 @@ from engine.spec import Line
 
 @dataclass(frozen=True, slots=True)
 class ReducedModel:
-    """M q'' + C q' + K q = U^2 f(q, q'/U) for a stack of models with m generalized co-ordinates.
+    """M q'' + C q' + K q = U^2 f(q, q'/U) for a stack of models with m generalized coordinates.
 
     mass, damping, stiffness: (..., m, m); load: f, of the same leading axes; shapes: (..., m, 3, nodes), the fields V,
-    W, Theta of each co-ordinate; direction: (m,), the direction of each co-ordinate (0 vertical, 1 horizontal,
+    W, Theta of each coordinate; direction: (m,), the direction of each coordinate (0 vertical, 1 horizontal,
     2 torsional); statically_unstable: (...), True where the stiffness is not positive: damping there has no meaning.
     """
 

@@ -11,13 +11,13 @@ from typing import Protocol
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths
-from engine.numerics.newton import Options, Solution, newton, solved
+from engine.numerics.newton import NewtonOptions, Solution, newton, solve_systems
 from engine.outcome import Outcome
 
-FOLLOWING = Options(tolerance=1e-4, iterations=8)
-LOCATING = Options(iterations=8)
-MOST_SECANTS = 30
-EVERY = slice(None)
+CONTINUATION_OPTIONS = NewtonOptions(tolerance=1e-4, iterations=8)
+LOCATION_OPTIONS = NewtonOptions(iterations=8)
+MOST_ITERATIONS = 30
+ALL_UNKNOWNS = slice(None)
 
 
 class Problem(Protocol):
@@ -34,19 +34,19 @@ class Problem(Protocol):
         """Return the size by which each entry of the points is measured: (k, n + 1)."""
         ...
 
-    def corrected(
-        self, start: "Start", branch: IntArray, condition: tuple[FloatArray, FloatArray], options: Options
+    def correct(
+        self, start: "NewtonStart", branch: IntArray, condition: tuple[FloatArray, FloatArray], options: NewtonOptions
     ) -> tuple[Solution, FloatArray]:
         """Solve together with the condition row . z = value, of shapes (k, n + 1) and (k,), by Newton's method.
 
         Return the solution, and the direction (k, n + 1) in which row . z alone grows before the last step.
         A problem that has no faster way keeps this one.
         """
-        return corrected_by_newton(self, start, branch, condition, options)
+        return correct_by_newton(self, start, branch, condition, options)
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class NewtonStart:
     """Where Newton's method begins: guess, anchor of the phase, and scale of the step, all (k, n + 1)."""
 
     guess: FloatArray
@@ -54,25 +54,29 @@ class Start:
     scale: FloatArray
 
 
-def corrected_by_newton(
-    problem: Problem, start: Start, branch: IntArray, condition: tuple[FloatArray, FloatArray], options: Options
+def correct_by_newton(
+    problem: Problem,
+    start: NewtonStart,
+    branch: IntArray,
+    condition: tuple[FloatArray, FloatArray],
+    options: NewtonOptions,
 ) -> tuple[Solution, FloatArray]:
-    """Solve a problem and one linear condition more by Newton's method on its slopes; see `Problem.corrected`."""
+    """Solve a problem and one linear condition more by Newton's method on its slopes; see `Problem.correct`."""
     row, value = condition
     matrices = np.full((*row.shape, row.shape[-1]), np.nan)
 
     def system(z: FloatArray, index: IntArray) -> tuple[FloatArray, FloatArray]:
         residual, slopes = problem.system(z, start.anchor[index], branch[index])
-        off = np.einsum("ki,ki->k", row[index], z) - value[index]
+        condition_residual = np.einsum("ki,ki->k", row[index], z) - value[index]
         matrices[index] = np.concatenate([slopes, row[index][:, None]], axis=1)
-        return np.concatenate([residual, off[:, None]], axis=-1), matrices[index]
+        return np.concatenate([residual, condition_residual[:, None]], axis=-1), matrices[index]
 
     solution = newton(system, start.guess, start.scale, options)
-    return solution, _direction(matrices)
+    return solution, _branch_direction(matrices)
 
 
 @dataclass(frozen=True, slots=True)
-class Points:
+class BranchPoints:
     """Points on branches: branch (k,); z, the problem's scale there, and the unit tangent in it, (k, n + 1) each."""
 
     branch: IntArray
@@ -80,27 +84,27 @@ class Points:
     scale: FloatArray
     tangent: FloatArray
 
-    def pick(self, index: IntArray | BoolArray) -> "Points":
+    def select(self, index: IntArray | BoolArray) -> "BranchPoints":
         """Pick points of the stack."""
-        return Points(self.branch[index], self.z[index], self.scale[index], self.tangent[index])
+        return BranchPoints(self.branch[index], self.z[index], self.scale[index], self.tangent[index])
 
-    def put(self, other: "Points") -> None:
+    def overwrite(self, other: "BranchPoints") -> None:
         """Overwrite the points of the branches that the others lie on; here branch i has row i."""
         self.z[other.branch], self.scale[other.branch] = other.z, other.scale
         self.tangent[other.branch] = other.tangent
 
 
-def points_at(problem: Problem, branch: IntArray, z: FloatArray, direction: FloatArray) -> Points:
+def make_points(problem: Problem, branch: IntArray, z: FloatArray, direction: FloatArray) -> BranchPoints:
     """Make points (k, n + 1) of branches (k,) with tangents along given directions."""
     scale = problem.scale(z, branch)
-    return Points(branch, z, scale, direction / lengths(direction / scale)[:, None])
+    return BranchPoints(branch, z, scale, direction / lengths(direction / scale)[:, None])
 
 
-Test = Callable[[Points], FloatArray]
+TestFunction = Callable[[BranchPoints], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
-class Steps:
+class StepControl:
     """Lengths of steps in the problem's scale, and when a branch is given up.
 
     A step grows where Newton's method needs fewer than `iterations` and shrinks where it needs more; it is halved where
@@ -125,12 +129,12 @@ def tangents(problem: Problem, z: FloatArray, branch: IntArray, along: FloatArra
     scale = problem.scale(z, branch)
     _, slopes = problem.system(z, z, branch)
     matrix = np.concatenate([slopes, (along / scale**2)[:, None]], axis=1)
-    return points_at(problem, branch, z, _direction(matrix)).tangent
+    return make_points(problem, branch, z, _branch_direction(matrix)).tangent
 
 
-def branches(
-    problem: Problem, start: FloatArray, direction: FloatArray, steps: Steps | None = None
-) -> Generator[Points, BoolArray | None, ObjectArray]:
+def continue_branches(
+    problem: Problem, start: FloatArray, direction: FloatArray, steps: StepControl | None = None
+) -> Generator[BranchPoints, BoolArray | None, ObjectArray]:
     """Follow branches from a point each, side by side, also through folds.
 
     Parameters
@@ -140,11 +144,11 @@ def branches(
         A point on each branch.
     direction : (branches, n + 1)
         Tangent along which each is left, of any length.
-    steps : Steps, optional
+    steps : StepControl, optional
 
     Yields
     ------
-    Points
+    BranchPoints
         The next point of every branch whose step was accepted. Send back which of them go on, (k,); all do if nothing
         is sent.
 
@@ -154,23 +158,23 @@ def branches(
         CONVERGED where the caller ended the branch, LIMIT_REACHED after the largest number of points, NO_CONVERGENCE
         where the smallest step failed.
     """
-    steps = steps or Steps()
+    steps = steps or StepControl()
     active = np.arange(start.shape[0])
-    last = points_at(problem, active, start.copy(), direction)
-    before = Points(active, np.full_like(start, np.nan), last.scale.copy(), last.tangent.copy())
+    last = make_points(problem, active, start.copy(), direction)
+    before = BranchPoints(active, np.full_like(start, np.nan), last.scale.copy(), last.tangent.copy())
     length, count = np.full(active.size, steps.first), np.zeros(active.size, dtype=np.intp)
     outcome = np.full(active.size, Outcome.CONVERGED, dtype=np.object_)
     while active.size:
-        here = last.pick(active)
-        guess = _predicted(before.pick(active), here, length[active])
+        here = last.select(active)
+        guess = _predict(before.select(active), here, length[active])
         anchor = np.where(np.isnan(before.z[active]), guess, here.z)  # a start may have no phase of its own
-        new, solution = _at_length(problem, here, length[active], guess, anchor, FOLLOWING)
-        good = solution.converged & _faithful(here, new, guess, steps)
+        new, solution = _solve_at_length(problem, here, length[active], guess, anchor, CONTINUATION_OPTIONS)
+        good = solution.converged & _stays_on_branch(here, new, guess, steps)
         growth = 2.0 ** ((steps.iterations - solution.iterations) / steps.iterations)
         length[active] = np.minimum(length[active] * np.where(good, growth, 0.5), steps.largest)
-        accepted = new.pick(good)
-        before.put(here.pick(good))
-        last.put(accepted)
+        accepted = new.select(good)
+        before.overwrite(here.select(good))
+        last.overwrite(accepted)
         count[accepted.branch] += 1
         outcome[active[length[active] < steps.smallest]] = Outcome.NO_CONVERGENCE
         outcome[active[count[active] >= steps.points]] = Outcome.LIMIT_REACHED
@@ -183,7 +187,9 @@ def branches(
     return outcome
 
 
-def interpolated(left: Points, right: Points, share: FloatArray, unknowns: slice = EVERY) -> FloatArray:
+def interpolate(
+    left: BranchPoints, right: BranchPoints, share: FloatArray, unknowns: slice = ALL_UNKNOWNS
+) -> FloatArray:
     """Return Hermite's cubic through successive points of branches at shares (k, ...) of the way: (k, ..., n + 1).
 
     Or some of the unknowns alone.
@@ -193,94 +199,101 @@ def interpolated(left: Points, right: Points, share: FloatArray, unknowns: slice
     ends = (left.z, right.z, length[:, None] * left.tangent, after)
     cube, square = share**3, share**2
     weights = [2.0 * cube - 3.0 * square + 1.0, 3.0 * square - 2.0 * cube, cube - 2.0 * square + share, cube - square]
-    between = (EVERY,) + (None,) * (share.ndim - 1)
+    between = (ALL_UNKNOWNS,) + (None,) * (share.ndim - 1)
     parts = [weight[..., None] * end[:, unknowns][between] for weight, end in zip(weights, ends, strict=True)]
     return np.asarray(parts[0] + parts[1] + parts[2] + parts[3])
 
 
-def _predicted(before: Points, here: Points, length: FloatArray) -> FloatArray:
+def _predict(before: BranchPoints, here: BranchPoints, length: FloatArray) -> FloatArray:
     """Extrapolate Hermite's cubic through the last two points, or the tangent where there is only one."""
     step = lengths((here.z - before.z) / before.scale)
     along = lengths(here.tangent / before.scale)
-    cubic = interpolated(before, here, 1.0 + length * along / step)
+    cubic = interpolate(before, here, 1.0 + length * along / step)
     return np.where(np.isnan(cubic), here.z + length[:, None] * here.tangent, cubic)
 
 
-def _faithful(here: Points, new: Points, guess: FloatArray, steps: Steps) -> BoolArray:
+def _stays_on_branch(here: BranchPoints, new: BranchPoints, guess: FloatArray, steps: StepControl) -> BoolArray:
     """Tell where a point found lies near its guess and in the direction of the branch: else it may be on another."""
-    turned = new.tangent / here.scale
-    cosine = np.einsum("ki,ki->k", turned, here.tangent / here.scale) / lengths(turned)
+    new_tangent = new.tangent / here.scale
+    cosine = np.einsum("ki,ki->k", new_tangent, here.tangent / here.scale) / lengths(new_tangent)
     far, missed = (lengths((new.z - z) / here.scale) for z in (here.z, guess))
     return np.asarray((cosine > steps.straightness) & (missed < steps.miss * far))
 
 
-def _at_length(
-    problem: Problem, base: Points, length: FloatArray, guess: FloatArray, anchor: FloatArray, options: Options
-) -> tuple[Points, Solution]:
+def _solve_at_length(
+    problem: Problem,
+    base: BranchPoints,
+    length: FloatArray,
+    guess: FloatArray,
+    anchor: FloatArray,
+    options: NewtonOptions,
+) -> tuple[BranchPoints, Solution]:
     """Solve for the points at a given length along the tangents of the base points; NaN where that failed."""
     row = base.tangent / base.scale**2
     value = np.einsum("ki,ki->k", row, base.z) + length
-    start = Start(guess, anchor, base.scale / np.sqrt(row.shape[-1]))
-    solution, direction = problem.corrected(start, base.branch, (row, value), options)
+    start = NewtonStart(guess, anchor, base.scale / np.sqrt(row.shape[-1]))
+    solution, direction = problem.correct(start, base.branch, (row, value), options)
     good = np.flatnonzero(solution.converged)
     # The direction is that of the point to within the last step.
-    found = points_at(problem, base.branch[good], solution.x[good], direction[good])
+    found = make_points(problem, base.branch[good], solution.x[good], direction[good])
     if good.size == base.branch.size:
         return found, solution
-    whole = Points(base.branch, *(np.full_like(guess, np.nan) for _ in range(3)))
+    whole = BranchPoints(base.branch, *(np.full_like(guess, np.nan) for _ in range(3)))
     whole.z[good], whole.scale[good], whole.tangent[good] = found.z, found.scale, found.tangent
     return whole, solution
 
 
-def _direction(matrix: FloatArray) -> FloatArray:
+def _branch_direction(matrix: FloatArray) -> FloatArray:
     """Solve for the direction in which the last row of a matrix alone grows."""
     right = np.zeros(matrix.shape[:-1])
     right[:, -1] = 1.0
-    return solved(matrix, right)
+    return solve_systems(matrix, right)
 
 
-def onto(problem: Problem, points: Points) -> Points:
+def project_onto_branches(problem: Problem, points: BranchPoints) -> BranchPoints:
     """Solve for the points of the branches next to these, normal to their tangents; NaN where that failed."""
-    return _at_length(problem, points, np.zeros(points.branch.size), points.z, points.z, LOCATING)[0]
+    return _solve_at_length(problem, points, np.zeros(points.branch.size), points.z, points.z, LOCATION_OPTIONS)[0]
 
 
 @dataclass(frozen=True, slots=True)
-class Located:
+class LocatedZeros:
     """Zeros of a test function: the points, and how far the parameter moved in the last step towards each, (k,)."""
 
-    points: Points
+    points: BranchPoints
     uncertainty: FloatArray
 
 
-def located(problem: Problem, left: Points, right: Points, test: Test, accuracy: float) -> Located:
+def locate_zeros(
+    problem: Problem, left: BranchPoints, right: BranchPoints, test: TestFunction, accuracy: float
+) -> LocatedZeros:
     """Find where a test function vanishes between two successive points of branches, by the Illinois method.
 
     Parameters
     ----------
     problem : Problem
-    left, right : Points
+    left, right : BranchPoints
         Of the same branches; the test function has opposite signs there.
     test : callable
-        Takes Points, returns (k,).
+        Takes BranchPoints, returns (k,).
     accuracy : float
         Relative change of the parameter at which the search stops.
 
     Returns
     -------
-    Located
+    LocatedZeros
         The uncertainty is infinite where the search left the branch.
     """
     whole = np.einsum("ki,ki->k", left.tangent / left.scale, (right.z - left.z) / left.scale)
     end, other = whole.copy(), np.zeros_like(whole)
     value, other_value = test(right), test(left)
-    found = right.pick(np.arange(whole.size))
+    found = right.select(np.arange(whole.size))
     moved = np.full(whole.size, np.inf)
     active = np.arange(whole.size)
-    for _ in range(MOST_SECANTS):
+    for _ in range(MOST_ITERATIONS):
         a, b, f_a, f_b = other[active], end[active], other_value[active], value[active]
         middle = (a * f_b - b * f_a) / np.where(f_b == f_a, np.nan, f_b - f_a)
-        guess = interpolated(left.pick(active), right.pick(active), middle / whole[active])
-        point, _ = _at_length(problem, left.pick(active), middle, guess, left.z[active], LOCATING)
+        guess = interpolate(left.select(active), right.select(active), middle / whole[active])
+        point, _ = _solve_at_length(problem, left.select(active), middle, guess, left.z[active], LOCATION_OPTIONS)
         f = test(point)
         moved[active] = np.abs(point.z[:, -1] - found.z[active, -1])
         found.z[active], found.scale[active], found.tangent[active] = point.z, point.scale, point.tangent
@@ -291,4 +304,4 @@ def located(problem: Problem, left: Points, right: Points, test: Test, accuracy:
         active = active[np.isfinite(f) & (moved[active] > accuracy * np.abs(point.z[:, -1]))]
         if active.size == 0:
             break
-    return Located(found, np.where(np.isfinite(moved), moved, np.inf))
+    return LocatedZeros(found, np.where(np.isfinite(moved), moved, np.inf))

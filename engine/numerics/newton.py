@@ -14,7 +14,7 @@ BLOCK_NUMBERS = 2_000_000  # in the Jacobians of one block
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class NewtonOptions:
     """Tolerance of the scaled step, largest scaled step allowed, and largest number of iterations.
 
     Convergence is quadratic: after a step of 1e-6 the error is of the order of its square.
@@ -44,7 +44,7 @@ class Solution:
         return np.asarray(self.outcome == Outcome.CONVERGED, dtype=np.bool_)
 
 
-def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | None = None) -> Solution:
+def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOptions | None = None) -> Solution:
     """Solve many systems of equations side by side.
 
     Parameters
@@ -57,13 +57,13 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | 
     scale : (members, unknowns)
         Size by which each unknown is measured; a step counts as the root mean square of step / scale. A step above
         `largest_step` is shortened to it.
-    options : Options, optional
+    options : NewtonOptions, optional
 
     Returns
     -------
     Solution
     """
-    options = options or Options()
+    options = options or NewtonOptions()
     x = x.copy()
     step = np.full(x.shape[0], np.inf)
     iterations = np.zeros(x.shape[0], dtype=np.intp)
@@ -71,7 +71,7 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | 
     for _ in range(options.iterations):
         if active.size == 0:
             break
-        change = _changes(system, x, active)
+        change = _newton_steps(system, x, active)
         size = np.sqrt(np.mean((change / scale[active]) ** 2, axis=-1))
         finite = np.isfinite(size)
         active, change, size = active[finite], change[finite], size[finite]
@@ -79,32 +79,32 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: Options | 
         step[active] = size
         iterations[active] += 1
         active = active[size > options.tolerance]
-    return solution(x, step, iterations, options)
+    return solution_from_steps(x, step, iterations, options)
 
 
-def solution(x: FloatArray, step: FloatArray, iterations: IntArray, options: Options) -> Solution:
+def solution_from_steps(x: FloatArray, step: FloatArray, iterations: IntArray, options: NewtonOptions) -> Solution:
     """Judge the last steps."""
     outcome = np.full(step.shape, Outcome.NO_CONVERGENCE, dtype=np.object_)
     outcome[step <= options.tolerance] = Outcome.CONVERGED
     return Solution(x, outcome, step, iterations)
 
 
-def _changes(system: System, x: FloatArray, active: IntArray) -> FloatArray:
+def _newton_steps(system: System, x: FloatArray, active: IntArray) -> FloatArray:
     """Solve for the steps of the active members, block by block, so that memory stays flat however many there are."""
     size = max(1, BLOCK_NUMBERS // x.shape[1] ** 2)
     blocks = [active[first : first + size] for first in range(0, active.size, size)]
-    return np.concatenate([_step(*system(x[block], block)) for block in blocks])
+    return np.concatenate([_newton_step(*system(x[block], block)) for block in blocks])
 
 
-def _step(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
-    return -solved(jacobian, residual)
+def _newton_step(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
+    return -solve_systems(jacobian, residual)
 
 
-def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+def solve_systems(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Solve linear systems (..., n, n) side by side: (..., n), NaN for those that are singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], dtype=np.float64)
     except np.linalg.LinAlgError:
         if matrix.ndim == 2:
             return np.full_like(right, np.nan)
-        return np.stack([solved(m, r) for m, r in zip(matrix, right, strict=True)])
+        return np.stack([solve_systems(m, r) for m, r in zip(matrix, right, strict=True)])

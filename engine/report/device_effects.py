@@ -8,7 +8,7 @@ from engine.result import DeviceEffectRow, Result
 from engine.spec import Model
 
 
-def device_effects(without: Result, fitted: Result) -> tuple[DeviceEffectRow, ...]:
+def device_effects(without: Result, with_devices: Result) -> tuple[DeviceEffectRow, ...]:
     """Set the results of one line without and with devices beside each other.
 
     Returns
@@ -16,7 +16,7 @@ def device_effects(without: Result, fitted: Result) -> tuple[DeviceEffectRow, ..
     tuple of DeviceEffectRow
         A row for each model, number of loops and wind speed; one without wind speed where none was asked for.
     """
-    return tuple(_rows(without, fitted))
+    return tuple(_rows(without, with_devices))
 
 
 def lowest_onset(result: Result, model: Model, loops: int) -> float | None:
@@ -27,20 +27,20 @@ def lowest_onset(result: Result, model: Model, loops: int) -> float | None:
 
 def largest_amplitude(result: Result, model: Model, loops: int, wind_speed: float) -> float | None:
     """Return the largest sqrt(V^2 + W^2) of the stable motions [m], 0 at rest; None where none is known."""
-    place = (model, loops, wind_speed)
-    here = [r for r in result.limit_cycles if (r.model, r.loops, r.wind_speed_m_per_s) == place]
+    key = (model, loops, wind_speed)
+    here = [r for r in result.limit_cycles if (r.model, r.loops, r.wind_speed_m_per_s) == key]
     if any(row.vertical_m is None for row in here):
         return None
-    lasting = (r for r in here if r.stability is Stability.STABLE)
-    return max((math.hypot(r.vertical_m or 0.0, r.horizontal_m or 0.0) for r in lasting), default=None)
+    stable = (r for r in here if r.stability is Stability.STABLE)
+    return max((math.hypot(r.vertical_m or 0.0, r.horizontal_m or 0.0) for r in stable), default=None)
 
 
-def _rows(without: Result, fitted: Result) -> Iterator[DeviceEffectRow]:
-    winds = sorted({row.wind_speed_m_per_s for row in fitted.limit_cycles})
-    for model, loops in dict.fromkeys((row.model, row.loops) for row in fitted.frequencies):
-        onsets = [lowest_onset(result, model, loops) for result in (without, fitted)]
+def _rows(without: Result, with_devices: Result) -> Iterator[DeviceEffectRow]:
+    winds = sorted({row.wind_speed_m_per_s for row in with_devices.limit_cycles})
+    for model, loops in dict.fromkeys((row.model, row.loops) for row in with_devices.frequencies):
+        onsets = [lowest_onset(result, model, loops) for result in (without, with_devices)]
         if not winds:
             yield DeviceEffectRow(model, loops, None, onsets[0], onsets[1], None, None)
         for wind in winds:
-            sizes = [largest_amplitude(result, model, loops, wind) for result in (without, fitted)]
+            sizes = [largest_amplitude(result, model, loops, wind) for result in (without, with_devices)]
             yield DeviceEffectRow(model, loops, wind, onsets[0], onsets[1], sizes[0], sizes[1])

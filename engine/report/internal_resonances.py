@@ -20,7 +20,7 @@ _RATIOS = sorted(((p, q) for p in _INTEGERS for q in _INTEGERS if gcd(p, q) == 1
 _LIMITS = [sqrt(p * r / (q * s)) for (p, q), (r, s) in pairwise(_RATIOS)]
 
 
-def resonance_rows(frequencies: Sequence[FrequencyRow]) -> tuple[InternalResonanceRow, ...]:
+def internal_resonance_rows(frequencies: Sequence[FrequencyRow]) -> tuple[InternalResonanceRow, ...]:
     """Write the ratios of the three frequencies of each model and number of loops, as far as they exist.
 
     Parameters
@@ -65,7 +65,7 @@ def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArra
     mass : (cycles, m)
         Diagonal of the mass matrix: what eccentric ice couples belongs to no direction and is left out.
     coefficients : (cycles, m, 2 H + 1)
-        Fourier series of the co-ordinates: mean, cos 1, sin 1, ...
+        Fourier series of the coordinates: mean, cos 1, sin 1, ...
     direction : (m,)
         0 vertical, 1 horizontal, 2 torsional.
 
@@ -75,10 +75,10 @@ def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArra
         Vertical, horizontal and torsional share; they add up to 1.
     """
     order = np.repeat(np.arange(1, coefficients.shape[-1] // 2 + 1), 2)
-    return divided(mass * ((order * coefficients[..., 1:]) ** 2).sum(axis=-1), direction)
+    return divide_by_direction(mass * ((order * coefficients[..., 1:]) ** 2).sum(axis=-1), direction)
 
 
-def divided(energy: FloatArray, direction: IntArray) -> FloatArray:
-    """Divide the energy of the co-ordinates (motions, m) between the directions: (motions, 3), adding up to 1."""
+def divide_by_direction(energy: FloatArray, direction: IntArray) -> FloatArray:
+    """Divide the energy of the coordinates (motions, m) between the directions: (motions, 3), adding up to 1."""
     by_direction = energy @ np.eye(3)[direction]
     return np.asarray(by_direction / by_direction.sum(axis=-1, keepdims=True))

@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
-from engine.cycles.harmonic_balance import half_peak_to_peak, pick, states
+from engine.cycles.harmonic_balance import half_peak_to_peak, select, states
 from engine.mechanics.static_profile import horizontal_position
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
 from engine.models.discretization import Discretization, observation
 from engine.models.reduced_model import take
 from engine.outcome import Outcome, Stability
-from engine.report.internal_resonances import divided, motion_shares
-from engine.report.rows import Found, by_line, number
+from engine.report.internal_resonances import divide_by_direction, motion_shares
+from engine.report.rows import ModelFindings, finite_or_none, lists_by_line
 from engine.result import LimitCycleRow
 from engine.tori.spectrum import amplitude_range, base_frequencies, largest_angle, mean_square_velocity
 
 ANGLE_SAMPLES = 48
-_UNSTABLE, _LOST = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
+_UNSTABLE, _NOT_FOUND = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
 _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
 _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
@@ -37,26 +37,30 @@ class Motion:
     series: FloatArray | None = None
 
 
-def motion_rows(made: Discretization, found: Found, loops: tuple[int, ...], lowest: FloatArray) -> list[list[Motion]]:
+def limit_cycle_rows(
+    discretization: Discretization, findings: ModelFindings, loops: tuple[int, ...], lowest: FloatArray
+) -> list[list[Motion]]:
     """Write the equilibrium and every cycle at each wind speed; a list a line.
 
     Parameters
     ----------
-    made : Discretization
-    found : Found
+    discretization : Discretization
+    findings : ModelFindings
     loops : tuple of int
         Numbers of loops for which the equilibrium has a row.
     lowest : (lines,)
         Lowest vertical frequency of each line [Hz].
     """
-    table: list[list[Motion]] = by_line(found.line)
+    table: list[list[Motion]] = lists_by_line(findings.line)
     scales = _Scales(
-        sag=made.profile.sag,
-        speed=lowest * made.profile.span_length,
-        observed={k: _observed_at(made, k) for k in {*loops, *np.unique(found.loops).tolist()}},
+        sag=discretization.profile.sag,
+        speed=lowest * discretization.profile.span_length,
+        observed={k: _observed_at(discretization, k) for k in {*loops, *np.unique(findings.loops).tolist()}},
     )
     for line, motion in chain(
-        _equilibria(found, loops, scales), _cycles(made, found, scales), _tori(made, found, scales)
+        _equilibria(findings, loops, scales),
+        _cycles(discretization, findings, scales),
+        _quasi_periodic_motions(discretization, findings, scales),
     ):
         table[line].append(motion)
     for motions in table:
@@ -74,7 +78,7 @@ class _Scales:
 
 
 @dataclass(frozen=True, slots=True)
-class _Places:
+class _RowKeys:
     """What identifies rows: index of the line, loops and wind speed [m/s] of each, all (k,)."""
 
     line: IntArray
@@ -82,58 +86,60 @@ class _Places:
     wind_speed: FloatArray
 
 
-def _equilibria(found: Found, loops: tuple[int, ...], scales: _Scales) -> Iterator[tuple[int, Motion]]:
+def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of the static state, and of wind speeds where it oscillates away but no cycle was found."""
-    members, winds = found.line.size, found.winds.size
-    values = eigenvalues(at_wind(state_matrices(found.model), np.broadcast_to(found.winds, (members, winds))))
+    members, winds = findings.line.size, findings.winds.size
+    values = eigenvalues(at_wind(state_matrices(findings.model), np.broadcast_to(findings.winds, (members, winds))))
     size = np.abs(values).max(axis=-1, initial=0.0)
     undecided = np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size
-    static = found.model.statically_unstable
+    static = findings.model.statically_unstable
     growing = (unstable_pairs(values) > 0) | static[:, None]
     verdict = np.where(undecided & ~static[:, None], 0, np.where(growing, 1, 2))
-    known = (found.loops[:, :, None] == np.array(loops, dtype=np.intp)).any(axis=1)
+    known = (findings.loops[:, :, None] == np.array(loops, dtype=np.intp)).any(axis=1)
     member, at, wind = np.nonzero(np.broadcast_to(known[:, :, None], (members, len(loops), winds)))
-    rests = _Places(found.line[member], np.array(loops, dtype=np.intp)[at], found.winds[wind])
-    still = np.where(static[member], np.nan, 0.0)
-    told: dict[str, Iterable[Any]] = {
+    keys = _RowKeys(findings.line[member], np.array(loops, dtype=np.intp)[at], findings.winds[wind])
+    amplitude = np.where(static[member], np.nan, 0.0)
+    labels: dict[str, Iterable[Any]] = {
         "kind": repeat("equilibrium"),
-        "stability": [_VERDICTS[number] for number in verdict[member, wind].tolist()],
-        "outcome": [_UNSTABLE if lost else Outcome.CONVERGED for lost in static[member].tolist()],
+        "stability": [_VERDICTS[finite_or_none] for finite_or_none in verdict[member, wind].tolist()],
+        "outcome": [_UNSTABLE if missing else Outcome.CONVERGED for missing in static[member].tolist()],
     }
-    yield from _written(found, scales, rests, dict.fromkeys(_AMPLITUDES, still), told)
+    yield from _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
     oscillating = ((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1) & ~static[:, None]
-    oscillating[found.cycles.member, found.cycles.wind] = False
-    # A row of the first co-ordinate's loops stands for all that oscillates there.
-    oscillating &= np.isin(found.loops[:, :1], loops)
-    yield from _without_motion(found, scales, np.argwhere(oscillating), "periodic")
+    oscillating[findings.cycles.member, findings.cycles.wind] = False
+    # A row of the first coordinate's loops stands for all that oscillates there.
+    oscillating &= np.isin(findings.loops[:, :1], loops)
+    yield from _without_motion(findings, scales, np.argwhere(oscillating), "periodic")
 
 
-def _without_motion(found: Found, scales: _Scales, lost: IntArray, kind: str) -> Iterator[tuple[int, Motion]]:
+def _without_motion(
+    findings: ModelFindings, scales: _Scales, missing: IntArray, kind: str
+) -> Iterator[tuple[int, Motion]]:
     """Yield a row for each member and wind, (k, 2), where a motion is likely but none was found."""
-    member, wind = lost.reshape(-1, 2).T
-    places = _Places(found.line[member], found.loops[member, 0], found.winds[wind])
-    told: dict[str, Iterable[Any]] = {
+    member, wind = missing.reshape(-1, 2).T
+    keys = _RowKeys(findings.line[member], findings.loops[member, 0], findings.winds[wind])
+    labels: dict[str, Iterable[Any]] = {
         "kind": repeat(kind),
         "stability": repeat(Stability.UNKNOWN),
-        "outcome": repeat(_LOST),
+        "outcome": repeat(_NOT_FOUND),
     }
-    return _written(found, scales, places, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), told)
+    return _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), labels)
 
 
-def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
+def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Scales) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all cycles with their series where they are observed."""
-    cycles = found.cycles
+    cycles = findings.cycles
     if cycles.member.size == 0:
         return iter(())
-    line, loops = found.line[cycles.member], _own_loops(found)
-    shapes = found.model.shapes[cycles.member]
+    line, loops = findings.line[cycles.member], _dominant_loops(findings)
+    shapes = findings.model.shapes[cycles.member]
     series = np.empty((cycles.member.size, 3, cycles.orbits.coefficients.shape[-1]))
     for k in np.unique(loops):
         here = loops == k
-        seen = observation(made, shapes[here], int(k))
-        series[here] = seen.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
-    outside = _outside_fit(found, made.sections.fitted_range[line])
-    told: dict[str, Iterable[Any]] = {
+        observed_shapes = observation(discretization, shapes[here], int(k))
+        series[here] = observed_shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
+    outside = _outside_fit(findings, discretization.sections.fitted_range[line])
+    labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
         "stability": cycles.floquet.stability.tolist(),
         "branch": cycles.branch.tolist(),
@@ -141,48 +147,50 @@ def _cycles(made: Discretization, found: Found, scales: _Scales) -> Iterator[tup
         "harmonics": cycles.harmonics.tolist(),
         "outcome": [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()],
     }
-    places = _Places(line, loops, cycles.orbits.wind_speed)
-    return _written(found, scales, places, _measures(found, series), told, series)
+    keys = _RowKeys(line, loops, cycles.orbits.wind_speed)
+    return _rows(findings, scales, keys, _measures(findings, series), labels, series)
 
 
-def _measures(found: Found, series: FloatArray) -> dict[str, FloatArray]:
+def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
     """Return the columns of numbers that only cycles have, NaN where one is not known."""
-    cycles, trust = found.cycles, found.confidence
-    mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[cycles.member]
+    cycles, confidence = findings.cycles, findings.confidence
+    mass = np.diagonal(findings.model.mass, axis1=-2, axis2=-1)[cycles.member]
     return {
         **dict(zip(_AMPLITUDES, half_peak_to_peak(series).T, strict=True)),
-        **dict(zip(_SHARES, motion_shares(mass, cycles.orbits.coefficients, found.model.direction).T, strict=True)),
+        **dict(zip(_SHARES, motion_shares(mass, cycles.orbits.coefficients, findings.model.direction).T, strict=True)),
         "frequency_hz": cycles.orbits.angular_frequency / (2.0 * np.pi),
-        "residual": trust.residual,
-        "truncation": trust.truncation,
-        "detuning_sensitivity": trust.detuning,
-        "direct_difference": trust.direct,
+        "residual": confidence.residual,
+        "truncation": confidence.truncation,
+        "detuning_sensitivity": confidence.detuning,
+        "direct_difference": confidence.direct,
     }
 
 
-def _tori(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple[int, Motion]]:
+def _quasi_periodic_motions(
+    discretization: Discretization, findings: ModelFindings, scales: _Scales
+) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all quasi-periodic motions, and of wind speeds where one is likely but none was found."""
-    known, model = found.quasi_periodic, found.model
-    tori, member, line = known.tori, known.member, found.line[known.member]
+    known, model = findings.quasi_periodic, findings.model
+    tori, member, line = known.tori, known.member, findings.line[known.member]
     frequency, _ = base_frequencies(model, member, tori)
     energy = np.diagonal(model.mass, axis1=-2, axis2=-1)[member] * mean_square_velocity(tori)
-    loops = found.loops[member, energy.argmax(axis=-1)]
+    loops = findings.loops[member, energy.argmax(axis=-1)]
     ranges, outcome = np.empty((2, 3, member.size)), []
     for i in range(member.size):
-        one = tori.pick(np.array([i]))
-        series = observation(made, model.shapes[member[i]], int(loops[i])).T @ one.coefficients[0]
+        one = tori.select(np.array([i]))
+        series = observation(discretization, model.shapes[member[i]], int(loops[i])).T @ one.coefficients[0]
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
-        beyond = largest_angle(model, int(member[i]), one) > made.sections.fitted_range[line[i]]
+        beyond = largest_angle(model, int(member[i]), one) > discretization.sections.fitted_range[line[i]]
         outcome.append(Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED)
     measures = {
         **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
-        **dict(zip(_SHARES, divided(energy, model.direction).T, strict=True)),
+        **dict(zip(_SHARES, divide_by_direction(energy, model.direction).T, strict=True)),
         **dict(zip(_FREQUENCIES, frequency.T / (2.0 * np.pi), strict=True)),
         "residual": known.residual,
         "truncation": known.truncation,
         "direct_difference": known.direct,
     }
-    told: dict[str, Iterable[Any]] = {
+    labels: dict[str, Iterable[Any]] = {
         "kind": repeat("quasi_periodic"),
         "stability": known.stability.tolist(),
         "branch": known.branch.tolist(),
@@ -190,36 +198,36 @@ def _tori(made: Discretization, found: Found, scales: _Scales) -> Iterator[tuple
         "harmonics": repeat(tori.order[0]),
         "outcome": outcome,
     }
-    yield from _written(found, scales, _Places(line, loops, tori.wind_speed), measures, told)
-    yield from _without_motion(found, scales, known.lost, "quasi_periodic")
+    yield from _rows(findings, scales, _RowKeys(line, loops, tori.wind_speed), measures, labels)
+    yield from _without_motion(findings, scales, known.missing, "quasi_periodic")
 
 
-def _written(
-    found: Found,
+def _rows(
+    findings: ModelFindings,
     scales: _Scales,
-    places: _Places,
+    keys: _RowKeys,
     measures: Mapping[str, FloatArray],
-    told: Mapping[str, Iterable[Any]],
+    labels: Mapping[str, Iterable[Any]],
     series: Iterable[FloatArray | None] = repeat(None),
 ) -> Iterator[tuple[int, Motion]]:
     """Write rows from columns, with the line of each; a column that is not given, and what is not finite, is None.
 
     measures: columns of numbers, those of the amplitudes among them; told: all others.
     """
-    sag, speed = scales.sag[places.line], scales.speed[places.line]
+    sag, speed = scales.sag[keys.line], scales.speed[keys.line]
     observed = {k: at.tolist() for k, at in scales.observed.items()}
-    lines, loops = places.line.tolist(), places.loops.tolist()
+    lines, loops = keys.line.tolist(), keys.loops.tolist()
     with np.errstate(invalid="ignore"):  # the speed of a line without a vertical frequency is infinite
-        reduced = np.where(np.isfinite(speed), places.wind_speed / speed, np.nan)
+        reduced = np.where(np.isfinite(speed), keys.wind_speed / speed, np.nan)
     numbers = dict(measures) | {
-        "wind_speed_m_per_s": places.wind_speed,
+        "wind_speed_m_per_s": keys.wind_speed,
         "vertical_ratio": measures["vertical_m"] / sag,
         "horizontal_ratio": measures["horizontal_m"] / sag,
         "reduced_wind_speed": reduced,
     }
     columns: dict[str, Iterable[Any]] = dict.fromkeys(_NAMES, repeat(None))
-    columns |= {name: _numbers(column) for name, column in numbers.items()} | dict(told)
-    columns |= {"model": repeat(found.name), "loops": loops}
+    columns |= {name: _numbers(column) for name, column in numbers.items()} | dict(labels)
+    columns |= {"model": repeat(findings.name), "loops": loops}
     columns["observed_at_m"] = [observed[k][line] for k, line in zip(loops, lines, strict=True)]
     return zip(lines, map(Motion, map(LimitCycleRow, *columns.values()), series), strict=False)
 
@@ -227,29 +235,29 @@ def _written(
 def _numbers(column: FloatArray) -> list[Any]:
     """Return numbers, None where one is not finite."""
     values: list[Any] = column.tolist()
-    return values if np.isfinite(column).all() else [number(value) for value in values]
+    return values if np.isfinite(column).all() else [finite_or_none(value) for value in values]
 
 
-def _observed_at(made: Discretization, loops: int) -> FloatArray:
+def _observed_at(discretization: Discretization, loops: int) -> FloatArray:
     """Return the horizontal position of s = L/(2 loops) on each line [m]."""
-    return horizontal_position(made.profile, made.profile.arc_length / (2.0 * loops))
+    return horizontal_position(discretization.profile, discretization.profile.arc_length / (2.0 * loops))
 
 
-def _own_loops(found: Found) -> IntArray:
-    """Return the number of loops of the co-ordinate of largest M_ii |q_i|^2 in each cycle."""
-    mass = np.diagonal(found.model.mass, axis1=-2, axis2=-1)[found.cycles.member]
-    energy = mass * (found.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
-    return np.asarray(found.loops[found.cycles.member, energy.argmax(axis=-1)])
+def _dominant_loops(findings: ModelFindings) -> IntArray:
+    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 in each cycle."""
+    mass = np.diagonal(findings.model.mass, axis1=-2, axis2=-1)[findings.cycles.member]
+    energy = mass * (findings.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
+    return np.asarray(findings.loops[findings.cycles.member, energy.argmax(axis=-1)])
 
 
-def _outside_fit(found: Found, fitted_range: FloatArray) -> BoolArray:
+def _outside_fit(findings: ModelFindings, fitted_range: FloatArray) -> BoolArray:
     """Tell where the largest |alpha| along the span and over the period exceeds the fitted range (cycles,) [rad]."""
-    cycles = found.cycles
+    cycles = findings.cycles
     result = np.zeros(cycles.member.size, dtype=np.bool_)
     known = np.flatnonzero(np.isfinite(fitted_range))
     if known.size:
-        orbits = pick(cycles.orbits, known)
+        orbits = select(cycles.orbits, known)
         state = states(orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
-        angle = take(found.model, cycles.member[known]).load.angle
+        angle = take(findings.model, cycles.member[known]).load.angle
         result[known] = np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2)) > fitted_range[known]
     return result

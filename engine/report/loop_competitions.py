@@ -9,12 +9,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.arrays import ComplexArray, FloatArray, IntArray
-from engine.cycles.floquet import judged, monodromy
+from engine.cycles.floquet import monodromy, stability_verdicts
 from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, oscillation_size
 from engine.models.discretization import Discretization, observation
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome, Stability
-from engine.report.rows import Found
+from engine.report.rows import ModelFindings
 from engine.result import LoopCompetitionRow
 
 FINENESS = 2  # times the steps of the Floquet integration: multipliers near one decide
@@ -22,16 +22,16 @@ SAME_SIZE = 2.0  # ratio of sizes beyond which the balance has left the cycle fo
 
 
 def loop_competitions(
-    made: Discretization, joint: ReducedModel, hybrid: Found, loops: Sequence[int]
+    discretization: Discretization, joint: ReducedModel, hybrid: ModelFindings, loops: Sequence[int]
 ) -> list[list[LoopCompetitionRow]]:
     """Hold every stable cycle of the hybrid model against the other loops; a list a line.
 
     Parameters
     ----------
-    made : Discretization
+    discretization : Discretization
     joint : ReducedModel
         Of these loops together, leading axis (lines,).
-    hybrid : Found
+    hybrid : ModelFindings
         Of these loops one by one.
     loops : sequence of int
 
@@ -39,51 +39,51 @@ def loop_competitions(
     -------
     list of lists of LoopCompetitionRow
     """
-    rows: list[list[LoopCompetitionRow]] = [[] for _ in made.lines]
+    rows: list[list[LoopCompetitionRow]] = [[] for _ in discretization.lines]
     cycles = hybrid.cycles
     usable = ~joint.statically_unstable[hybrid.line[cycles.member]]
-    alone = np.flatnonzero((cycles.floquet.stability == Stability.STABLE) & usable)
-    if len(loops) < 2 or alone.size == 0:
+    stable_alone = np.flatnonzero((cycles.floquet.stability == Stability.STABLE) & usable)
+    if len(loops) < 2 or stable_alone.size == 0:
         return rows
-    member = cycles.member[alone]
+    member = cycles.member[stable_alone]
     line, column = hybrid.line[member], np.searchsorted(np.sort(loops), hybrid.loops[member, 0])
     column = np.argsort(loops)[column]
-    start = _embedded(cycles.orbits, alone, column, len(loops))
+    start = _embedded(cycles.orbits, stable_alone, column, len(loops))
     orbits, solution = balance(joint, line, start)
     ratio = oscillation_size(joint, line, orbits) / oscillation_size(joint, line, start)
-    held = solution.converged & (ratio < SAME_SIZE) & (ratio > 1.0 / SAME_SIZE)
+    same_cycle = solution.converged & (ratio < SAME_SIZE) & (ratio > 1.0 / SAME_SIZE)
     multiplier, vector, error = _leading(monodromy(joint, line, orbits, FINENESS))
-    verdict = judged(np.abs(multiplier), error)
+    verdict = stability_verdicts(np.abs(multiplier), error)
     energy = _energy_by_loops(joint, line, vector, len(loops))
-    for i, cycle in enumerate(alone.tolist()):
+    for i, cycle in enumerate(stable_alone.tolist()):
         own = int(loops[column[i]])
-        seen = observation(made, joint.shapes[line[i]], own).T @ orbits.coefficients[i]
-        vertical, horizontal, torsional = half_peak_to_peak(seen).tolist()
-        decided = bool(held[i]) and verdict[i] is not Stability.UNKNOWN
+        observed = observation(discretization, joint.shapes[line[i]], own).T @ orbits.coefficients[i]
+        vertical, horizontal, torsional = half_peak_to_peak(observed).tolist()
+        decided = bool(same_cycle[i]) and verdict[i] is not Stability.UNKNOWN
         rows[line[i]].append(
             LoopCompetitionRow(
                 loops=own,
                 wind_speed_m_per_s=float(cycles.orbits.wind_speed[cycle]),
                 branch=int(cycles.branch[cycle]),
-                stability=verdict[i] if held[i] else Stability.UNKNOWN,
+                stability=verdict[i] if same_cycle[i] else Stability.UNKNOWN,
                 growing_loops=int(loops[int(energy[i].argmax())]) if decided else None,
                 growth_per_cycle=float(np.abs(multiplier[i])) if decided else None,
-                vertical_m=vertical if held[i] else None,
-                horizontal_m=horizontal if held[i] else None,
-                torsional_rad=torsional if held[i] else None,
-                outcome=Outcome.CONVERGED if held[i] else Outcome.NO_CONVERGENCE,
+                vertical_m=vertical if same_cycle[i] else None,
+                horizontal_m=horizontal if same_cycle[i] else None,
+                torsional_rad=torsional if same_cycle[i] else None,
+                outcome=Outcome.CONVERGED if same_cycle[i] else Outcome.NO_CONVERGENCE,
             )
         )
     return rows
 
 
-def _embedded(orbits: Orbits, picked: IntArray, column: IntArray, count: int) -> Orbits:
-    """Put cycles of one number of loops into the co-ordinates of all, the others at rest."""
-    own = orbits.coefficients[picked]
-    coefficients = np.zeros((picked.size, 3, count, own.shape[-1]))
-    coefficients[np.arange(picked.size), :, column] = own
-    flat = coefficients.reshape(picked.size, 3 * count, -1)
-    return Orbits(flat, orbits.angular_frequency[picked], orbits.wind_speed[picked])
+def _embedded(orbits: Orbits, selected: IntArray, column: IntArray, count: int) -> Orbits:
+    """Put cycles of one number of loops into the coordinates of all, the others at rest."""
+    own = orbits.coefficients[selected]
+    coefficients = np.zeros((selected.size, 3, count, own.shape[-1]))
+    coefficients[np.arange(selected.size), :, column] = own
+    flat = coefficients.reshape(selected.size, 3 * count, -1)
+    return Orbits(flat, orbits.angular_frequency[selected], orbits.wind_speed[selected])
 
 
 def _leading(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:

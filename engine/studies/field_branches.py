@@ -1,7 +1,7 @@
 """Branches of limit cycles over a field of the line at a fixed wind speed, through folds. Theory section 7.2.
 
 A point of a branch holds the coefficients of the cycle, its angular frequency and the value of the field, which stands
-where `branches` has the wind speed. The models of any value are made as an analysis makes them.
+where `families` has the wind speed. The models of any value are made as an analysis makes them.
 """
 
 from collections.abc import Callable
@@ -11,22 +11,22 @@ import numpy as np
 from scipy.optimize import brentq
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.cycles.bifurcations import Bifurcations, Kind, distinct, on_branches
-from engine.cycles.branches import CycleProblem, Traces, at_winds, reference_size, traced_both_ways
-from engine.cycles.families import CycleFamily, Starts
+from engine.cycles.bifurcations import Bifurcations, Kind, bifurcations_on, distinct
+from engine.cycles.branches import BranchSet, CycleProblem, follow_both_ways, guessed_cycles, reference_size
 from engine.cycles.harmonic_balance import Orbits, linearized, residual
-from engine.cycles.search import solved_starts
+from engine.cycles.known_cycles import KnownCycles, Starts
+from engine.cycles.search import solve_starts
 from engine.models.critical_wind_speeds import at_wind, state_matrices
 from engine.models.reduced_model import ReducedModel, take
-from engine.numerics.continuation import Start, corrected_by_newton
-from engine.numerics.newton import Options, Solution
+from engine.numerics.continuation import NewtonStart, correct_by_newton
+from engine.numerics.newton import NewtonOptions, Solution
 
 PARTS = 5  # of the range, the length by which the field is measured
 DIFFERENCE = 1e-3  # of the range, to either side, for the slope by the field
 HOPF = 1e-10  # of the range, to which the growth rate's zero is found
-SEARCHES = 12  # doublings of the interval in which a Hopf point is looked for
+DOUBLINGS = 12  # doublings of the interval in which a Hopf point is looked for
 
-Models = Callable[[FloatArray, IntArray], tuple[ReducedModel, BoolArray]]
+ModelsAt = Callable[[FloatArray, IntArray], tuple[ReducedModel, BoolArray]]
 """Makes models (k,) of values of the field (k,) for members (k,), and tells which of them have a meaning."""
 
 
@@ -38,14 +38,14 @@ class FieldProblem(CycleProblem):
     any value; wind_speed: (members,) [m/s]; width: length of the range of values.
     """
 
-    made: Models
+    models_at: ModelsAt
     wind_speed: FloatArray
     width: float
 
     def repeated(self, branch: IntArray) -> "FieldProblem":
         """Return the problem with these of its branches."""
         member, reference = self.member[branch], self.reference[branch]
-        return FieldProblem(self.model, member, reference, self.made, self.wind_speed, self.width)
+        return FieldProblem(self.model, member, reference, self.models_at, self.wind_speed, self.width)
 
     def orbits(self, z: FloatArray, branch: IntArray) -> Orbits:
         """Return the cycles at points (k, n + 1) of branches (k,), at their wind speeds."""
@@ -55,29 +55,29 @@ class FieldProblem(CycleProblem):
 
     def models(self, z: FloatArray, branch: IntArray) -> tuple[ReducedModel, IntArray]:
         """Return a model for each of the points (k, n + 1) of branches (k,), and their numbers."""
-        return self.made(z[:, -1], self.member[branch])[0], np.arange(branch.size)
+        return self.models_at(z[:, -1], self.member[branch])[0], np.arange(branch.size)
 
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the balance and the phase condition with their slopes; NaN where the field has no meaning."""
         count, step = branch.size, DIFFERENCE * self.width
         values = np.concatenate([z[:, -1] + shift for shift in (0.0, step, -step)])
-        models, defined = self.made(values, np.tile(self.member[branch], 3))
+        models, defined = self.models_at(values, np.tile(self.member[branch], 3))
         known = np.asarray(defined.reshape(3, count).all(axis=0))
         orbits, index = self.orbits(z, branch), np.arange(count)
-        rows, slopes = linearized(models, index, orbits)
+        residuals, slopes = linearized(models, index, orbits)
         above, below = (residual(take(models, shift * count + index), orbits).reshape(count, -1) for shift in (1, 2))
         slopes[:, :, -1] = (above - below) / (2.0 * step)
         phase = self.phase(anchor, branch)
         drift = np.einsum("kx,kx->k", phase, z[:, :-2] - anchor[:, :-2])
         last = np.concatenate([phase, np.zeros((count, 2))], axis=-1)
-        rows = np.concatenate([rows, drift[:, None]], axis=-1)
-        return np.where(known[:, None], rows, np.nan), np.concatenate([slopes, last[:, None]], axis=1)
+        residuals = np.concatenate([residuals, drift[:, None]], axis=-1)
+        return np.where(known[:, None], residuals, np.nan), np.concatenate([slopes, last[:, None]], axis=1)
 
-    def corrected(
-        self, start: Start, branch: IntArray, condition: tuple[FloatArray, FloatArray], options: Options
+    def correct(
+        self, start: NewtonStart, branch: IntArray, condition: tuple[FloatArray, FloatArray], options: NewtonOptions
     ) -> tuple[Solution, FloatArray]:
         """Solve together with one linear condition more; the compiled form knows one model a branch only."""
-        return corrected_by_newton(self, start, branch, condition, options)
+        return correct_by_newton(self, start, branch, condition, options)
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
         """Measure cycles as over the wind speed, and the field by a part of its range."""
@@ -103,7 +103,7 @@ class FieldCycles:
     bifurcations: Bifurcations
 
 
-def follow(problem: FieldProblem, values: FloatArray, known: Starts) -> FieldCycles:
+def follow_over_field(problem: FieldProblem, values: FloatArray, known: Starts) -> FieldCycles:
     """Follow the branch of every known cycle over a field both ways, until nothing new appears at its values.
 
     Parameters
@@ -120,97 +120,101 @@ def follow(problem: FieldProblem, values: FloatArray, known: Starts) -> FieldCyc
     FieldCycles
         Sorted by member, value and branch.
     """
-    family = CycleFamily(problem.model)
-    family.add(known, np.ones(known.member.size, dtype=np.bool_), "branch")
-    given, traces, followed = len(family), [], []
-    while (apart := family.apart()).size:
-        member, value = family.places(apart)
-        start = family.orbits_of(apart)
+    known_cycles = KnownCycles(problem.model)
+    known_cycles.add(known, np.ones(known.member.size, dtype=np.bool_), "branch")
+    given, branch_sets, followed = len(known_cycles), [], []
+    while (unfollowed := known_cycles.unfollowed()).size:
+        member, value = known_cycles.locations(unfollowed)
+        start = known_cycles.orbits(unfollowed)
         here = FieldProblem(
             problem.model,
             member,
             reference_size(problem.model, member, start),
-            problem.made,
+            problem.models_at,
             problem.wind_speed,
             problem.width,
         )
         z = np.concatenate([start.coefficients.reshape(member.size, -1), start.angular_frequency[:, None]], axis=-1)
         limits = float(values[0]), float(values[-1])
-        trace = traced_both_ways(here, np.concatenate([z, values[value][:, None]], axis=-1), limits)
-        numbers = _cover(family, trace, values)
-        family.join(numbers, np.tile(apart, 2))
-        traces.append(trace)
-        followed.append(numbers)
-    branch, families = family.branches()
-    member, value = family.places(np.arange(len(family)))
+        branch_set = follow_both_ways(here, np.concatenate([z, values[value][:, None]], axis=-1), limits)
+        branch_numbers = _add_cycles_on(known_cycles, branch_set, values)
+        known_cycles.link(branch_numbers, np.tile(unfollowed, 2))
+        branch_sets.append(branch_set)
+        followed.append(branch_numbers)
+    branch, families = known_cycles.families()
+    member, value = known_cycles.locations(np.arange(len(known_cycles)))
     order = np.lexsort((branch, value, member))
-    parts = [part for trace, numbers in zip(traces, followed, strict=True) for part in _turns(trace, families[numbers])]
+    parts = [
+        part
+        for branch_set, branch_numbers in zip(branch_sets, followed, strict=True)
+        for part in _bifurcations(branch_set, families[branch_numbers])
+    ]
     return FieldCycles(
         member[order],
         value[order],
         branch[order],
-        family.orbits_of(order),
+        known_cycles.orbits(order),
         order < given,
         distinct(parts),
     )
 
 
-def _cover(family: CycleFamily, trace: Traces, values: FloatArray) -> IntArray:
+def _add_cycles_on(known_cycles: KnownCycles, branch_set: BranchSet, values: FloatArray) -> IntArray:
     """Solve for the cycles at the values that followed branches pass; return the numbers of these branches."""
-    problem = trace.problem
-    followed = family.follow(problem.member, trace.born)
-    branch, value, orbits = at_winds(trace, values)
+    problem = branch_set.problem
+    followed = known_cycles.add_branches(problem.member, branch_set.hopf_wind_speed)
+    branch, value, orbits = guessed_cycles(branch_set, values)
     models, index = problem.models(values[value][:, None], branch)
-    starts, good = solved_starts(models, Starts(index, value, orbits))
-    numbers = family.add(Starts(problem.member[branch], value, starts.orbits), good, "branch")
-    family.join(followed[branch[good]], numbers[good])
+    starts, good = solve_starts(models, Starts(index, value, orbits))
+    branch_numbers = known_cycles.add(Starts(problem.member[branch], value, starts.orbits), good, "branch")
+    known_cycles.link(followed[branch[good]], branch_numbers[good])
     return followed
 
 
-def _turns(trace: Traces, numbers: IntArray) -> list[Bifurcations]:
+def _bifurcations(branch_set: BranchSet, branch_numbers: IntArray) -> list[Bifurcations]:
     """Locate what happens along followed branches, and the Hopf points in which they end."""
-    return [*on_branches(trace, numbers), _hopf(trace, numbers)]
+    return [*bifurcations_on(branch_set, branch_numbers), _hopf_points(branch_set, branch_numbers)]
 
 
-def _hopf(trace: Traces, numbers: IntArray) -> Bifurcations:
+def _hopf_points(branch_set: BranchSet, branch_numbers: IntArray) -> Bifurcations:
     """Locate the value at which the growth rate of the static state vanishes, for branches that ended there."""
-    problem = trace.problem
+    problem = branch_set.problem
     assert isinstance(problem, FieldProblem)
-    ended = np.flatnonzero(trace.returned)
-    found = [_vanishing_growth(problem, trace, int(i)) for i in ended]
+    ended = np.flatnonzero(branch_set.ended_at_equilibrium)
+    found = [_hopf_point(problem, branch_set, int(i)) for i in ended]
     good = ended[[value is not None for value, _ in found]]
     rates = np.array([rate for value, rate in found if value is not None])
-    orbits = trace.orbits
+    orbits = branch_set.orbits
     mass = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[problem.member[good]]
-    share = mass * (orbits.coefficients[trace.last[good], :, 1:] ** 2).sum(axis=-1)
+    share = mass * (orbits.coefficients[branch_set.last[good], :, 1:] ** 2).sum(axis=-1)
     return Bifurcations(
         member=problem.member[good],
-        branch=numbers[good],
+        branch=branch_numbers[good],
         kind=np.array([Kind.HOPF] * good.size, dtype=np.object_),
         wind_speed=np.array([value for value, _ in found if value is not None]),
         angular_frequency=rates,
-        second=np.full(good.size, np.nan),
-        co_ordinate=share.argmax(axis=-1) if good.size else good,
+        second_frequency=np.full(good.size, np.nan),
+        coordinate=share.argmax(axis=-1) if good.size else good,
         uncertainty=np.full(good.size, HOPF * problem.width),
         may_end_stability=np.ones(good.size, dtype=np.bool_),
     )
 
 
-def _vanishing_growth(problem: FieldProblem, trace: Traces, branch: int) -> tuple[float | None, float]:
+def _hopf_point(problem: FieldProblem, branch_set: BranchSet, branch: int) -> tuple[float | None, float]:
     """Return the value and the angular frequency at which a branch meets the static state; None if it is not found."""
-    last = trace.points.z[trace.last[branch]]
+    last = branch_set.points.z[branch_set.last[branch]]
     member = problem.member[[branch]]
     speed = problem.wind_speed[member]
 
     def pair(value: float) -> complex:
-        models, known = problem.made(np.array([value]), member)
+        models, known = problem.models_at(np.array([value]), member)
         if not known[0]:
             return complex(np.nan, np.nan)
         values = np.linalg.eigvals(at_wind(state_matrices(models), speed)[0])
         return complex(values[np.abs(values.imag - last[-2]).argmin()])
 
     here = pair(last[-1]).real
-    for exponent in range(SEARCHES):
+    for exponent in range(DOUBLINGS):
         for side in (1.0, -1.0):
             there = last[-1] + side * problem.width * 2.0**exponent * 1e-4
             if pair(there).real * here < 0.0:

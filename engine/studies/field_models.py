@@ -20,7 +20,7 @@ ACCURACY = 1e-9  # relative error of each part of the model between the values
 SMALLEST = 1e-6  # of the largest number of an array: smaller ones are measured by it
 CHECKED = (-0.93, 0.11, 0.76)  # places in a panel from -1 to 1 where the polynomial is held against the model
 
-Made = Callable[[FloatArray], ReducedModel | None]
+ModelsOf = Callable[[FloatArray], ReducedModel | None]
 """Makes models, leading axes (values, columns), or nothing where one of the values has no line."""
 
 _NODES = np.cos(np.pi * np.arange(NODES) / (NODES - 1))
@@ -35,7 +35,7 @@ class FieldModels:
     (panels, nodes, columns, numbers), the numbers of the models at the nodes; defined: (panels, columns).
     """
 
-    like: ReducedModel
+    template: ReducedModel
     low: FloatArray
     high: FloatArray
     parts: FloatArray
@@ -49,15 +49,15 @@ class FieldModels:
         panel = np.clip(np.searchsorted(self.high, values), 0, self.high.size - 1)
         place = (2.0 * values - self.low[panel] - self.high[panel]) / (self.high[panel] - self.low[panel])
         numbers = np.einsum("kn,knx->kx", _lagrange(place), self.parts[panel, :, column])
-        return _unpacked(take(self.like, column), numbers), self.defined[panel, column] & np.isfinite(values)
+        return _from_rows(take(self.template, column), numbers), self.defined[panel, column] & np.isfinite(values)
 
 
-def field_models(made: Made, low: float, high: float) -> FieldModels:
+def field_models(models_of: ModelsOf, low: float, high: float) -> FieldModels:
     """Make the models over a range of values.
 
     Parameters
     ----------
-    made : callable
+    models_of : callable
     low, high : float
         Both ends must have a line.
 
@@ -65,34 +65,34 @@ def field_models(made: Made, low: float, high: float) -> FieldModels:
     -------
     FieldModels
     """
-    like = made(np.array([low, high]))
-    if like is None:
+    template = models_of(np.array([low, high]))
+    if template is None:
         raise ValueError("the field has no line at an end of its range")
     panels: list[tuple[float, float, FloatArray, BoolArray]] = []
-    waiting = [(low, high, HALVINGS)]
-    while waiting:
-        left, right, halvings = waiting.pop()
-        numbers, good = _panel(made, left, right)
+    pending = [(low, high, HALVINGS)]
+    while pending:
+        left, right, halvings = pending.pop()
+        numbers, good = _panel(models_of, left, right)
         if numbers is not None and (good.all() or halvings == 0):
             panels.append((left, right, numbers, good))
         elif halvings == 0:
-            columns = like.mass.shape[1]
-            nothing = np.tile(_packed(take(like, 0))[None], (NODES, 1, 1))
+            columns = template.mass.shape[1]
+            nothing = np.tile(_to_rows(take(template, 0))[None], (NODES, 1, 1))
             panels.append((left, right, nothing, np.zeros(columns, dtype=np.bool_)))
         else:
             middle = 0.5 * (left + right)
-            waiting += [(middle, right, halvings - 1), (left, middle, halvings - 1)]
+            pending += [(middle, right, halvings - 1), (left, middle, halvings - 1)]
     lows, highs, parts, defined = zip(*panels, strict=True)
-    return FieldModels(take(like, 0), np.array(lows), np.array(highs), np.stack(parts), np.stack(defined))
+    return FieldModels(take(template, 0), np.array(lows), np.array(highs), np.stack(parts), np.stack(defined))
 
 
-def _panel(made: Made, low: float, high: float) -> tuple[FloatArray | None, BoolArray]:
+def _panel(models_of: ModelsOf, low: float, high: float) -> tuple[FloatArray | None, BoolArray]:
     """Return the numbers at the nodes of a panel and in which columns they give the models between them."""
     places = np.concatenate([_NODES, CHECKED])
-    models = made(0.5 * (low + high) + 0.5 * (high - low) * places)
+    models = models_of(0.5 * (low + high) + 0.5 * (high - low) * places)
     if models is None:
         return None, np.zeros(0, dtype=np.bool_)
-    numbers = _packed(models)
+    numbers = _to_rows(models)
     between = np.einsum("cn,nkx->ckx", _lagrange(np.array(CHECKED)), numbers[:NODES])
     size = np.abs(numbers).max(axis=(0, 1))
     for here, _ in _slices(models):
@@ -120,7 +120,7 @@ def _arrays(model: ReducedModel) -> list[FloatArray]:
     return own + [getattr(model.load, name) for name in _OF_LOAD]
 
 
-def _packed(model: ReducedModel) -> FloatArray:
+def _to_rows(model: ReducedModel) -> FloatArray:
     """Write all numbers of models as rows: (..., numbers)."""
     lead = model.statically_unstable.shape
     return np.concatenate([array.reshape(*lead, -1) for array in _arrays(model)], axis=-1)
@@ -134,11 +134,12 @@ def _slices(model: ReducedModel) -> list[tuple[slice, int]]:
     return [(slice(end - length, end), length) for end, length in zip(ends, lengths, strict=True)]
 
 
-def _unpacked(like: ReducedModel, numbers: FloatArray) -> ReducedModel:
+def _from_rows(template: ReducedModel, numbers: FloatArray) -> ReducedModel:
     """Read rows (k, numbers) as models (k,) shaped like others."""
     arrays = [
-        numbers[:, here].reshape(array.shape) for (here, _), array in zip(_slices(like), _arrays(like), strict=True)
+        numbers[:, here].reshape(array.shape)
+        for (here, _), array in zip(_slices(template), _arrays(template), strict=True)
     ]
     mass, damping, stiffness, shapes = arrays[: len(_OWN)]
     load = PolynomialLoad(*arrays[len(_OWN) :])
-    return ReducedModel(mass, damping, stiffness, load, shapes, like.direction, like.statically_unstable)
+    return ReducedModel(mass, damping, stiffness, load, shapes, template.direction, template.statically_unstable)

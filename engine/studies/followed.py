@@ -6,18 +6,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.cycles.families import Starts
-from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, pick
-from engine.cycles.search import judged_orbits, solved_starts
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select
+from engine.cycles.known_cycles import Starts
+from engine.cycles.search import resolved_stability, solve_starts
 from engine.mechanics.modes import directional_shapes
 from engine.mechanics.static_profile import horizontal_position
 from engine.models.discretization import Discretization, discretize, observation
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import ReducedModel, take
-from engine.report.rows import number
+from engine.report.rows import finite_or_none
 from engine.result import FollowedBifurcationRow, FollowedCycleRow, Result
 from engine.spec import Analysis, Line, Model
-from engine.studies.field_branches import FieldCycles, FieldProblem, follow
+from engine.studies.field_branches import FieldCycles, FieldProblem, follow_over_field
 from engine.studies.field_models import field_models
 
 MORE_HARMONICS = 4  # than are asked for: near a fold the fifth moves the field more than the cycle's amplitude
@@ -44,13 +44,13 @@ def followed(line_at: LineAt, values: Sequence[float], results: Sequence[Result]
         With `followed_cycles`, and `followed_bifurcations` at the nearest value.
     """
     study = _Study(line_at, np.array(values, dtype=np.float64), analysis)
-    made, grid = study.models_of([line_at(value) for value in values])
-    known = study.starts(made, grid, results)
+    discretization, grid = study.models_of([line_at(value) for value in values])
+    known = study.starts(discretization, grid, results)
     if known.member.size == 0:
         return list(results)
     problem = study.problem(grid)
-    found = follow(problem, study.values, known)
-    cycles = _cycle_rows(study, made, grid, found)
+    found = follow_over_field(problem, study.values, known)
+    cycles = _cycle_rows(study, discretization, grid, found)
     turns = _bifurcation_rows(study, found)
     return [
         replace(result, followed_cycles=tuple(own), followed_bifurcations=tuple(turned))
@@ -77,12 +77,12 @@ class _Study:
 
     def models_of(self, lines: Sequence[Line]) -> tuple[Discretization, ReducedModel]:
         """Return the hybrid models (lines, loops) as an analysis makes them."""
-        made = discretize(lines, self.analysis.static_twist)
+        discretization = discretize(lines, self.analysis.static_twist)
         loops = tuple(sorted({*self.analysis.loops, 1, 2}))
-        shapes = directional_shapes(made.matrices, made.profile.arc_length, loops)
-        return made, hybrid_model(made, shapes, self.analysis.loops, self.analysis)
+        shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, loops)
+        return discretization, hybrid_model(discretization, shapes, self.analysis.loops, self.analysis)
 
-    def made(self, values: FloatArray) -> ReducedModel | None:
+    def models_at(self, values: FloatArray) -> ReducedModel | None:
         """Make the models of values, leading axes (values, loops); None where one of them has no line."""
         try:
             return self.models_of([self.line_at(value) for value in values.tolist()])[1]
@@ -92,21 +92,21 @@ class _Study:
     def problem(self, grid: ReducedModel) -> FieldProblem:
         """Set up the equations; sizes are measured in the middle of the range."""
         members, column = self.column.size, self.column
-        models = field_models(self.made, float(self.values[0]), float(self.values[-1]))
+        models = field_models(self.models_at, float(self.values[0]), float(self.values[-1]))
 
-        def made(values: FloatArray, member: IntArray) -> tuple[ReducedModel, BoolArray]:
+        def models_of_members(values: FloatArray, member: IntArray) -> tuple[ReducedModel, BoolArray]:
             return models.at(values, column[member])
 
         return FieldProblem(
             model=take(grid, (self.values.size // 2, self.column)),
             member=np.arange(members),
             reference=np.ones(members),
-            made=made,
+            models_at=models_of_members,
             wind_speed=np.tile(self.winds, len(self.analysis.loops)),
             width=float(np.ptp(self.values)),
         )
 
-    def starts(self, made: Discretization, grid: ReducedModel, results: Sequence[Result]) -> Starts:
+    def starts(self, discretization: Discretization, grid: ReducedModel, results: Sequence[Result]) -> Starts:
         """Read the cycles of the hybrid model back from results."""
         size = 2 * (self.analysis.harmonics + MORE_HARMONICS) + 1
         member, value, rate, coefficients = [], [], [], []
@@ -116,7 +116,7 @@ class _Study:
                 if row.model is not Model.HYBRID or row.kind != "periodic" or row.frequency_hz is None:
                     continue
                 column = self.analysis.loops.index(row.loops)
-                seen = np.diagonal(observation(made, grid.shapes[i, column], row.loops))
+                seen = np.diagonal(observation(discretization, grid.shapes[i, column], row.loops))
                 series = np.array([orbit.vertical, orbit.horizontal, orbit.torsional])[:, :size] / seen[:, None]
                 coefficients.append(np.pad(series, ((0, 0), (0, size - series.shape[1]))))
                 member.append(column * self.winds.size + int(np.searchsorted(self.winds, row.wind_speed_m_per_s)))
@@ -130,22 +130,22 @@ class _Study:
     def balanced(self, grid: ReducedModel, starts: Starts) -> Starts:
         """Solve for the cycles with the harmonics that they have here."""
         models = take(grid, (starts.wind, self.column[starts.member]))
-        solved, good = solved_starts(models, Starts(np.arange(starts.wind.size), starts.wind, starts.orbits))
-        return Starts(starts.member[good], starts.wind[good], pick(solved.orbits, np.flatnonzero(good)))
+        solved, good = solve_starts(models, Starts(np.arange(starts.wind.size), starts.wind, starts.orbits))
+        return Starts(starts.member[good], starts.wind[good], select(solved.orbits, np.flatnonzero(good)))
 
 
 def _cycle_rows(
-    study: _Study, made: Discretization, grid: ReducedModel, found: FieldCycles
+    study: _Study, discretization: Discretization, grid: ReducedModel, found: FieldCycles
 ) -> list[list[FollowedCycleRow]]:
     rows: list[list[FollowedCycleRow]] = [[] for _ in study.values]
     column = study.column[found.member]
     models = take(grid, (found.value, column))
-    orbits, judged, kept, _ = judged_orbits(models, np.arange(column.size), found.orbits)
+    orbits, judged, kept, _ = resolved_stability(models, np.arange(column.size), found.orbits)
     for i in np.flatnonzero(kept).tolist():
         loops, value = study.analysis.loops[column[i]], int(found.value[i])
-        seen = observation(made, models.shapes[i], loops)
+        seen = observation(discretization, models.shapes[i], loops)
         vertical, horizontal, torsional = half_peak_to_peak(seen.T @ orbits.coefficients[i]).tolist()
-        place = horizontal_position(made.profile, made.profile.arc_length / (2.0 * loops))
+        place = horizontal_position(discretization.profile, discretization.profile.arc_length / (2.0 * loops))
         row = FollowedCycleRow(
             loops=loops,
             wind_speed_m_per_s=float(orbits.wind_speed[i]),
@@ -173,7 +173,7 @@ def _bifurcation_rows(study: _Study, found: FieldCycles) -> list[list[FollowedBi
             type=b.kind[i].value,
             value=float(b.wind_speed[i]),
             frequency_hz=float(b.angular_frequency[i] / (2.0 * np.pi)),
-            second_frequency_hz=number(float(b.second[i] / (2.0 * np.pi))),
+            second_frequency_hz=finite_or_none(float(b.second_frequency[i] / (2.0 * np.pi))),
             uncertainty=float(b.uncertainty[i]),
         )
         rows[int(np.abs(study.values - b.wind_speed[i]).argmin())].append(row)

@@ -10,23 +10,30 @@ import numpy as np
 
 from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
 from engine.cycles.bifurcations import Bifurcations, Kind
-from engine.cycles.branches import passed
-from engine.cycles.harmonic_balance import Orbits, pick
+from engine.cycles.branches import guessed_points
+from engine.cycles.harmonic_balance import Orbits, select
 from engine.cycles.search import Cycles
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
 from engine.models.reduced_model import ReducedModel, take
-from engine.numerics.newton import Options
+from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.result import FoundBy
 from engine.spec import TorusSearch
 from engine.tori.spectrum import base_frequencies, is_torus, line_strengths, tail
-from engine.tori.torus_branches import Births, born_at_torus_points, born_stable, critical_directions, modulated, traced
-from engine.tori.torus_stability import long_map
+from engine.tori.torus_branches import (
+    TorusStarts,
+    critical_directions,
+    follow_tori,
+    starting_stable_tori,
+    starts_at_torus_points,
+    tori_from_cycles,
+)
+from engine.tori.torus_stability import torus_stability
 from engine.tori.two_frequency_balance import (
     Order,
     Tori,
     balance,
-    lattice,
+    harmonic_lattice,
     linearized,
     resized,
     stacked,
@@ -40,22 +47,22 @@ FINEST: Order = (7, 8)  # where the harmonics of the fine order do not fall off
 TAIL = 1e-3  # share of the last harmonics above which more are taken
 SAME = 1e-3  # relative distance below which two tori are one
 REAL = 1e-3  # angle of a multiplier from the real axis below which it turns nothing [rad]
-TRIAL = Options(tolerance=1e-3, iterations=12)  # of starts that may lead nowhere
-ONE_STEP = Options(iterations=1)  # the change with one harmonic more is small
+TRIAL = NewtonOptions(tolerance=1e-3, iterations=12)  # of starts that may lead nowhere
+ONE_STEP = NewtonOptions(iterations=1)  # the change with one harmonic more is small
 PARTS = ("coefficients", "angular_frequency", "wind_speed")
 PERIODS = 50  # of direct integration from a torus
 DEPTHS = (0.1, 0.3, 0.6, 1.0)  # of modulation that are tried, over the size of the cycle
 
 
 @dataclass(frozen=True, slots=True)
-class QuasiPeriodic:
+class QuasiPeriodicMotions:
     """Quasi-periodic motions of a stack of models.
 
     member, wind: (tori,), indices of model and wind speed; branch: (tori,), family of the cycles that they come from;
     stability: (tori,) of Stability; found_by: of each; residual: (tori,), largest rest of the equations over the
     largest elastic force; truncation: (tori,), relative change of the size with one harmonic more of both frequencies;
     direct: (tori,), relative change of the largest amplitude in 50 periods of direct integration, NaN where that was
-    not asked for or the torus is not stable; lost: (k, 2), member and wind where nothing stable is known, although a
+    not asked for or the torus is not stable; missing: (k, 2), member and wind where nothing stable is known, although a
     complex pair grows on some cycle.
     """
 
@@ -68,27 +75,27 @@ class QuasiPeriodic:
     residual: FloatArray
     truncation: FloatArray
     direct: FloatArray
-    lost: IntArray
+    missing: IntArray
 
-    def of(self, index: IntArray) -> "QuasiPeriodic":
+    def select(self, index: IntArray) -> "QuasiPeriodicMotions":
         """Pick some of the motions."""
-        return QuasiPeriodic(
+        return QuasiPeriodicMotions(
             self.member[index],
             self.wind[index],
             self.branch[index],
-            self.tori.pick(index),
+            self.tori.select(index),
             self.stability[index],
             tuple(self.found_by[i] for i in index.tolist()),
             self.residual[index],
             self.truncation[index],
             self.direct[index],
-            self.lost,
+            self.missing,
         )
 
 
 def quasi_periodic_motions(
-    model: ReducedModel, cycles: Cycles, found: Bifurcations, winds: FloatArray, search: TorusSearch
-) -> QuasiPeriodic:
+    model: ReducedModel, cycles: Cycles, bifurcations: Bifurcations, winds: FloatArray, search: TorusSearch
+) -> QuasiPeriodicMotions:
     """Find the quasi-periodic motions at the wind speeds; models without a sign of any cost nothing.
 
     Parameters
@@ -96,7 +103,7 @@ def quasi_periodic_motions(
     model : ReducedModel
         Leading axis (members,).
     cycles : Cycles
-    found : Bifurcations
+    bifurcations : Bifurcations
         Of the branches of these cycles.
     winds : (winds,)
         In rising order [m/s].
@@ -106,42 +113,46 @@ def quasi_periodic_motions(
 
     Returns
     -------
-    QuasiPeriodic
+    QuasiPeriodicMotions
         Sorted by member and wind speed.
     """
-    known = _nothing(model)
-    if winds.size and any(kind is Kind.TORUS for kind in found.kind):
-        births = _births(model, cycles, found, winds, search)
-        known = _from_torus_points(model, births, winds)
-    places = _without_stable(model, cycles, known, winds)
-    if places:
-        known = _joined([known, _from_unstable_cycles(model, cycles, places)])
-    lost = sorted(_without_stable(model, cycles, known, winds)) if places else []
-    sorted_motions = known.of(np.lexsort((known.wind, known.member)))
-    return replace(sorted_motions, lost=np.array(lost, dtype=np.intp).reshape(-1, 2))
+    motions = _no_motions(model)
+    if winds.size and any(kind is Kind.TORUS for kind in bifurcations.kind):
+        starts = _torus_starts(model, cycles, bifurcations, winds, search)
+        motions = _from_torus_points(model, starts, winds)
+    locations = _without_stable_motion(model, cycles, motions, winds)
+    if locations:
+        motions = _concatenated([motions, _from_unstable_cycles(model, cycles, locations)])
+    missing = sorted(_without_stable_motion(model, cycles, motions, winds)) if locations else []
+    sorted_motions = motions.select(np.lexsort((motions.wind, motions.member)))
+    return replace(sorted_motions, missing=np.array(missing, dtype=np.intp).reshape(-1, 2))
 
 
-def _births(model: ReducedModel, cycles: Cycles, found: Bifurcations, winds: FloatArray, search: TorusSearch) -> Births:
+def _torus_starts(
+    model: ReducedModel, cycles: Cycles, bifurcations: Bifurcations, winds: FloatArray, search: TorusSearch
+) -> TorusStarts:
     """Take the torus points from which branches are followed."""
-    every = np.ones(found.member.size, dtype=np.bool_)
+    every = np.ones(bifurcations.member.size, dtype=np.bool_)
     if search is TorusSearch.EVERY:
-        return born_at_torus_points(model, cycles.traces, found, every, COARSE)
-    needy = [member for member, _ in _without_stable(model, cycles, _nothing(model), winds)]
-    needed = np.isin(found.member, needy)
-    births = born_at_torus_points(model, cycles.traces, found, needed | found.may_end_stability, COARSE)
-    wanted = np.isin(births.member, needy)
-    others = np.flatnonzero(~wanted)
-    wanted[others[born_stable(model, births.pick(others))]] = True
-    return births.pick(np.flatnonzero(wanted))
+        return starts_at_torus_points(model, cycles.branch_sets, bifurcations, every, COARSE)
+    without_stable = [member for member, _ in _without_stable_motion(model, cycles, _no_motions(model), winds)]
+    needed = np.isin(bifurcations.member, without_stable)
+    starts = starts_at_torus_points(
+        model, cycles.branch_sets, bifurcations, needed | bifurcations.may_end_stability, COARSE
+    )
+    selected = np.isin(starts.member, without_stable)
+    others = np.flatnonzero(~selected)
+    selected[others[starting_stable_tori(model, starts.select(others))]] = True
+    return starts.select(np.flatnonzero(selected))
 
 
-def integrated(model: ReducedModel, known: QuasiPeriodic) -> QuasiPeriodic:
+def check_by_integration(model: ReducedModel, motions: QuasiPeriodicMotions) -> QuasiPeriodicMotions:
     """Integrate the equations from each stable torus, too, and put down how far its amplitude moves."""
     from engine.checks.time_integration import last_period, last_times  # noqa: PLC0415 - only who asks for it waits for scipy's
 
-    direct = np.full(known.member.size, np.nan)
-    for i in np.flatnonzero(known.stability == Stability.STABLE).tolist():
-        torus, alone = known.tori.pick(np.array([i])), take(model, int(known.member[i]))
+    direct = np.full(motions.member.size, np.nan)
+    for i in np.flatnonzero(motions.stability == Stability.STABLE).tolist():
+        torus, alone = motions.tori.select(np.array([i])), take(model, int(motions.member[i]))
         wind, m = float(torus.wind_speed[0]), alone.mass.shape[-1]
         times = last_times(2.0 * np.pi / float(torus.angular_frequency[0, 0]), PERIODS)
         start = states(torus, np.zeros((1, 2)))[0, 0] * np.repeat([1.0, wind], m)
@@ -149,143 +160,152 @@ def integrated(model: ReducedModel, known: QuasiPeriodic) -> QuasiPeriodic:
         reached = np.ptp(last_period(alone, wind, start, times), axis=0)
         main = int((balanced * np.sqrt(np.diagonal(alone.mass))).argmax())
         direct[i] = reached[main] / balanced[main] - 1.0
-    return replace(known, direct=direct)
+    return replace(motions, direct=direct)
 
 
-def _from_torus_points(model: ReducedModel, births: Births, winds: FloatArray) -> QuasiPeriodic:
+def _from_torus_points(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> QuasiPeriodicMotions:
     """Follow tori from torus points and solve for them where they pass the wind speeds."""
-    branch, wind, z = passed(traced(model, births, winds), winds)
+    branch, wind, z = guessed_points(follow_tori(model, starts, winds), winds)
     guess = resized(tori_of(z, model.mass.shape[-1], COARSE), FINE)
-    return _solved(model, (births.member[branch], wind, births.family[branch]), guess, "torus_point")
+    return _balanced_tori(model, (starts.member[branch], wind, starts.family[branch]), guess, "torus_point")
 
 
-def _from_unstable_cycles(model: ReducedModel, cycles: Cycles, places: set[tuple[int, int]]) -> QuasiPeriodic:
+def _from_unstable_cycles(model: ReducedModel, cycles: Cycles, locations: set[tuple[int, int]]) -> QuasiPeriodicMotions:
     """Modulate the unstable cycles at some places by the disturbance that grows, to several depths."""
-    here = [i for i in _modulating(cycles) if (int(cycles.member[i]), int(cycles.wind[i])) in places]
+    here = [i for i in _with_growing_pair(cycles) if (int(cycles.member[i]), int(cycles.wind[i])) in locations]
     index = np.array(here, dtype=np.intp)
-    start = _modulated(take(model, cycles.member[index]), pick(cycles.orbits, index), _leading(cycles)[index])
+    start = _modulated_cycles(
+        take(model, cycles.member[index]), select(cycles.orbits, index), _leading_multipliers(cycles)[index]
+    )
     index = np.tile(index, len(DEPTHS))
     member, wind, branch = cycles.member[index], cycles.wind[index], cycles.branch[index]
     tori, solution = balance(model, member, start, TRIAL)
     good = np.flatnonzero(solution.converged)
-    good = good[is_torus(model, member[good], tori.pick(good))]
-    good = good[_first_of_equals(model, member[good], wind[good], tori.pick(good))]
-    return _solved(model, (member[good], wind[good], branch[good]), resized(tori.pick(good), FINE), "unstable_cycle")
+    good = good[is_torus(model, member[good], tori.select(good))]
+    good = good[_first_of_duplicates(model, member[good], wind[good], tori.select(good))]
+    return _balanced_tori(
+        model, (member[good], wind[good], branch[good]), resized(tori.select(good), FINE), "unstable_cycle"
+    )
 
 
-def _modulated(model: ReducedModel, orbits: Orbits, multiplier: ComplexArray) -> Tori:
+def _modulated_cycles(model: ReducedModel, orbits: Orbits, multiplier: ComplexArray) -> Tori:
     """Guess tori from cycles and the multipliers of what grows on them, one for each depth of modulation.
 
     The model has the leading axis (cycles,).
     """
     beat = orbits.angular_frequency * np.abs(np.angle(multiplier)) / (2.0 * np.pi)
-    start = modulated(orbits, beat, COARSE)
+    start = tori_from_cycles(orbits, beat, COARSE)
     direction = critical_directions(model, start)[:, :-3].reshape(start.coefficients.shape)
     weight = np.diagonal(model.mass, axis1=-2, axis2=-1)
     size = np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight))[:, None, None]
-    deep = [replace(start, coefficients=start.coefficients + depth * size * direction) for depth in DEPTHS]
-    return stacked(deep)
+    modulated = [replace(start, coefficients=start.coefficients + depth * size * direction) for depth in DEPTHS]
+    return stacked(modulated)
 
 
-def _solved(
-    model: ReducedModel, places: tuple[IntArray, IntArray, IntArray], guess: Tori, found_by: FoundBy
-) -> QuasiPeriodic:
+def _balanced_tori(
+    model: ReducedModel, locations: tuple[IntArray, IntArray, IntArray], guess: Tori, found_by: FoundBy
+) -> QuasiPeriodicMotions:
     """Balance guesses at members, winds and branches, and judge the different tori that come of it."""
-    member, wind, branch = places
+    member, wind, branch = locations
     tori, solution = balance(model, member, guess)
     good = np.flatnonzero(solution.converged)
-    good = good[is_torus(model, member[good], tori.pick(good))]
-    coarse = good[tail(model, member[good], tori.pick(good)) > TAIL]
+    good = good[is_torus(model, member[good], tori.select(good))]
+    coarse = good[tail(model, member[good], tori.select(good)) > TAIL]
     order = FINEST if coarse.size else guess.order
     tori = resized(tori, order)
     if coarse.size:
-        finer, again = balance(model, member[coarse], tori.pick(coarse))
+        finer, again = balance(model, member[coarse], tori.select(coarse))
         for name in PARTS:
             getattr(tori, name)[coarse] = getattr(finer, name)
         resolved = again.converged & (tail(model, member[coarse], finer) < TAIL)
         good = good[~np.isin(good, coarse[~resolved])]
-    good = good[_first_of_equals(model, member[good], wind[good], tori.pick(good))]
-    stability = [long_map(take(model, member[[i]]), tori.pick(np.array([i]))).stability for i in good]
-    return QuasiPeriodic(
+    good = good[_first_of_duplicates(model, member[good], wind[good], tori.select(good))]
+    stability = [torus_stability(take(model, member[[i]]), tori.select(np.array([i]))).stability for i in good]
+    return QuasiPeriodicMotions(
         member[good],
         wind[good],
         branch[good],
-        tori.pick(good),
+        tori.select(good),
         np.array(stability, dtype=np.object_),
         (found_by,) * good.size,
-        *_trusted(model, member[good], tori.pick(good)),
+        *_residual_and_truncation(model, member[good], tori.select(good)),
         np.full(good.size, np.nan),
         np.zeros((0, 2), dtype=np.intp),
     )
 
 
-def _trusted(model: ReducedModel, member: IntArray, tori: Tori) -> tuple[FloatArray, FloatArray]:
+def _residual_and_truncation(model: ReducedModel, member: IntArray, tori: Tori) -> tuple[FloatArray, FloatArray]:
     """Return residual and truncation."""
     elastic = np.abs(model.stiffness[member] @ tori.coefficients).max(axis=(1, 2), initial=0.0)
-    rest = np.abs(linearized(take(model, member), tori)[0]).max(axis=-1, initial=0.0)
+    residual = np.abs(linearized(take(model, member), tori)[0]).max(axis=-1, initial=0.0)
     longer, _ = balance(model, member, resized(tori, (tori.order[0] + 1, tori.order[1] + 1)), ONE_STEP)
     before, after = (line_strengths(model, member, t)[:, 1:].sum(axis=-1) for t in (tori, longer))
-    return rest / elastic, np.abs(np.sqrt(after / before) - 1.0)
+    return residual / elastic, np.abs(np.sqrt(after / before) - 1.0)
 
 
-def _without_stable(
-    model: ReducedModel, cycles: Cycles, known: QuasiPeriodic, winds: FloatArray
+def _without_stable_motion(
+    model: ReducedModel, cycles: Cycles, motions: QuasiPeriodicMotions, winds: FloatArray
 ) -> set[tuple[int, int]]:
     """Return member and wind where nothing stable is known and a pair of multipliers grows on some cycle."""
-    places = set(zip(cycles.member.tolist(), cycles.wind.tolist(), strict=True))
-    for motions in (cycles, known):
-        lasting = (motions.floquet if isinstance(motions, Cycles) else motions).stability == Stability.STABLE
-        places -= set(zip(motions.member[lasting].tolist(), motions.wind[lasting].tolist(), strict=True))
-    growing = _modulating(cycles)
-    places &= set(zip(cycles.member[growing].tolist(), cycles.wind[growing].tolist(), strict=True))
-    if not places:
-        return places
-    member, wind = np.array(sorted(places), dtype=np.intp).T
+    locations = set(zip(cycles.member.tolist(), cycles.wind.tolist(), strict=True))
+    for found_motions in (cycles, motions):
+        stable = (
+            found_motions.floquet if isinstance(found_motions, Cycles) else found_motions
+        ).stability == Stability.STABLE
+        locations -= set(zip(found_motions.member[stable].tolist(), found_motions.wind[stable].tolist(), strict=True))
+    growing = _with_growing_pair(cycles)
+    locations &= set(zip(cycles.member[growing].tolist(), cycles.wind[growing].tolist(), strict=True))
+    if not locations:
+        return locations
+    member, wind = np.array(sorted(locations), dtype=np.intp).T
     values = eigenvalues(at_wind(state_matrices(take(model, member)), winds[wind]))
     unstable = unstable_pairs(values) > 0
-    return {place for place, moves in zip(sorted(places), unstable.tolist(), strict=True) if moves}
+    return {place for place, moves in zip(sorted(locations), unstable.tolist(), strict=True) if moves}
 
 
-def _leading(cycles: Cycles) -> ComplexArray:
+def _leading_multipliers(cycles: Cycles) -> ComplexArray:
     """Return the multiplier of largest modulus of each cycle beside the trivial one."""
     others = cycles.floquet.multipliers[:, 1:]
     largest = np.abs(np.nan_to_num(others)).argmax(axis=-1)
     return np.asarray(others[np.arange(len(others)), largest])
 
 
-def _modulating(cycles: Cycles) -> IntArray:
+def _with_growing_pair(cycles: Cycles) -> IntArray:
     """Return the unstable cycles on which a complex pair grows fastest."""
     if cycles.member.size == 0:
         return np.zeros(0, dtype=np.intp)
     unstable = np.asarray(cycles.floquet.stability == Stability.UNSTABLE)
-    return np.flatnonzero(unstable & (np.abs(np.angle(_leading(cycles)) % np.pi) > REAL))
+    return np.flatnonzero(unstable & (np.abs(np.angle(_leading_multipliers(cycles)) % np.pi) > REAL))
 
 
-def _first_of_equals(model: ReducedModel, member: IntArray, wind: IntArray, tori: Tori) -> IntArray:
+def _first_of_duplicates(model: ReducedModel, member: IntArray, wind: IntArray, tori: Tori) -> IntArray:
     """Return the first of solutions at one place whose base lines agree in frequency and strength."""
-    marks = np.concatenate(base_frequencies(model, member, tori), axis=-1)
+    base_lines = np.concatenate(base_frequencies(model, member, tori), axis=-1)
     kept: list[int] = []
     for i, place in enumerate(zip(member.tolist(), wind.tolist(), strict=True)):
         same = [j for j in kept if (member[j], wind[j]) == place]
-        if not any(np.allclose(marks[i], marks[j], rtol=SAME) for j in same):
+        if not any(np.allclose(base_lines[i], base_lines[j], rtol=SAME) for j in same):
             kept.append(i)
     return np.array(kept, dtype=np.intp)
 
 
-def _joined(parts: list[QuasiPeriodic]) -> QuasiPeriodic:
+def _concatenated(parts: list[QuasiPeriodicMotions]) -> QuasiPeriodicMotions:
     """Put motions of several searches together, with the larger order."""
     order = max(part.tori.order for part in parts)
     padded = [resized(part.tori, order) for part in parts]
     names = ("member", "wind", "branch", "stability", "residual", "truncation", "direct")
     arrays = {name: np.concatenate([getattr(p, name) for p in parts]) for name in names}
-    return QuasiPeriodic(
-        tori=stacked(padded), found_by=tuple(name for p in parts for name in p.found_by), lost=parts[0].lost, **arrays
+    return QuasiPeriodicMotions(
+        tori=stacked(padded),
+        found_by=tuple(name for p in parts for name in p.found_by),
+        missing=parts[0].missing,
+        **arrays,
     )
 
 
-def _nothing(model: ReducedModel) -> QuasiPeriodic:
+def _no_motions(model: ReducedModel) -> QuasiPeriodicMotions:
     none, empty, m = np.zeros(0, dtype=np.intp), np.zeros(0), model.mass.shape[-1]
-    tori = Tori(np.zeros((0, m, 2 * len(lattice(FINE).pairs) - 1)), np.zeros((0, 2)), np.zeros(0), FINE)
-    return QuasiPeriodic(
+    tori = Tori(np.zeros((0, m, 2 * len(harmonic_lattice(FINE).pairs) - 1)), np.zeros((0, 2)), np.zeros(0), FINE)
+    return QuasiPeriodicMotions(
         none, none, none, tori, np.zeros(0, dtype=np.object_), (), empty, empty, empty, np.zeros((0, 2), dtype=np.intp)
     )

@@ -4,7 +4,7 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.models.reduced_model import ReducedModel
-from engine.tori.two_frequency_balance import Tori, lattice, phasors, states, waves
+from engine.tori.two_frequency_balance import Tori, fourier_basis, harmonic_lattice, phasors, states
 
 WEAKEST = 1e-4  # amplitude of the second line over that of the first below which a torus is a cycle
 SLOWEST = 1e-5  # frequency over the other one below which it is none
@@ -28,7 +28,7 @@ def base_lines(strengths: FloatArray, pairs: IntArray) -> IntArray:
 
 def base_frequencies(model: ReducedModel, member: IntArray, tori: Tori) -> tuple[FloatArray, FloatArray]:
     """Return the frequencies [rad/s] and the strengths of both base lines: (tori, 2) each."""
-    pairs = lattice(tori.order).pairs
+    pairs = harmonic_lattice(tori.order).pairs
     strengths = line_strengths(model, member, tori)
     lines = np.array([base_lines(own, pairs) for own in strengths], dtype=np.intp).reshape(-1, 2)
     rates = np.abs(tori.angular_frequency @ pairs.T)
@@ -47,7 +47,7 @@ def is_torus(model: ReducedModel, member: IntArray, tori: Tori) -> BoolArray:
 
 def tail(model: ReducedModel, member: IntArray, tori: Tori) -> FloatArray:
     """Return the share of the last harmonics of either frequency in the size of each torus: (tori,)."""
-    pairs = np.abs(lattice(tori.order).pairs)
+    pairs = np.abs(harmonic_lattice(tori.order).pairs)
     last = (pairs == tori.order).any(axis=-1)
     strengths = line_strengths(model, member, tori)[:, 1:]
     return np.asarray(np.sqrt(strengths[:, last[1:]].sum(axis=-1) / strengths.sum(axis=-1)))
@@ -69,18 +69,18 @@ def amplitude_range(series: FloatArray, torus: Tori, slow: float) -> tuple[Float
     -------
     pair of arrays (outputs,)
     """
-    pairs = lattice(torus.order).pairs
+    pairs = harmonic_lattice(torus.order).pairs
     phase = 2.0 * np.pi * np.arange(GRID) / GRID
-    values = waves(_grid(phase, phase), pairs) @ series.T
+    values = fourier_basis(_grid(phase, phase), pairs) @ series.T
     starts = _grid(*(2.0 * np.pi * np.arange(count) / count for count in STARTS))
     elapsed = np.linspace(0.0, 2.0 * np.pi / slow, GRID + 1)[:, None]
-    windows = waves(starts[:, None] + elapsed * torus.angular_frequency[0], pairs) @ series.T
+    windows = fourier_basis(starts[:, None] + elapsed * torus.angular_frequency[0], pairs) @ series.T
     return 0.5 * np.ptp(values, axis=0), 0.5 * np.ptp(windows, axis=1).min(axis=0)
 
 
 def mean_square_velocity(tori: Tori) -> FloatArray:
-    """Return the mean of q'^2 of each co-ordinate: (tori, m)."""
-    rate = tori.angular_frequency @ lattice(tori.order).pairs.T
+    """Return the mean of q'^2 of each coordinate: (tori, m)."""
+    rate = tori.angular_frequency @ harmonic_lattice(tori.order).pairs.T
     return np.asarray(0.5 * (np.abs(rate[:, None] * phasors(tori.coefficients)) ** 2).sum(axis=-1))
 
 

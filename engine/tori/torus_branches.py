@@ -7,20 +7,29 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
 from engine.cycles.bifurcations import Bifurcations, Kind
-from engine.cycles.branches import Traces, orbits_of, passed
+from engine.cycles.branches import BranchSet, guessed_points, orbits_of
 from engine.cycles.floquet import floquet
-from engine.cycles.harmonic_balance import Orbits, balance, pick, resized
+from engine.cycles.harmonic_balance import Orbits, balance, resized, select
 from engine.models.reduced_model import ReducedModel, take
-from engine.numerics.continuation import Points, Problem, Steps, branches, points_at
-from engine.numerics.newton import Options
+from engine.numerics.continuation import BranchPoints, Problem, StepControl, continue_branches, make_points
+from engine.numerics.newton import NewtonOptions
 from engine.tori.spectrum import base_lines, line_strengths
-from engine.tori.two_frequency_balance import Order, Tori, lattice, linearized, phase_rows, phasors, points_of, tori_of
+from engine.tori.two_frequency_balance import (
+    Order,
+    Tori,
+    harmonic_lattice,
+    linearized,
+    phase_rows,
+    phasors,
+    points_of,
+    tori_of,
+)
 
-STEPS = Steps(first=0.05, points=100)
-FIRST_STEPS = Steps(first=0.01, points=2)
-SMALLEST_SHARE = 0.2  # of the whole size, by which a co-ordinate that hardly moves is measured
+STEPS = StepControl(first=0.05, points=100)
+FIRST_STEPS = StepControl(first=0.01, points=2)
+SMALLEST_SHARE = 0.2  # of the whole size, by which a coordinate that hardly moves is measured
 LOCATED = 1e-4  # relative uncertainty of a torus point that is one for certain
-NEAR = Options(tolerance=1e-3)  # convergence is quadratic
+NEAR = NewtonOptions(tolerance=1e-3)  # convergence is quadratic
 BESIDE = 1e-3  # share of the wind speed beside a torus point at which its cycle is judged
 SAME_FREQUENCY = 1e-3  # relative difference up to which a point of a branch is the torus point
 
@@ -40,13 +49,13 @@ class TorusProblem(Problem):
         """Return the balance and both phase conditions <q - q_anchor, dq_anchor/dtheta> = 0 with their slopes."""
         member = self.member[branch]
         rows = phase_rows(self.read(anchor), self._weight(branch))
-        rest, slopes = linearized(take(self.model, member), self.read(z))
+        residual, slopes = linearized(take(self.model, member), self.read(z))
         drift = np.einsum("kpx,kx->kp", rows, (z - anchor)[:, :-1])
         rows = np.concatenate([rows, np.zeros((*rows.shape[:2], 1))], axis=-1)
-        return np.concatenate([rest, drift], axis=-1), np.concatenate([slopes, rows], axis=1)
+        return np.concatenate([residual, drift], axis=-1), np.concatenate([slopes, rows], axis=1)
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
-        """Measure each co-ordinate by its own size, or by a share of the whole, frequencies and wind by themselves."""
+        """Measure each coordinate by its own size, or by a share of the whole, frequencies and wind by themselves."""
         weight = np.sqrt(self._weight(branch))
         coefficients = self.read(z).coefficients
         own = weight * np.linalg.norm(coefficients, axis=-1)
@@ -62,7 +71,7 @@ class TorusProblem(Problem):
 
 
 @dataclass(frozen=True, slots=True)
-class Births:
+class TorusStarts:
     """Tori without modulation from which branches are followed.
 
     member, family: (k,), the model, and the number of the family of cycles; tori: (k,); direction: (k, N + 3), the
@@ -74,55 +83,57 @@ class Births:
     tori: Tori
     direction: FloatArray
 
-    def pick(self, index: IntArray) -> "Births":
+    def select(self, index: IntArray) -> "TorusStarts":
         """Pick some of them."""
-        return Births(self.member[index], self.family[index], self.tori.pick(index), self.direction[index])
+        return TorusStarts(self.member[index], self.family[index], self.tori.select(index), self.direction[index])
 
 
-def born_at_torus_points(
-    model: ReducedModel, traces: Sequence[Traces], found: Bifurcations, wanted: BoolArray, order: Order
-) -> Births:
+def starts_at_torus_points(
+    model: ReducedModel, branch_sets: Sequence[BranchSet], found: Bifurcations, selected: BoolArray, order: Order
+) -> TorusStarts:
     """Take the cycles at torus points, with the disturbance of the second frequency.
 
     Parameters
     ----------
     model : ReducedModel
         Leading axis (members,).
-    traces : sequence of Traces
+    branch_sets : sequence of BranchSet
         Of the branches on which the torus points lie.
     found : Bifurcations
-    wanted : (bifurcations,)
+    selected : (bifurcations,)
         Which of them are taken; those that are no torus points are left out anyway.
     order : Order
 
     Returns
     -------
-    Births
+    TorusStarts
         Without those whose cycle is not met again.
     """
-    located = wanted & np.isfinite(found.second) & (found.uncertainty < LOCATED * found.wind_speed)
+    located = selected & np.isfinite(found.second_frequency) & (found.uncertainty < LOCATED * found.wind_speed)
     points = np.flatnonzero(located & np.array([kind is Kind.TORUS for kind in found.kind], dtype=np.bool_))
-    guesses = [_nearest(traces, found, int(i)) for i in points]
+    guesses = [_guessed_cycle(branch_sets, found, int(i)) for i in points]
     points = points[[guess is not None for guess in guesses]]
     m = model.mass.shape[-1]
-    known = [guess for guess in guesses if guess is not None]
+    guessed = [guess for guess in guesses if guess is not None]
     start = Orbits(
-        np.concatenate([resized(g, order[0]).coefficients for g in known] or [np.zeros((0, m, 2 * order[0] + 1))]),
-        np.array([g.angular_frequency[0] for g in known]),
+        np.concatenate([resized(g, order[0]).coefficients for g in guessed] or [np.zeros((0, m, 2 * order[0] + 1))]),
+        np.array([g.angular_frequency[0] for g in guessed]),
         found.wind_speed[points],
     )
     member = found.member[points]
     orbits, solution = balance(model, member, start, NEAR)
     good = np.flatnonzero(solution.converged)
-    base, second = orbits.angular_frequency[good], found.second[points[good]]
-    beat = np.abs(second - np.round(second / base) * base)
-    tori = modulated(pick(orbits, good), beat, order)
-    return Births(member[good], found.branch[points[good]], tori, critical_directions(take(model, member[good]), tori))
+    base, second_frequency = orbits.angular_frequency[good], found.second_frequency[points[good]]
+    beat = np.abs(second_frequency - np.round(second_frequency / base) * base)
+    tori = tori_from_cycles(select(orbits, good), beat, order)
+    return TorusStarts(
+        member[good], found.branch[points[good]], tori, critical_directions(take(model, member[good]), tori)
+    )
 
 
-def modulated(orbits: Orbits, beat: FloatArray, order: Order) -> Tori:
+def tori_from_cycles(orbits: Orbits, beat: FloatArray, order: Order) -> Tori:
     """Write cycles as tori that are not modulated yet, with W = beat (cycles,) [rad/s]."""
-    pairs = lattice(order).pairs
+    pairs = harmonic_lattice(order).pairs
     coefficients = np.zeros((*orbits.coefficients.shape[:2], 2 * len(pairs) - 1))
     own = resized(orbits, order[0]).coefficients
     coefficients[..., 0] = own[..., 0]
@@ -137,7 +148,7 @@ def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
     The model has the leading axis (tori,).
     """
     count, m, size = tori.coefficients.shape
-    first = np.repeat(np.abs(lattice(tori.order).pairs[:, 1]) == 1, 2)[1:]
+    first = np.repeat(np.abs(harmonic_lattice(tori.order).pairs[:, 1]) == 1, 2)[1:]
     index = np.flatnonzero(np.tile(first, m))
     scale = np.repeat(np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1)), size, axis=-1)[:, index]
     matrix = linearized(model, tori)[1][:, index[:, None], index] / scale[:, None] / scale[:, :, None]
@@ -147,96 +158,100 @@ def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
     return direction
 
 
-def born_stable(model: ReducedModel, births: Births) -> IntArray:
+def starting_stable_tori(model: ReducedModel, starts: TorusStarts) -> IntArray:
     """Return which of the births leave stable tori: those on the side where the cycle has lost its stability.
 
     There the torus takes over what the cycle loses, provided that nothing grows on the cycle on the other side.
     """
-    problem = TorusProblem(model, births.member, births.tori.order)
-    steps = _steps(problem, births, FIRST_STEPS)
-    speed, side = np.full((2, births.member.size), np.nan)
+    problem = TorusProblem(model, starts.member, starts.tori.order)
+    steps = _continuation(problem, starts, FIRST_STEPS)
+    speed, side = np.full((2, starts.member.size), np.nan)
     for new in steps:
         # Against the first point of the branch: with the harmonics left out the torus point itself moves.
         side[new.branch] = np.sign(new.z[:, -1] - speed[new.branch])
         speed[new.branch] = new.z[:, -1]
-    known = np.flatnonzero(np.isfinite(side))
-    both = np.tile(known, 2)
-    away = np.concatenate([side[known], -side[known]])
-    cycles = pick(cycles_of(births.tori), both)
+    guessed = np.flatnonzero(np.isfinite(side))
+    both = np.tile(guessed, 2)
+    away = np.concatenate([side[guessed], -side[guessed]])
+    cycles = select(cycles_from_tori(starts.tori), both)
     beside = replace(cycles, wind_speed=cycles.wind_speed * (1.0 + BESIDE * away))
-    orbits, solution = balance(model, births.member[both], beside, NEAR)
-    multipliers = floquet(model, births.member[both], orbits).multipliers[:, 1:]
+    orbits, solution = balance(model, starts.member[both], beside, NEAR)
+    multipliers = floquet(model, starts.member[both], orbits).multipliers[:, 1:]
     growing = np.where(solution.converged, (np.abs(multipliers) > 1.0).sum(axis=-1), -1).reshape(2, -1)
-    return np.asarray(known[(growing[0] == 2) & (growing[1] == 0)])
+    return np.asarray(guessed[(growing[0] == 2) & (growing[1] == 0)])
 
 
-def _steps(problem: TorusProblem, births: Births, steps: Steps) -> Generator[Points, BoolArray | None, ObjectArray]:
+def _continuation(
+    problem: TorusProblem, starts: TorusStarts, steps: StepControl
+) -> Generator[BranchPoints, BoolArray | None, ObjectArray]:
     """Leave the cycles in the direction that grows, by shares of their size."""
-    start = points_of(births.tori)
-    size = np.linalg.norm(start / problem.scale(start, np.arange(births.member.size)), axis=-1, keepdims=True)
-    return branches(problem, start, births.direction * size, steps)
+    start = points_of(starts.tori)
+    size = np.linalg.norm(start / problem.scale(start, np.arange(starts.member.size)), axis=-1, keepdims=True)
+    return continue_branches(problem, start, starts.direction * size, steps)
 
 
-def cycles_of(tori: Tori) -> Orbits:
+def cycles_from_tori(tori: Tori) -> Orbits:
     """Return the harmonics of w alone."""
-    pairs = lattice(tori.order).pairs
+    pairs = harmonic_lattice(tori.order).pairs
     place = np.flatnonzero((pairs[:, 1] == 0) & (pairs[:, 0] > 0))
     both = np.stack([2 * place - 1, 2 * place], axis=-1).ravel()
     kept = tori.coefficients[..., np.concatenate([[0], both])]
     return Orbits(kept, tori.angular_frequency[:, 0], tori.wind_speed)
 
 
-def traced(model: ReducedModel, births: Births, winds: FloatArray) -> Points:
+def follow_tori(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> BranchPoints:
     """Follow the branches of tori inside the range of the wind speeds (winds,), until they end in another cycle.
 
     Returns
     -------
-    Points
+    BranchPoints
         Sorted by branch, in the order in which they were met; the births are left out.
     """
-    problem = TorusProblem(model, births.member, births.tori.order)
-    steps = _steps(problem, births, STEPS)
-    last = points_at(problem, np.arange(births.member.size), points_of(births.tori), births.direction)
-    found, fresh = [last.pick(np.zeros(0, dtype=np.intp))], np.ones(births.member.size, dtype=np.bool_)
+    problem = TorusProblem(model, starts.member, starts.tori.order)
+    steps = _continuation(problem, starts, STEPS)
+    last = make_points(problem, np.arange(starts.member.size), points_of(starts.tori), starts.direction)
+    found, at_start = [last.select(np.zeros(0, dtype=np.intp))], np.ones(starts.member.size, dtype=np.bool_)
     alive: BoolArray | None = None
     while True:
         try:
             new = steps.send(alive)
         except StopIteration:
             break
-        ended = _ended(problem, last.pick(new.branch), new) & ~fresh[new.branch]
+        ended = _passed_cycle(problem, last.select(new.branch), new) & ~at_start[new.branch]
         rising = new.tangent[:, -1] > 0.0
         alive = ~ended & np.where(rising, new.z[:, -1] < winds[-1], new.z[:, -1] > winds[0])
-        found.append(new.pick(~ended))
-        fresh[new.branch] = False
-        last.put(new)
-    every = Points(*(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent")))
-    return every.pick(np.argsort(every.branch, kind="stable"))
+        found.append(new.select(~ended))
+        at_start[new.branch] = False
+        last.overwrite(new)
+    every = BranchPoints(
+        *(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent"))
+    )
+    return every.select(np.argsort(every.branch, kind="stable"))
 
 
-def _nearest(traces: Sequence[Traces], found: Bifurcations, point: int) -> Orbits | None:
+def _guessed_cycle(branch_sets: Sequence[BranchSet], found: Bifurcations, point: int) -> Orbits | None:
     """Guess the cycle at a torus point from the branches of its model that pass its wind speed."""
     nearest, best = SAME_FREQUENCY, None
-    for trace in traces:
-        here = np.flatnonzero(trace.member == found.member[point])
+    for branch_set in branch_sets:
+        here = np.flatnonzero(branch_set.member == found.member[point])
         if here.size < 2:
             continue
-        own = trace.points.pick(here)
-        orbits = orbits_of(passed(own, found.wind_speed[[point]])[2], trace.problem.model.mass.shape[-1])
+        own = branch_set.points.select(here)
+        orbits = orbits_of(guessed_points(own, found.wind_speed[[point]])[2], branch_set.problem.model.mass.shape[-1])
         gap = np.abs(orbits.angular_frequency / found.angular_frequency[point] - 1.0)
         if gap.min(initial=np.inf) < nearest:
-            nearest, best = gap.min(), pick(orbits, np.array([gap.argmin()]))
+            nearest, best = gap.min(), select(orbits, np.array([gap.argmin()]))
     return best
 
 
-def _ended(problem: TorusProblem, before: Points, new: Points) -> BoolArray:
+def _passed_cycle(problem: TorusProblem, before: BranchPoints, new: BranchPoints) -> BoolArray:
     """Tell which branches passed through a cycle, where one of the two base lines turns over."""
-    old, fresh = problem.read(before.z), problem.read(new.z)
+    old, at_start = problem.read(before.z), problem.read(new.z)
     member = problem.member[new.branch]
     mass = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[member]
     ended = np.zeros(new.branch.size, dtype=np.bool_)
     for i, strengths in enumerate(line_strengths(problem.model, member, old)):
-        lines = base_lines(strengths, lattice(problem.order).pairs)
-        left, right = (phasors(tori.coefficients[i])[:, lines] for tori in (old, fresh))
+        lines = base_lines(strengths, harmonic_lattice(problem.order).pairs)
+        left, right = (phasors(tori.coefficients[i])[:, lines] for tori in (old, at_start))
         ended[i] = (mass[i] @ (left.conj() * right).real).min() < 0.0
     return ended

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import ComplexArray, FloatArray, merged
-from engine.cycles.floquet import MOST_STEPS, gauss_phases, generator, ordered_product, steps_needed, transfers
+from engine.arrays import ComplexArray, FloatArray, merge_axes
+from engine.cycles.floquet import MOST_STEPS, gauss_phases, ordered_product, state_matrix, step_maps, steps_needed
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Stability
-from engine.tori.two_frequency_balance import Tori, derivative, lattice, states, waves
+from engine.tori.two_frequency_balance import Tori, derivative, fourier_basis, harmonic_lattice, states
 
 SAMPLES = 64  # phases theta_2 at which the map over one period is computed
 PERIODS = 50_000  # after which the search for a decision ends
@@ -24,7 +24,7 @@ MARGIN = 3.0  # times the errors of the map
 
 
 @dataclass(frozen=True, slots=True)
-class LongMap:
+class TorusStability:
     """Disturbances across a torus after a number of periods.
 
     largest: modulus of the largest multiplier, NaN if nothing could be computed; error: what it may be trusted to;
@@ -37,32 +37,32 @@ class LongMap:
     stability: Stability
 
 
-def long_map(model: ReducedModel, torus: Tori) -> LongMap:
+def torus_stability(model: ReducedModel, torus: Tori) -> TorusStability:
     """Judge one torus of one model, both with a leading axis of length 1.
 
     It goes from return to better return until the largest multiplier is told from 1.
     """
-    maps = _maps_over_a_period(model, torus)
+    maps = _period_maps(model, torus)
     if maps is None:
-        return LongMap(np.nan, np.nan, 0, Stability.UNKNOWN)
+        return TorusStability(np.nan, np.nan, 0, Stability.UNKNOWN)
     weight = np.sqrt(np.tile(np.diagonal(model.mass[0]), 2))
     series = np.fft.rfft(weight[:, None] * maps / weight, axis=0) / SAMPLES
     turn = float(torus.angular_frequency[0, 1] / torus.angular_frequency[0, 0])
-    total, done, judged = np.eye(weight.size), 0, LongMap(np.nan, np.nan, 0, Stability.UNKNOWN)
-    for periods in _returns(turn):
+    long_map, done, result = np.eye(weight.size), 0, TorusStability(np.nan, np.nan, 0, Stability.UNKNOWN)
+    for periods in _return_periods(turn):
         with np.errstate(over="ignore", invalid="ignore"):
             for first in range(done, periods, BLOCK):
-                total = _product(series, turn, first, min(first + BLOCK, periods)) @ total
-        if not np.isfinite(total).all():
+                long_map = _product(series, turn, first, min(first + BLOCK, periods)) @ long_map
+        if not np.isfinite(long_map).all():
             break
         done = periods
-        judged = _judged(torus, weight, total, periods)
-        if judged.stability is not Stability.UNKNOWN:
+        result = _verdict_across(torus, weight, long_map, periods)
+        if result.stability is not Stability.UNKNOWN:
             break
-    return judged
+    return result
 
 
-def _maps_over_a_period(model: ReducedModel, torus: Tori) -> FloatArray | None:
+def _period_maps(model: ReducedModel, torus: Tori) -> FloatArray | None:
     """Return the maps of (q, dq/dtau) over one period from theta_1 = 0 and even theta_2: (samples, 2 m, 2 m)."""
     m = model.mass.shape[-1]
     fast = torus.angular_frequency[:, 0]
@@ -74,16 +74,16 @@ def _maps_over_a_period(model: ReducedModel, torus: Tori) -> FloatArray | None:
     generators = []
     for tau in gauss_phases(steps):
         phases = np.stack(np.broadcast_arrays(tau, start + turn * tau), axis=-1).reshape(-1, 2)
-        made = generator(model, states(torus, phases), fast, torus.wind_speed)
-        generators.append(made.reshape(SAMPLES, steps, 2 * m, 2 * m))
-    return ordered_product(transfers(generators[0], generators[1], 2.0 * np.pi / steps))
+        matrices = state_matrix(model, states(torus, phases), fast, torus.wind_speed)
+        generators.append(matrices.reshape(SAMPLES, steps, 2 * m, 2 * m))
+    return ordered_product(step_maps(generators[0], generators[1], 2.0 * np.pi / steps))
 
 
-def _returns(turn: float) -> Iterator[int]:
+def _return_periods(turn: float) -> Iterator[int]:
     """Yield numbers of periods after which theta_2 returns ever better: denominators of the continued fraction."""
-    before, here, rest = 0, 1, abs(turn) % 1.0
-    while rest > 1e-9:
-        whole, rest = divmod(1.0 / rest, 1.0)
+    before, here, remainder = 0, 1, abs(turn) % 1.0
+    while remainder > 1e-9:
+        whole, remainder = divmod(1.0 / remainder, 1.0)
         before, here = here, int(whole) * here + before
         if here > PERIODS:
             return
@@ -97,23 +97,23 @@ def _product(series: ComplexArray, turn: float, first: int, stop: int) -> FloatA
     weight = np.where((order == 0) | (order == SAMPLES // 2), 1.0, 2.0)
     rotations = weight * np.exp(1j * phase[:, None] * order)
     size = series.shape[-1]
-    maps = (rotations @ merged(series, -2)).real.reshape(-1, size, size)
+    maps = (rotations @ merge_axes(series, -2)).real.reshape(-1, size, size)
     whole = np.broadcast_to(np.eye(size), (2 ** int(np.ceil(np.log2(len(maps)))), size, size)).copy()
     whole[: len(maps)] = maps
     return np.asarray(ordered_product(whole[None])[0])
 
 
-def _judged(torus: Tori, weight: FloatArray, total: FloatArray, periods: int) -> LongMap:
+def _verdict_across(torus: Tori, weight: FloatArray, long_map: FloatArray, periods: int) -> TorusStability:
     """Judge the map in the space across the torus, where disturbances along it count for nothing."""
     turn = torus.angular_frequency[0, 1] / torus.angular_frequency[0, 0]
     start, end = (weight[:, None] * _tangents(torus, 2.0 * np.pi * turn * n) for n in (0, periods))
     length = np.linalg.norm(start, axis=0)
     if not length.all():
-        return LongMap(np.nan, np.inf, periods, Stability.UNKNOWN)
+        return TorusStability(np.nan, np.inf, periods, Stability.UNKNOWN)
     closing = abs(np.angle(np.exp(2j * np.pi * turn * periods)))
-    slip = np.linalg.norm(total @ start - end, axis=0) / length
+    slip = np.linalg.norm(long_map @ start - end, axis=0) / length
     across = np.linalg.qr(start / length, mode="complete")[0][:, 2:]
-    values = np.linalg.eigvals(across.T @ total @ across)
+    values = np.linalg.eigvals(across.T @ long_map @ across)
     error = float(slip.max() + torus.order[1] * closing)
     largest = float(np.abs(values).max(initial=0.0))
     verdict = Stability.UNKNOWN
@@ -121,13 +121,13 @@ def _judged(torus: Tori, weight: FloatArray, total: FloatArray, periods: int) ->
         verdict = Stability.UNSTABLE
     elif largest < 1.0 - MARGIN * error:
         verdict = Stability.STABLE
-    return LongMap(largest, error, periods, verdict)
+    return TorusStability(largest, error, periods, verdict)
 
 
 def _tangents(torus: Tori, phase: float) -> FloatArray:
     """Return the directions along both phases in (q, dq/dtau) at theta_1 = 0 and theta_2 = phase: (2 m, 2)."""
-    pairs = lattice(torus.order).pairs
-    basis = waves(np.array([0.0, phase]), pairs)
+    pairs = harmonic_lattice(torus.order).pairs
+    basis = fourier_basis(np.array([0.0, phase]), pairs)
     rate = torus.angular_frequency @ pairs.T / torus.angular_frequency[:, :1]
     columns = []
     for axis in (0, 1):

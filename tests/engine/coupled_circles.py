@@ -3,7 +3,7 @@
 import numpy as np
 
 from engine.models.reduced_model import ReducedModel
-from engine.tori.two_frequency_balance import Order, Tori, lattice
+from engine.tori.two_frequency_balance import Order, Tori, harmonic_lattice
 from tests.builders import Oscillators, hand_made
 
 FREQUENCIES = (1.0, 1.37)
@@ -34,7 +34,7 @@ def circle_radii(coupling: Coupling) -> tuple[float, float]:
 
 def two_lines(radii: tuple[float, float], frequencies: tuple[float, float], order: Order) -> Tori:
     """Return q_1 = r_1 cos theta_1, q_2 = r_2 cos(theta_1 + theta_2) with w and w + W as frequencies, at U = 1."""
-    pairs = lattice(order).pairs.tolist()
+    pairs = harmonic_lattice(order).pairs.tolist()
     coefficients = np.zeros((1, 2, 2 * len(pairs) - 1))
     for i, pair in enumerate(([1, 0], [1, 1])):
         coefficients[0, i, 2 * pairs.index(pair) - 1] = radii[i]

@@ -29,7 +29,7 @@ def analysed(subconductors: int, torsional_ratio: float, loops: int) -> tuple[Re
     model = take(hybrid(source_line(subconductors, torsional_ratio=torsional_ratio), loops), [0])
     crossings = critical_wind_speeds(model, 30.0)
     cycles = find_cycles(model, crossings, WINDS, energy_starts(model, WINDS, 5), 5)
-    return model, cycles, bifurcations(cycles.traces, cycles.followed, model, crossings)
+    return model, cycles, bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
 
 
 RELATIVE = Analysis(aerodynamic_model=AerodynamicModel.RELATIVE_WIND)

@@ -15,7 +15,7 @@ from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
 from engine.spec import Line, Model, TorusSearch
-from engine.tori.quasi_periodic import QuasiPeriodic, quasi_periodic_motions
+from engine.tori.quasi_periodic import QuasiPeriodicMotions, quasi_periodic_motions
 from tests.builders import hybrid, only, run
 from tests.engine.integrated_tori import followed
 
@@ -30,11 +30,11 @@ def lines() -> list[Line]:
     return [drawn(generator) for _ in range(max(number for number, _, _ in LINES) + 1)]
 
 
-def torus_of(line: Line, wind: float) -> tuple[ReducedModel, QuasiPeriodic]:
+def torus_of(line: Line, wind: float) -> tuple[ReducedModel, QuasiPeriodicMotions]:
     model, winds = take(hybrid(line), [0]), np.array([wind])
     crossings = critical_wind_speeds(model, 30.0)
     cycles = find_cycles(model, crossings, winds, energy_starts(model, winds, 5), 5)
-    found = bifurcations(cycles.traces, cycles.followed, model, crossings)
+    found = bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
     return model, quasi_periodic_motions(model, cycles, found, winds, TorusSearch.LASTING)
 
 

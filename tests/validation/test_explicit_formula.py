@@ -29,10 +29,10 @@ def stable_balance(model: ReducedModel, guesses: Orbits) -> list[tuple[Orbits, O
     found, solution = balance(model, member, resized(guesses, 9))
     judged = floquet(model, member, found)
     good = solution.converged & (judged.stability == Stability.STABLE)
-    return [(pick(guesses, i), pick(found, i)) for i in np.flatnonzero(good).tolist()]
+    return [(select(guesses, i), select(found, i)) for i in np.flatnonzero(good).tolist()]
 
 
-def pick(orbits: Orbits, index: int) -> Orbits:
+def select(orbits: Orbits, index: int) -> Orbits:
     """Return one orbit as a stack of one."""
     here = slice(index, index + 1)
     return Orbits(orbits.coefficients[here], orbits.angular_frequency[here], orbits.wind_speed[here])

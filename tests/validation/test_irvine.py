@@ -114,8 +114,8 @@ def test_section_11_out_of_plane_frequencies(lam2: float) -> None:
     system = discretized(line).matrices
     free = np.flatnonzero(~system.fixed[0])
     across = free[free % FIELDS == W]
-    pick = np.ix_(across, across)
-    values = eigh(system.stiffness[0][pick], system.mass[0][pick], eigvals_only=True)
+    select = np.ix_(across, across)
+    values = eigh(system.stiffness[0][select], system.mass[0][select], eigvals_only=True)
     assert np.sqrt(values[:3]) * unit(line) / np.pi == pytest.approx(string_numbers([1, 2, 3], 20), rel=3e-6)
 
 
@@ -124,8 +124,8 @@ def test_section_11_torsion_of_a_single_conductor_is_that_of_a_rod() -> None:
     system = discretized(line).matrices
     free = np.flatnonzero(~system.fixed[0])
     turns = free[free % FIELDS == THETA]
-    pick = np.ix_(turns, turns)
-    values = eigh(system.stiffness[0][pick], system.mass[0][pick], eigvals_only=True)
+    select = np.ix_(turns, turns)
+    values = eigh(system.stiffness[0][select], system.mass[0][select], eigvals_only=True)
     rod = np.pi / line.span.length * np.sqrt(line.conductor.torsional_rigidity / line.conductor.polar_inertia)
     assert np.sqrt(values[:3]) == pytest.approx(rod * string_numbers([1, 2, 3], 20), rel=3e-6)
 
@@ -133,8 +133,8 @@ def test_section_11_torsion_of_a_single_conductor_is_that_of_a_rod() -> None:
 @pytest.mark.parametrize("lam2", [20.0, 60.0, 100.0])
 def test_section_11_shapes_carry_the_right_label_on_both_sides_of_the_cross_over(lam2: float) -> None:
     line = line_with(lam2, 20)
-    made = discretized(line)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1, 2))
+    discretization = discretized(line)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1, 2))
     found = shapes.angular_frequency[0, :, 0] * unit(line)
     # The longitudinal inertia that the full matrices keep changes the frequencies by less than H/EA = 1e-7.
     assert found == pytest.approx([first_symmetric_root(parameter(line)), 2.0 * np.pi], rel=3e-5)

@@ -11,7 +11,7 @@ from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, r
 from engine.cycles.search import Cycles, energy_starts, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel
-from engine.numerics.newton import Options
+from engine.numerics.newton import NewtonOptions
 from engine.spec import Check
 from tests.builders import hybrid, source_line
 
@@ -24,7 +24,7 @@ def cycles_of(model: ReducedModel, harmonics: int) -> Cycles:
 
 
 def solved_anew(model: ReducedModel, cycles: Cycles, start: Orbits) -> FloatArray:
-    orbits, solution = balance(model, cycles.member, start, Options(tolerance=1e-10))
+    orbits, solution = balance(model, cycles.member, start, NewtonOptions(tolerance=1e-10))
     assert solution.converged.all()
     return np.asarray(half_peak_to_peak(orbits.coefficients) / half_peak_to_peak(cycles.orbits.coefficients) - 1.0)
 

@@ -8,9 +8,9 @@ import pytest
 from engine.arrays import FloatArray
 from engine.checks.direct_starts import WINDS, direct_starts
 from engine.cycles import search
-from engine.cycles.families import Starts
-from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, pick
-from engine.cycles.search import Cycles, find_cycles, judged_orbits, solved_starts
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select
+from engine.cycles.known_cycles import Starts
+from engine.cycles.search import Cycles, find_cycles, resolved_stability, solve_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
@@ -23,10 +23,10 @@ WIND = np.array([12.0])
 
 def reached(model: ReducedModel, winds: FloatArray) -> Orbits:
     """Return the stable cycles that Newton's method finds from where direct integration arrives."""
-    starts, good = solved_starts(model, direct_starts(model, winds, 5))
-    member, orbits = starts.member[good], pick(starts.orbits, np.flatnonzero(good))
-    orbits, judged, kept, _ = judged_orbits(model, member, orbits)
-    return pick(orbits, np.flatnonzero(kept & (judged.stability == Stability.STABLE)))
+    starts, good = solve_starts(model, direct_starts(model, winds, 5))
+    member, orbits = starts.member[good], select(starts.orbits, np.flatnonzero(good))
+    orbits, judged, kept, _ = resolved_stability(model, member, orbits)
+    return select(orbits, np.flatnonzero(kept & (judged.stability == Stability.STABLE)))
 
 
 def test_what_is_reached_are_the_coexisting_cycles() -> None:
@@ -80,8 +80,8 @@ def test_a_cycle_that_nothing_else_leads_to_is_found_and_followed(monkeypatch: p
     alone = found(direct_starts(model, winds, 5))
     assert "direct_integration" in alone.found_by
     assert set(alone.wind[alone.floquet.stability == Stability.STABLE].tolist()) == {0, 1, 2}
-    unfollowed = solved_starts(model, direct_starts(model, winds, 5))[1].sum()
-    assert len(alone.traces) >= 2, "the branches of what was found were not followed"
+    unfollowed = solve_starts(model, direct_starts(model, winds, 5))[1].sum()
+    assert len(alone.branch_sets) >= 2, "the branches of what was found were not followed"
     assert unfollowed > alone.found_by.count("direct_integration"), "equal cycles were not taken for one"
 
 

@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 from engine.arrays import ComplexArray, FloatArray
 from engine.cycles.bifurcations import FACTORS, Bifurcations, Kind, bifurcations
-from engine.cycles.branches import traced_from_hopf
-from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, pick, resized, states
+from engine.cycles.branches import follow_from_hopf_points
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select, states
 from engine.models.aerodynamic_load import force, force_gradient
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
@@ -26,8 +26,10 @@ def test_two_loop_branches_with_light_damping_have_torus_points(subconductors: i
     torus = of_kind(found, Kind.TORUS)
     assert torus.size >= 1
     assert ((torus > 7.0) & (torus < 12.0)).all()
-    second = found.second[[k is Kind.TORUS for k in found.kind]]
-    assert (np.abs(second / found.angular_frequency[[k is Kind.TORUS for k in found.kind]] - 1.0) < 0.02).all()
+    second_frequency = found.second_frequency[[k is Kind.TORUS for k in found.kind]]
+    assert (
+        np.abs(second_frequency / found.angular_frequency[[k is Kind.TORUS for k in found.kind]] - 1.0) < 0.02
+    ).all()
 
 
 def test_single_conductor_with_very_light_torsion_has_two_folds() -> None:
@@ -73,16 +75,16 @@ def multipliers_by_integration(model: ReducedModel, orbit: Orbits) -> ComplexArr
 def test_torus_point_has_a_pair_on_the_circle_by_direct_integration() -> None:
     model, cycles, found = analysed(1, LIGHT, 2)
     torus = int(np.flatnonzero([k is Kind.TORUS for k in found.kind])[0])
-    trace = next(t for t in cycles.traces if t.points.branch.size)
+    branch_set = next(t for t in cycles.branch_sets if t.points.branch.size)
     near = int(
-        np.abs(trace.orbits.wind_speed - found.wind_speed[torus]).argmin()
-        if trace.problem.member.size == 1
+        np.abs(branch_set.orbits.wind_speed - found.wind_speed[torus]).argmin()
+        if branch_set.problem.member.size == 1
         else np.hypot(
-            trace.orbits.wind_speed / found.wind_speed[torus] - 1.0,
-            100.0 * (trace.orbits.angular_frequency / found.angular_frequency[torus] - 1.0),
+            branch_set.orbits.wind_speed / found.wind_speed[torus] - 1.0,
+            100.0 * (branch_set.orbits.angular_frequency / found.angular_frequency[torus] - 1.0),
         ).argmin()
     )
-    start = pick(trace.orbits, np.array([near]))
+    start = select(branch_set.orbits, np.array([near]))
     guess = Orbits(start.coefficients, start.angular_frequency, found.wind_speed[[torus]])
     orbit, solution = balance(model, np.zeros(1, dtype=np.intp), resized(guess, 9))
     assert solution.converged.all()
@@ -90,7 +92,7 @@ def test_torus_point_has_a_pair_on_the_circle_by_direct_integration() -> None:
     others = values[np.abs(values - 1.0) > 1e-6]
     pair = others[np.abs(np.abs(others) - 1.0).argmin()]
     assert abs(pair) == pytest.approx(1.0, abs=1e-6)
-    beat = abs(found.second[torus] - found.angular_frequency[torus]) / found.angular_frequency[torus]
+    beat = abs(found.second_frequency[torus] - found.angular_frequency[torus]) / found.angular_frequency[torus]
     assert abs(np.angle(pair)) / (2.0 * np.pi) == pytest.approx(beat, abs=1e-5)
 
 
@@ -105,9 +107,9 @@ def test_branch_of_one_degree_of_freedom_is_the_exact_parabola() -> None:
     model = one_degree_of_freedom()
     crossings = critical_wind_speeds(model, 30.0)
     assert crossings.wind_speed == pytest.approx([1.0])
-    trace = traced_from_hopf(model, crossings, np.array([0]), 5, np.array([3.0]))
-    speed = trace.orbits.wind_speed[1:]
-    amplitude = half_peak_to_peak(trace.orbits.coefficients)[1:, 0]
+    branch_set = follow_from_hopf_points(model, crossings, np.array([0]), 5, np.array([3.0]))
+    speed = branch_set.orbits.wind_speed[1:]
+    amplitude = half_peak_to_peak(branch_set.orbits.coefficients)[1:, 0]
     assert speed[-1] > 3.0
     assert amplitude**2 == pytest.approx((0.01 * speed**2 - 0.01 * speed) / (0.75 * 0.04), rel=1e-3)
 
@@ -118,11 +120,11 @@ def test_van_der_pol_branch_has_amplitude_two() -> None:
     terms = {(0, (1,)): 2.0 * mu, (0, (0, 0, 1)): -mu}
     model = hand_made(Oscillators(np.eye(1), np.array([[mu]]), np.eye(1), terms))
     crossings = critical_wind_speeds(model, 5.0)
-    trace = traced_from_hopf(model, crossings, np.array([0]), 5, np.array([1.0]))
-    index = int(np.abs(trace.orbits.wind_speed - 1.0).argmin())
-    speed = trace.orbits.wind_speed[index]
+    branch_set = follow_from_hopf_points(model, crossings, np.array([0]), 5, np.array([1.0]))
+    index = int(np.abs(branch_set.orbits.wind_speed - 1.0).argmin())
+    speed = branch_set.orbits.wind_speed[index]
     # mu (2 U - 1 - U y^2) y': amplitude 2 sqrt((2 U - 1) / U).
-    amplitude = half_peak_to_peak(trace.orbits.coefficients)[index, 0]
+    amplitude = half_peak_to_peak(branch_set.orbits.coefficients)[index, 0]
     assert crossings.wind_speed == pytest.approx([0.5])
     assert amplitude == pytest.approx(2.0 * np.sqrt((2.0 * speed - 1.0) / speed), rel=1e-3)
 
@@ -130,7 +132,7 @@ def test_van_der_pol_branch_has_amplitude_two() -> None:
 def test_torus_point_of_two_oscillators_is_exact() -> None:
     # q_1'' + w_1^2 q_1 = mu (2 U - 1 - U q_1^2 - q_1'^2 / (U w_1^2)) q_1' runs on a circle of radius 1 at U = 1. Beside
     # it q_2'' + w_2^2 q_2 = nu (3 U - 2 - U q_1^2 - q_1'^2 / (U w_1^2)) q_2' is undamped just there.
-    mu, nu, first, second = 0.05, 0.02, 1.0, 1.37
+    mu, nu, first, second_frequency = 0.05, 0.02, 1.0, 1.37
     terms: dict[tuple[int, tuple[int, ...]], float] = {
         (0, (2,)): 2.0 * mu,
         (0, (0, 0, 2)): -mu,
@@ -139,15 +141,15 @@ def test_torus_point_of_two_oscillators_is_exact() -> None:
         (1, (0, 0, 3)): -nu,
         (1, (2, 2, 3)): -nu / first**2,
     }
-    model = hand_made(Oscillators(np.eye(2), np.diag([mu, 2.0 * nu]), np.diag([first**2, second**2]), terms))
+    model = hand_made(Oscillators(np.eye(2), np.diag([mu, 2.0 * nu]), np.diag([first**2, second_frequency**2]), terms))
     crossings = critical_wind_speeds(model, 5.0)
     assert crossings.wind_speed == pytest.approx([0.5, 2.0 / 3.0])
-    trace = traced_from_hopf(model, crossings, np.array([0]), 5, np.array([1.1]))
-    found = bifurcations((trace,), np.zeros(1, dtype=np.intp), model, crossings)
+    branch_set = follow_from_hopf_points(model, crossings, np.array([0]), 5, np.array([1.1]))
+    found = bifurcations((branch_set,), np.zeros(1, dtype=np.intp), model, crossings)
     torus = [i for i, kind in enumerate(found.kind) if kind is Kind.TORUS]
     assert found.wind_speed[torus] == pytest.approx([1.0], abs=1e-6)
     assert found.angular_frequency[torus] == pytest.approx([first], abs=1e-6)
-    assert found.second[torus] == pytest.approx([second], abs=1e-6)
+    assert found.second_frequency[torus] == pytest.approx([second_frequency], abs=1e-6)
     assert (found.uncertainty[torus] < 1e-6).all()
 
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine.arrays import FloatArray
-from engine.cycles.floquet import floquet, judged, monodromy
+from engine.cycles.floquet import floquet, monodromy, stability_verdicts
 from engine.cycles.harmonic_balance import Orbits, states
 from engine.models.aerodynamic_load import force_gradient
 from engine.models.reduced_model import ReducedModel
@@ -94,4 +94,4 @@ def test_what_the_error_does_not_decide_is_unknown() -> None:
     largest = np.array([0.9, 1.1, 0.9999, 1.0001, 1.0 - 1e-9, np.nan])
     error = np.array([1e-9, 1e-9, 1e-3, 1e-3, 0.0, 1e-9])
     expected = [Stability.STABLE, Stability.UNSTABLE, *[Stability.UNKNOWN] * 4]
-    assert judged(largest, error).tolist() == expected
+    assert stability_verdicts(largest, error).tolist() == expected

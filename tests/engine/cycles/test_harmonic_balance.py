@@ -114,13 +114,13 @@ def test_derivative_of_the_basis() -> None:
 
 
 def test_projection_of_a_cubic_has_no_aliasing() -> None:
-    made = basis(3)
+    discretization = basis(3)
     rng = np.random.default_rng(1)
     a = rng.normal(size=7)
-    cube = (made.values @ a) ** 3
+    cube = (discretization.values @ a) ** 3
     fine = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
     exact = (fourier(fine, 3).T @ (fourier(fine, 3) @ a) ** 3) * np.array([1.0] + [2.0] * 6) / 400.0
-    assert made.projection @ cube == pytest.approx(exact, rel=1e-12, abs=1e-12)
+    assert discretization.projection @ cube == pytest.approx(exact, rel=1e-12, abs=1e-12)
 
 
 def test_half_peak_to_peak_of_sums_of_waves() -> None:

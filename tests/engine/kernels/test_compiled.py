@@ -9,7 +9,7 @@ import pytest
 
 from engine.arrays import FloatArray, IntArray
 from engine.checks.direct_starts import spread_starts
-from engine.checks.settled_motion import Runs, settled
+from engine.checks.settled_motion import SettledMotions, integrate_until_settled
 from engine.cycles.first_harmonic import explicit_cycles
 from engine.cycles.floquet import floquet, monodromy
 from engine.cycles.harmonic_balance import Orbits, balance, linearized
@@ -17,7 +17,7 @@ from engine.cycles.search import Cycles, energy_starts, find_cycles
 from engine.kernels import compiled
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
-from engine.numerics.newton import Options, Solution
+from engine.numerics.newton import NewtonOptions, Solution
 from engine.outcome import Outcome
 from engine.spec import Analysis, Closure
 from tests.builders import hybrid, source_line
@@ -42,7 +42,7 @@ def test_a_newton_step_is_that_of_the_numpy_form(name: str, harmonics: int, both
     member = np.arange(COPIES) % 4
 
     def stepped() -> tuple[Orbits, Solution]:
-        return balance(model, member, start, Options(iterations=1))
+        return balance(model, member, start, NewtonOptions(iterations=1))
 
     found, how = stepped()
     both.setattr(compiled, "AVAILABLE", False)
@@ -82,7 +82,7 @@ def test_a_step_along_a_branch_solves_the_slopes_and_both_conditions(name: str) 
     matrix = np.concatenate([slopes, padded[:, None], row[:, None]], axis=1)
     last = np.broadcast_to(np.eye(start.shape[-1])[-1], start.shape)
     change, direction = np.moveaxis(np.linalg.solve(matrix, np.stack([-right, last], axis=-1)), -1, 0)
-    options = Options(iterations=1, largest_step=np.inf)
+    options = NewtonOptions(iterations=1, largest_step=np.inf)
     guess = (start, np.ones_like(start), options)
     how, tangent = compiled.followed_balances(model, member, (phase, anchor), (row, target), guess)
     for mine, theirs in ((how.x - start, change), (tangent, direction)):
@@ -160,7 +160,7 @@ def test_arrays_that_do_not_fit_are_refused(
     unknowns = np.ones((2, 3 * 7 + 1))
     with pytest.raises(error, match=message):
         compiled.solved_balances(
-            hybrid(source_line(2), 1), member, np.ones(speeds), unknowns[:, 1:], (unknowns, unknowns, Options())
+            hybrid(source_line(2), 1), member, np.ones(speeds), unknowns[:, 1:], (unknowns, unknowns, NewtonOptions())
         )
 
 
@@ -189,8 +189,8 @@ def test_a_block_of_direct_integration_is_that_of_the_numpy_form(name: str, both
     member, wind = np.arange(COPIES) % 4, np.linspace(2.0, 4.0, COPIES)
     start = spread_starts(model, member, wind, (0.05,), np.random.default_rng(1))[:, -1]
 
-    def settled_after_one_block() -> Runs:
-        return settled(model, member, wind, start, 1)
+    def settled_after_one_block() -> SettledMotions:
+        return integrate_until_settled(model, member, wind, start, 1)
 
     found = settled_after_one_block()
     both.setattr(compiled, "AVAILABLE", False)
@@ -208,5 +208,5 @@ def test_direct_integration_that_diverges_is_noticed_by_both_forms(both: pytest.
     start = np.array([[0.01], [80.0]]) * spread_starts(model, member, wind, (1.0,), np.random.default_rng(1))[:, -1]
     for available in (True, False):
         both.setattr(compiled, "AVAILABLE", available)
-        runs = settled(model, member, wind, start, 2)
+        runs = integrate_until_settled(model, member, wind, start, 2)
         assert runs.outcome.tolist() == [Outcome.LIMIT_REACHED, Outcome.NO_CONVERGENCE]

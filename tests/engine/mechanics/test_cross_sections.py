@@ -61,8 +61,8 @@ def test_boundaries_are_listed_once_in_rising_order() -> None:
 
 def test_mass_and_moment_of_pieces_are_exact() -> None:
     line = segmented()
-    made = discretized(line)
-    c = made.profile.catenary_parameter[0]
+    discretization = discretized(line)
+    c = discretization.profile.catenary_parameter[0]
 
     def arc(start: float, stop: float) -> float:
         return float(c * (math.sinh((stop - 62.94) / c) - math.sinh((start - 62.94) / c)))
@@ -70,22 +70,22 @@ def test_mass_and_moment_of_pieces_are_exact() -> None:
     up, turn = (np.arange(84) % FIELDS == kind for kind in (V, THETA))
     mass = 2.379 * arc(0.0, 125.88) + 0.621 * arc(5.0, 20.0) - 0.479 * arc(100.1, 101.3) + 0.4 * arc(60.0, 70.0)
     # The isoparametric element stretches its curve by up to (h/c)^2/12 = 1e-5 unevenly; the mass sees 1e-7 of that.
-    assert up @ made.matrices.mass[0] @ up == pytest.approx(mass, rel=1e-7)
+    assert up @ discretization.matrices.mass[0] @ up == pytest.approx(mass, rel=1e-7)
     e_z = line.ice.eccentricity_z
     moment = e_z * (mass - 0.4 * arc(60.0, 70.0))  # a spoiler sits about the centre
-    assert up @ made.matrices.mass[0] @ turn == pytest.approx(-moment, rel=1e-7)
+    assert up @ discretization.matrices.mass[0] @ turn == pytest.approx(-moment, rel=1e-7)
     across = np.arange(84) % FIELDS == W
     e_y_moment = 2.05e-3 * (mass - 0.4 * arc(60.0, 70.0)) - 1.05e-3 * 2.379 * arc(20.0, 23.0)
-    assert across @ made.matrices.mass[0] @ turn == pytest.approx(e_y_moment, rel=1e-7)
+    assert across @ discretization.matrices.mass[0] @ turn == pytest.approx(e_y_moment, rel=1e-7)
 
 
 def test_properties_hold_where_they_are_said_to() -> None:
     line = segmented()
-    made = discretized(line)
-    here = made.sections
-    arc = (np.arange(10)[:, None] + 0.5 * (here.local[0] + 1.0)) * made.profile.arc_length[0] / 10.0
-    c = made.profile.catenary_parameter[0]
-    x = 62.94 + c * np.arcsinh((arc - 0.5 * made.profile.arc_length[0]) / c)
+    discretization = discretized(line)
+    here = discretization.sections
+    arc = (np.arange(10)[:, None] + 0.5 * (here.local[0] + 1.0)) * discretization.profile.arc_length[0] / 10.0
+    c = discretization.profile.catenary_parameter[0]
+    x = 62.94 + c * np.arcsinh((arc - 0.5 * discretization.profile.arc_length[0]) / c)
     expected = np.full(x.shape, 2.379)
     expected[(x > 5.0) & (x < 20.0)] = 3.0
     expected[(x > 100.1) & (x < 101.3)] = 1.9

@@ -30,7 +30,7 @@ NODES = 21
 
 
 def nodal(line: Line) -> tuple[FloatArray, FloatArray]:
-    """Return arc positions of the nodes and their co-ordinates."""
+    """Return arc positions of the nodes and their coordinates."""
     profile = static_profile((line,))
     arc = np.linspace(0.0, profile.arc_length[0], NODES)
     return arc, coordinates(profile, arc[None])[0]
@@ -60,20 +60,20 @@ def test_matrices_are_symmetric_and_mass_is_positive(seed: int) -> None:
 @pytest.mark.parametrize("subconductors", [1, 2, 4])
 @pytest.mark.parametrize("direction", [U, V, W])
 def test_translation_carries_the_whole_mass(subconductors: int, direction: int) -> None:
-    made = discretized(source_line(subconductors))
+    discretization = discretized(source_line(subconductors))
     unit = field(direction, np.ones(NODES))
-    expected = subconductors * 2.379 * made.profile.arc_length[0]
+    expected = subconductors * 2.379 * discretization.profile.arc_length[0]
     # The isoparametric curve's length differs from the catenary's by (h/c)^4: 1e-9.
-    assert unit @ made.matrices.mass[0] @ unit == pytest.approx(expected, rel=1e-9)
+    assert unit @ discretization.matrices.mass[0] @ unit == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("direction", [U, V, W])
 def test_translation_has_no_strain_energy_but_in_the_springs(direction: int) -> None:
     line = source_line(3)
-    made = discretized(line)
+    discretization = discretized(line)
     unit = field(direction, np.ones(NODES))
-    expected = 3 * made.profile.end_stiffness[0].sum() if direction == U else 0.0
-    assert unit @ made.matrices.stiffness[0] @ unit == pytest.approx(expected, rel=1e-9, abs=1e-4)
+    expected = 3 * discretization.profile.end_stiffness[0].sum() if direction == U else 0.0
+    assert unit @ discretization.matrices.stiffness[0] @ unit == pytest.approx(expected, rel=1e-9, abs=1e-4)
 
 
 @pytest.mark.parametrize(("a", "b"), [(U, V), (U, W), (V, W)])
@@ -90,33 +90,33 @@ def test_infinitesimal_rotation_has_no_elastic_energy(a: int, b: int) -> None:
 
 def test_rotation_in_plane_stores_the_energy_of_the_tension() -> None:
     line = without_springs(replace(source_line(2), span=Span(125.88, sag=6.0)))
-    made = discretized(line)
-    c, tension = made.profile.catenary_parameter[0], made.profile.horizontal_tension[0]
+    discretization = discretized(line)
+    c, tension = discretization.profile.catenary_parameter[0], discretization.profile.horizontal_tension[0]
     _, r = nodal(line)
     rotation = field(U, -r[:, 1]) + field(V, r[:, 0])
     # n int T ds = n H int cosh^2(x/c) dx over the span.
     integral = tension * (0.5 * 125.88 + 0.5 * c * math.sinh(125.88 / c))
-    assert rotation @ made.matrices.stiffness[0] @ rotation == pytest.approx(2.0 * integral, rel=1e-7)
+    assert rotation @ discretization.matrices.stiffness[0] @ rotation == pytest.approx(2.0 * integral, rel=1e-7)
 
 
 def test_uniform_stretch_of_a_nearly_straight_line_stores_n_ea_over_l() -> None:
     line = without_springs(replace(source_line(2), span=Span(100.0, sag=1e-4), ice=replace(source_line(2).ice)))
-    made = discretized(line)
+    discretization = discretized(line)
     stretch = field(U, np.linspace(0.0, 1.0, NODES))
-    expected = 2.0 * (line.conductor.axial_rigidity + made.profile.horizontal_tension[0]) / 100.0
-    assert stretch @ made.matrices.stiffness[0] @ stretch == pytest.approx(expected, rel=1e-9)
+    expected = 2.0 * (line.conductor.axial_rigidity + discretization.profile.horizontal_tension[0]) / 100.0
+    assert stretch @ discretization.matrices.stiffness[0] @ stretch == pytest.approx(expected, rel=1e-9)
 
 
 def test_uniform_twist_stores_torsion_tension_and_axial_torsional_coupling() -> None:
     line = replace(source_line(2), span=Span(100.0, sag=1e-4))
     line = without_springs(replace(line, conductor=replace(line.conductor, axial_torsional_coupling=700.0)))
-    made = discretized(line)
+    discretization = discretized(line)
     along = np.linspace(0.0, 1.0, NODES)
     twist, stretch = field(THETA, along), field(U, along)
-    tension = made.profile.horizontal_tension[0]
+    tension = discretization.profile.horizontal_tension[0]
     ice = 2.379 * 9.81 * 2.05e-3 * 100.0 / 3.0
     expected = 2.0 * (101.0 / 100.0 + tension * 0.2355**2 / 100.0 - ice)
-    stiffness = made.matrices.stiffness[0]
+    stiffness = discretization.matrices.stiffness[0]
     assert twist @ stiffness @ twist == pytest.approx(expected, rel=1e-9)
     assert twist @ stiffness @ stretch == pytest.approx(2.0 * 700.0 / 100.0, rel=1e-9)
 
@@ -124,10 +124,10 @@ def test_uniform_twist_stores_torsion_tension_and_axial_torsional_coupling() -> 
 def test_rotation_of_the_section_carries_every_sub_conductor_and_its_ice() -> None:
     positions = ((0.3, 0.1), (-0.2, 0.25), (0.05, -0.4))
     line = replace(source_line(3), bundle=Bundle(positions))
-    made = discretized(line)
+    discretization = discretized(line)
     e_y, e_z = line.ice.eccentricity_y, line.ice.eccentricity_z
     turn, up, across = (field(kind, np.ones(NODES)) for kind in (THETA, V, W))
-    mass, length = made.matrices.mass[0], made.profile.arc_length[0]
+    mass, length = discretization.matrices.mass[0], discretization.profile.arc_length[0]
     own = 3.334e-4 - 2.379 * (e_y**2 + e_z**2)
     inertia = sum(2.379 * ((y + e_y) ** 2 + (z + e_z) ** 2) + own for y, z in positions)
     assert turn @ mass @ turn == pytest.approx(inertia * length, rel=1e-9)
@@ -137,7 +137,7 @@ def test_rotation_of_the_section_carries_every_sub_conductor_and_its_ice() -> No
 
 def test_kinetic_energy_is_that_of_the_sub_conductors_moving_by_eq_3() -> None:
     line = source_line(3)
-    made = discretized(line)
+    discretization = discretized(line)
     rng = np.random.default_rng(3)
     u, v, w, theta = rng.normal(size=4)
     motion = sum((field(k, np.full(NODES, x)) for k, x in enumerate((u, v, w, theta))), np.zeros(FIELDS * NODES))
@@ -146,7 +146,9 @@ def test_kinetic_energy_is_that_of_the_sub_conductors_moving_by_eq_3() -> None:
     for y, z in line.bundle.positions:
         energy += 2.379 * (u**2 + (v - (z + e_z) * theta) ** 2 + (w + (y + e_y) * theta) ** 2)
         energy += (3.334e-4 - 2.379 * (e_y**2 + e_z**2)) * theta**2
-    assert motion @ made.matrices.mass[0] @ motion == pytest.approx(energy * made.profile.arc_length[0], rel=1e-9)
+    assert motion @ discretization.matrices.mass[0] @ motion == pytest.approx(
+        energy * discretization.profile.arc_length[0], rel=1e-9
+    )
 
 
 def test_spacer_of_zero_mass_changes_nothing() -> None:
@@ -160,9 +162,9 @@ def test_spacer_of_zero_mass_changes_nothing() -> None:
 @pytest.mark.parametrize("position", [3.0, 62.94, 90.0, 125.88])
 def test_spacer_adds_its_energy(position: float) -> None:
     line = source_line(2)
-    made = discretized(replace(line, devices=(Spacer(position, 6.5, 0.4),)))
-    added = made.matrices.mass[0] - discretized(line).matrices.mass[0]
-    first, values = interpolation_at(made.profile, 0, 10, position)
+    discretization = discretized(replace(line, devices=(Spacer(position, 6.5, 0.4),)))
+    added = discretization.matrices.mass[0] - discretized(line).matrices.mass[0]
+    first, values = interpolation_at(discretization.profile, 0, 10, position)
     rng = np.random.default_rng(1)
     motion = rng.normal(size=FIELDS * NODES)
     at = values @ motion.reshape(NODES, FIELDS)[first : first + 3]
@@ -239,8 +241,8 @@ def eigenvalues(line: Line) -> FloatArray:
     """Return the lowest twelve squares of natural frequencies of all freedoms."""
     system = discretized(line).matrices
     free = np.flatnonzero(~system.fixed[0])
-    pick = np.ix_(free, free)
-    return np.asarray(eigh(system.stiffness[0][pick], system.mass[0][pick], eigvals_only=True)[:12])
+    select = np.ix_(free, free)
+    return np.asarray(eigh(system.stiffness[0][select], system.mass[0][select], eigvals_only=True)[:12])
 
 
 @pytest.mark.parametrize("place", [(0.3, 0.0), (0.0, -0.5), (-0.2, 0.4)])

@@ -41,10 +41,10 @@ def single(length: float, e_y: float, e_z: float, elements: int = 10) -> Line:
 
 def twist_of(line: Line) -> tuple[FloatArray, FloatArray]:
     """Return arc positions and twist of the nodes; the state must have been found."""
-    made = discretized(line)
-    state = twisted_state(made.lines, made.profile, made.sections)
+    discretization = discretized(line)
+    state = twisted_state(discretization.lines, discretization.profile, discretization.sections)
     assert state.outcome[0] is Outcome.CONVERGED
-    return np.linspace(0.0, float(made.profile.arc_length[0]), state.angle.shape[1]), state.angle[0]
+    return np.linspace(0.0, float(discretization.profile.arc_length[0]), state.angle.shape[1]), state.angle[0]
 
 
 def wave_number(line: Line, eccentricity: float) -> float:
@@ -69,24 +69,26 @@ def eventful_line(seed: int) -> Line:
 @settings(max_examples=10, deadline=None)
 @given(st.integers(0, 10**6))
 def test_second_derivative_at_zero_is_the_stiffness_of_section_3(seed: int) -> None:
-    made = discretized(eventful_line(seed))
-    stiffness = made.matrices.stiffness
-    _, tangent = energy_derivatives(made.lines, made.profile, made.sections, np.zeros(stiffness.shape[:2]))
+    discretization = discretized(eventful_line(seed))
+    stiffness = discretization.matrices.stiffness
+    _, tangent = energy_derivatives(
+        discretization.lines, discretization.profile, discretization.sections, np.zeros(stiffness.shape[:2])
+    )
     assert np.abs(tangent - stiffness).max() <= 1e-12 * np.abs(stiffness).max()
 
 
 def test_derivatives_agree_with_finite_differences_of_each_other() -> None:
-    made = discretized(eventful_line(3))
-    freedoms = made.matrices.stiffness.shape[-1]
+    discretization = discretized(eventful_line(3))
+    freedoms = discretization.matrices.stiffness.shape[-1]
     state: FloatArray = np.random.default_rng(4).normal(scale=0.3, size=(freedoms,))
     change = 1e-6 * np.eye(freedoms)
 
     def gradient(x: FloatArray) -> FloatArray:
-        at_x, _ = energy_derivatives(made.lines, made.profile, made.sections, x[None])
+        at_x, _ = energy_derivatives(discretization.lines, discretization.profile, discretization.sections, x[None])
         return np.asarray(at_x[0], dtype=np.float64)
 
     numerical = np.stack([(gradient(state + change[i]) - gradient(state - change[i])) / 2e-6 for i in range(freedoms)])
-    _, tangent = energy_derivatives(made.lines, made.profile, made.sections, state[None])
+    _, tangent = energy_derivatives(discretization.lines, discretization.profile, discretization.sections, state[None])
     torsional = np.s_[THETA::FIELDS, THETA::FIELDS]
     assert np.abs(numerical - tangent[0]).max() <= 1e-8 * np.abs(tangent).max()
     assert np.abs((numerical - tangent[0])[torsional]).max() <= 1e-8 * np.abs(tangent[0][torsional]).max()
@@ -143,20 +145,20 @@ def test_no_start_leads_to_less_energy(seed: int) -> None:
     """Scipy's minimizer goes down from a spread of starts; the energy is integrated along the way it goes."""
     generator = np.random.default_rng(seed)
     length, e_y, e_z = generator.uniform(100.0, 350.0), generator.uniform(-3e-3, 3e-3), generator.uniform(-3e-3, 3e-3)
-    made = discretized(single(float(length), float(e_y), float(e_z), elements=4))
-    free = np.flatnonzero(~held_freedoms(made.profile, made.matrices.stiffness.shape[-1])[0])
+    discretization = discretized(single(float(length), float(e_y), float(e_z), elements=4))
+    free = np.flatnonzero(~held_freedoms(discretization.profile, discretization.matrices.stiffness.shape[-1])[0])
     torsional = free[free % FIELDS == THETA]
-    arc, wave = made.profile.arc_length[0], made.sections
+    arc, wave = discretization.profile.arc_length[0], discretization.sections
 
     def energy(x: FloatArray) -> tuple[float, FloatArray]:
-        whole = np.zeros((1, made.matrices.stiffness.shape[-1]))
+        whole = np.zeros((1, discretization.matrices.stiffness.shape[-1]))
         whole[0, torsional] = x
-        gradient, _ = energy_derivatives(made.lines, made.profile, wave, whole)
-        return _energy(made, whole[0]), gradient[0, torsional]
+        gradient, _ = energy_derivatives(discretization.lines, discretization.profile, wave, whole)
+        return _energy(discretization, whole[0]), gradient[0, torsional]
 
-    def _energy(made: Discretization, x: FloatArray) -> float:
+    def _energy(discretization: Discretization, x: FloatArray) -> float:
         nodes = np.linspace(0.0, arc, x.size // FIELDS)
-        line = made.lines[0]
+        line = discretization.lines[0]
         fine = np.linspace(0.0, arc, 4001)
         element = np.minimum((fine / arc * 4).astype(int), 3)
         theta = np.zeros_like(fine)
@@ -170,8 +172,8 @@ def test_no_start_leads_to_less_energy(seed: int) -> None:
         density += weight * (line.ice.eccentricity_y * np.cos(theta) - line.ice.eccentricity_z * np.sin(theta))
         return float(np.trapezoid(density, fine))
 
-    state = twisted_state(made.lines, made.profile, made.sections)
-    found = _energy(made, state.displacement[0])
+    state = twisted_state(discretization.lines, discretization.profile, discretization.sections)
+    found = _energy(discretization, state.displacement[0])
     lowest = min(
         minimize(
             energy, generator.uniform(-4.0, 4.0, torsional.size), jac=True, method="BFGS", options={"gtol": 1e-4}
@@ -204,14 +206,14 @@ def test_pendulum_at_an_angle_turns_the_section_towards_the_vertical() -> None:
 def test_mass_and_stiffness_are_those_of_a_line_iced_as_it_hangs() -> None:
     """A pendulum whose weight turns the section rigidly: a line that is built turned has the same matrices."""
     line = replace(single(100.0, 0.0, 0.0), devices=(DetuningPendulum(50.0, 3.0, 0.5, 0.4),))
-    made = discretize((line,), StaticTwist.SOLVED)
-    assert made.twist is not None
-    middle = float(made.twist.angle[0, 10])
+    discretization = discretize((line,), StaticTwist.SOLVED)
+    assert discretization.twist is not None
+    middle = float(discretization.twist.angle[0, 10])
     hanging = replace(line, devices=(DetuningPendulum(50.0, 3.0, 0.5, 0.4 - middle),))
     plain = discretized(hanging).matrices
-    assert made.matrices.mass == pytest.approx(plain.mass, rel=1e-12, abs=1e-12)
-    assert made.matrices.stiffness == pytest.approx(plain.stiffness, rel=1e-9, abs=1e-3)
-    assert made.matrices.stiffness[0, THETA::FIELDS, THETA::FIELDS] == pytest.approx(
+    assert discretization.matrices.mass == pytest.approx(plain.mass, rel=1e-12, abs=1e-12)
+    assert discretization.matrices.stiffness == pytest.approx(plain.stiffness, rel=1e-9, abs=1e-3)
+    assert discretization.matrices.stiffness[0, THETA::FIELDS, THETA::FIELDS] == pytest.approx(
         plain.stiffness[0, THETA::FIELDS, THETA::FIELDS], rel=1e-9, abs=1e-9
     )
 
@@ -246,18 +248,18 @@ def test_a_long_single_span_rests_twisted_where_small_twist_diverges() -> None:
 def test_torsional_frequency_of_the_twisted_state_is_that_of_small_swings_about_it() -> None:
     """The first mode of Jacobi's accessory equation GJ f'' + (w^2 I - m g e_y(s)) f = 0, by finite differences."""
     line = single(250.0, 2.05e-3, -0.63e-3, elements=16)
-    made = discretize((line,), StaticTwist.SOLVED)
-    assert made.twist is not None
-    arc = float(made.profile.arc_length[0])
+    discretization = discretize((line,), StaticTwist.SOLVED)
+    assert discretization.twist is not None
+    arc = float(discretization.profile.arc_length[0])
     nodes = np.linspace(0.0, arc, 33)
     fine = np.linspace(0.0, arc, 2001)[1:-1]
-    angle = np.interp(fine, nodes, made.twist.angle[0])
+    angle = np.interp(fine, nodes, discretization.twist.angle[0])
     upward = 2.05e-3 * np.cos(angle) + 0.63e-3 * np.sin(angle)
     step = fine[1] - fine[0]
     main = 2.0 * line.conductor.torsional_rigidity / step**2 - line.conductor.mass * GRAVITY * upward
     side = np.full(fine.size - 1, -line.conductor.torsional_rigidity / step**2)
     lowest = eigh_tridiagonal(main, side, select="i", select_range=(0, 0), eigvals_only=True)[0]
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1,))
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1,))
     assert shapes.angular_frequency[0, 0, 2] == pytest.approx(
         math.sqrt(lowest / line.conductor.polar_inertia), rel=2e-3
     )
@@ -266,13 +268,13 @@ def test_torsional_frequency_of_the_twisted_state_is_that_of_small_swings_about_
 def test_a_table_is_fitted_at_the_local_angle() -> None:
     measured = circle()
     line = replace(single(200.0, 2.05e-3, -0.63e-3), ice=Ice(fit_measured(measured), 2.05e-3, -0.63e-3))
-    made = discretize((line,), StaticTwist.SOLVED)
-    twist = made.sections.twist[0]
+    discretization = discretize((line,), StaticTwist.SOLVED)
+    twist = discretization.sections.twist[0]
     place = np.unravel_index(np.abs(twist).argmax(), twist.shape)
     expected = fit_measured(measured, float(twist[place]))
     assert abs(twist[place]) > 1.0
-    assert made.sections.aerodynamics[0][place][0, 1:] == pytest.approx(expected.vertical, rel=1e-12)
-    assert made.sections.aerodynamics[0][place][:, 0] == pytest.approx(expected.at_rest, rel=1e-12)
+    assert discretization.sections.aerodynamics[0][place][0, 1:] == pytest.approx(expected.vertical, rel=1e-12)
+    assert discretization.sections.aerodynamics[0][place][:, 0] == pytest.approx(expected.at_rest, rel=1e-12)
     at_rest = discretize((line,)).sections.aerodynamics[0]
     assert at_rest[..., 0, 1:] == pytest.approx(np.broadcast_to(fit_measured(measured).vertical, (*twist.shape, 3)))
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from engine.arrays import FloatArray
 from engine.mechanics.modes import at_points
-from engine.models.aerodynamic_load import force, force_gradient, integrated, relative_wind_table, span_load
+from engine.models.aerodynamic_load import force, force_gradient, integrate_along_span, relative_wind_table, span_load
 from engine.models.reduced_model import ReducedModel
 from engine.spec import AerodynamicModel, Aerodynamics, AirflowSpoiler, Analysis, IceSegment, Line, Wind
 from tests.builders import discretized, finite_element, hybrid, random_line, sorted_products, source_line
@@ -41,8 +41,8 @@ def pieces(line: Line) -> list[tuple[float, float, Aerodynamics]]:
 
 def by_quadrature(line: Line, model: ReducedModel, state: FloatArray, relative: bool) -> FloatArray:
     """Integrate the load of one state over the span by the trapezoidal rule on 4000 points a piece."""
-    made = discretized(line)
-    c, arc_length = made.profile.catenary_parameter[0], made.profile.arc_length[0]
+    discretization = discretized(line)
+    c, arc_length = discretization.profile.catenary_parameter[0], discretization.profile.arc_length[0]
     d, rho, n = line.conductor.diameter, line.wind.air_density, len(line.bundle.positions)
     m = state.size // 2
     total = np.zeros(m)
@@ -163,12 +163,14 @@ def test_gradient_is_the_derivative_of_the_force(seed: int, analysis: Analysis) 
 
 def test_integrated_load_is_the_pointwise_one() -> None:
     line = varied()
-    made = discretized(line)
+    discretization = discretized(line)
     model = hybrid(line, 1)
-    values = at_points(made.matrices, model.shapes)[:, None]
-    pointwise = span_load((line,), made.sections, made.matrices.weight, values, AerodynamicModel.PUBLISHED)
+    values = at_points(discretization.matrices, model.shapes)[:, None]
+    pointwise = span_load(
+        (line,), discretization.sections, discretization.matrices.weight, values, AerodynamicModel.PUBLISHED
+    )
     active = (2, 3, 5)
-    once = integrated(pointwise, active)
+    once = integrate_along_span(pointwise, active)
     state = 0.2 * np.random.default_rng(2).normal(size=(1, 1, 7, 6))
     expected = force(pointwise, state)
     assert force(once, state) == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())

@@ -19,12 +19,12 @@ RATIOS = np.array([0.000515, 0.000515, 0.308])
 
 def basis_of(line: Line, loops: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return f_u, f_v, f_w, f_theta as columns on all freedoms, with K and M."""
-    made = discretized(line)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, tuple(sorted({1, loops})))
+    discretization = discretized(line)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, tuple(sorted({1, loops})))
     columns = np.zeros((84, 4))
     for kind in (U, V, W, THETA):
         columns[kind::FIELDS, kind] = shapes.nodal[0, shapes.loops.index(loops), kind]
-    return columns, made.matrices.stiffness[0], made.matrices.mass[0]
+    return columns, discretization.matrices.stiffness[0], discretization.matrices.mass[0]
 
 
 def equipped(subconductors: int) -> Line:
@@ -89,12 +89,12 @@ def test_finite_element_damping_takes_energy_from_every_mode() -> None:
 
 def test_finite_element_model_is_diagonal_in_its_modes() -> None:
     line = source_line(2)
-    made = discretized(line)
-    modes = full_modes(made.matrices, (1, 2, 3))
+    discretization = discretized(line)
+    modes = full_modes(discretization.matrices, (1, 2, 3))
     vectors = modes.vectors[0].reshape(9, -1)
     model = finite_element(line)
     assert model.mass[0] == pytest.approx(np.eye(9), abs=1e-15)
-    projected = vectors @ made.matrices.stiffness[0] @ vectors.T
+    projected = vectors @ discretization.matrices.stiffness[0] @ vectors.T
     assert model.stiffness[0] == pytest.approx(projected, abs=1e-8 * np.abs(projected).max())
     assert model.direction.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
 
@@ -102,10 +102,10 @@ def test_finite_element_model_is_diagonal_in_its_modes() -> None:
 @pytest.mark.parametrize("loops", [1, 2, 3, 4])
 def test_observation_reads_shapes_at_the_first_crest(loops: int) -> None:
     line = source_line(1)
-    made = discretized(line)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1, 2, 3, 4))
-    model = take(hybrid_model(made, shapes, (loops,), Analysis()), 0)
-    seen = observation(made, model.shapes, loops)[0]
+    discretization = discretized(line)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1, 2, 3, 4))
+    model = take(hybrid_model(discretization, shapes, (loops,), Analysis()), 0)
+    seen = observation(discretization, model.shapes, loops)[0]
     assert seen == pytest.approx(np.diag(np.diagonal(seen)), abs=1e-15)
     # W and the single conductor's Theta are sines of unit amplitude; four loops have 2.5 elements a half wave.
     assert np.diagonal(seen)[1:] == pytest.approx([1.0, 1.0], abs=4e-3)
@@ -113,9 +113,9 @@ def test_observation_reads_shapes_at_the_first_crest(loops: int) -> None:
 
 def test_stacks_hold_what_each_line_has_alone() -> None:
     lines = (source_line(1), source_line(3), equipped(2))
-    made = discretized(*lines)
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1, 2))
-    stack = hybrid_model(made, shapes, (1, 2), Analysis())
+    discretization = discretized(*lines)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1, 2))
+    stack = hybrid_model(discretization, shapes, (1, 2), Analysis())
     for i, line in enumerate(lines):
         for j, loops in enumerate((1, 2)):
             alone = hybrid(line, loops)

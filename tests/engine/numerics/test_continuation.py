@@ -7,14 +7,14 @@ import pytest
 
 from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.numerics.continuation import (
-    Points,
+    BranchPoints,
     Problem,
-    Steps,
-    branches,
-    interpolated,
-    located,
-    onto,
-    points_at,
+    StepControl,
+    continue_branches,
+    interpolate,
+    locate_zeros,
+    make_points,
+    project_onto_branches,
     tangents,
 )
 from engine.outcome import Outcome
@@ -49,8 +49,10 @@ class Kink(Problem):
         return np.ones_like(z)
 
 
-def followed(problem: Problem, start: FloatArray, direction: FloatArray, steps: Steps | None = None) -> list[Points]:
-    return list(branches(problem, start, direction, steps))
+def followed(
+    problem: Problem, start: FloatArray, direction: FloatArray, steps: StepControl | None = None
+) -> list[BranchPoints]:
+    return list(continue_branches(problem, start, direction, steps))
 
 
 CIRCLES = Circles(np.array([1.0, 3.0]))
@@ -59,7 +61,7 @@ ALONG = np.array([[1.0, 0.0], [0.0, -1.0]])
 
 
 def test_points_lie_on_the_curves_and_go_round_all_of_them() -> None:
-    points = followed(CIRCLES, START, ALONG, Steps(points=150))
+    points = followed(CIRCLES, START, ALONG, StepControl(points=150))
     for branch, radius in enumerate(CIRCLES.radius):
         z = np.array([p.z[p.branch == branch][0] for p in points])
         assert np.hypot(*z.T) == pytest.approx(radius, rel=1e-7)
@@ -69,7 +71,7 @@ def test_points_lie_on_the_curves_and_go_round_all_of_them() -> None:
 
 
 def test_caller_ends_a_branch() -> None:
-    steps = branches(CIRCLES, START, ALONG)
+    steps = continue_branches(CIRCLES, START, ALONG)
     first = next(steps)
     assert first.branch.tolist() == [0, 1]
     assert steps.send(np.array([False, True])).branch.tolist() == [1]
@@ -79,7 +81,7 @@ def test_caller_ends_a_branch() -> None:
 
 
 def test_end_of_a_curve_is_an_outcome() -> None:
-    steps = branches(Kink(), np.array([[1.0, -0.35]]), np.array([[0.0, 1.0]]))
+    steps = continue_branches(Kink(), np.array([[1.0, -0.35]]), np.array([[0.0, 1.0]]))
     points = []
     alive: BoolArray | None = None
     while True:
@@ -93,7 +95,7 @@ def test_end_of_a_curve_is_an_outcome() -> None:
 
 
 def test_largest_number_of_points_is_an_outcome() -> None:
-    steps = branches(CIRCLES, START, ALONG, Steps(points=2))
+    steps = continue_branches(CIRCLES, START, ALONG, StepControl(points=2))
     next(steps), next(steps)
     with pytest.raises(StopIteration) as end:
         next(steps)
@@ -101,20 +103,22 @@ def test_largest_number_of_points_is_an_outcome() -> None:
 
 
 def test_folds_are_located() -> None:
-    points = followed(CIRCLES, np.array([[1.0, 0.0], [3.0, 0.0]]), np.array([[0.0, 1.0], [0.0, 1.0]]), Steps(points=50))
+    points = followed(
+        CIRCLES, np.array([[1.0, 0.0], [3.0, 0.0]]), np.array([[0.0, 1.0], [0.0, 1.0]]), StepControl(points=50)
+    )
     for branch, radius in enumerate(CIRCLES.radius):
-        own = [p.pick(p.branch == branch) for p in points]
+        own = [p.select(p.branch == branch) for p in points]
         at = next(i for i in range(len(own)) if own[i].tangent[0, -1] * own[i + 1].tangent[0, -1] < 0.0)
-        fold = located(CIRCLES, own[at], own[at + 1], lambda p: p.tangent[:, -1], 1e-12)
+        fold = locate_zeros(CIRCLES, own[at], own[at + 1], lambda p: p.tangent[:, -1], 1e-12)
         assert fold.points.z[0, 0] == pytest.approx(0.0, abs=1e-4)
         assert fold.points.z[0, 1] == pytest.approx(radius, rel=1e-9)
         assert fold.uncertainty[0] < 1e-9
 
 
 def test_a_test_function_is_met_inside_a_segment() -> None:
-    left = points_at(CIRCLES, np.array([0]), np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]))
-    right = points_at(CIRCLES, np.array([0]), np.array([[0.0, 1.0]]), np.array([[-1.0, 0.0]]))
-    found = located(CIRCLES, left, right, lambda p: p.z[:, 1] - 0.6, 1e-12)
+    left = make_points(CIRCLES, np.array([0]), np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]))
+    right = make_points(CIRCLES, np.array([0]), np.array([[0.0, 1.0]]), np.array([[-1.0, 0.0]]))
+    found = locate_zeros(CIRCLES, left, right, lambda p: p.z[:, 1] - 0.6, 1e-12)
     assert found.points.z[0] == pytest.approx([0.8, 0.6], abs=1e-10)
 
 
@@ -124,11 +128,11 @@ def test_tangents_and_hermite_interpolation() -> None:
     branch = np.array([0, 0])
     tangent = tangents(CIRCLES, z, branch, np.array([[-1.0, 0.0], [-1.0, 0.0]]))
     assert tangent == pytest.approx(np.stack([-np.sin(angle), np.cos(angle)], axis=-1))
-    ends = [points_at(CIRCLES, branch[i : i + 1], z[i : i + 1], tangent[i : i + 1]) for i in (0, 1)]
-    middle = interpolated(ends[0], ends[1], np.array([0.5]))
+    ends = [make_points(CIRCLES, branch[i : i + 1], z[i : i + 1], tangent[i : i + 1]) for i in (0, 1)]
+    middle = interpolate(ends[0], ends[1], np.array([0.5]))
     assert middle[0] == pytest.approx([np.cos(0.4), np.sin(0.4)], abs=2e-5)
 
 
 def test_points_are_put_onto_the_branch() -> None:
-    near = points_at(CIRCLES, np.array([1]), np.array([[3.1, 0.0]]), np.array([[0.0, 3.0]]))
-    assert onto(CIRCLES, near).z[0] == pytest.approx([3.0, 0.0], abs=1e-9)
+    near = make_points(CIRCLES, np.array([1]), np.array([[3.1, 0.0]]), np.array([[0.0, 3.0]]))
+    assert project_onto_branches(CIRCLES, near).z[0] == pytest.approx([3.0, 0.0], abs=1e-9)

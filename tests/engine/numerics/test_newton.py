@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.arrays import FloatArray, IntArray
-from engine.numerics.newton import Options, System, newton
+from engine.numerics.newton import NewtonOptions, System, newton
 from engine.outcome import Outcome
 
 
@@ -22,7 +22,7 @@ def quadratics(targets: FloatArray) -> System:
 
 def test_every_member_of_a_stack_is_solved_on_its_own() -> None:
     targets = np.array([4.0, 9.0, 1e4])
-    found = newton(quadratics(targets), np.tile([1.0, 1.0], (3, 1)), np.ones((3, 2)), Options(largest_step=1e9))
+    found = newton(quadratics(targets), np.tile([1.0, 1.0], (3, 1)), np.ones((3, 2)), NewtonOptions(largest_step=1e9))
     assert found.converged.all()
     assert found.x == pytest.approx(np.stack([np.sqrt(targets), np.sqrt(targets) + 1.0], axis=-1), rel=1e-12)
     assert found.iterations[0] < found.iterations[2]
@@ -52,7 +52,7 @@ def test_steps_are_no_longer_than_allowed() -> None:
     # From 1 to 100 in steps of the root mean square size 0.5: both unknowns move alike, so 0.5 each.
     found = newton(quadratics(np.array([1e4])), np.array([[99.0, 100.0]]), np.ones((1, 2)))
     assert found.converged.all()
-    far = newton(quadratics(np.array([1e4])), np.array([[1.0, 2.0]]), np.ones((1, 2)), Options(iterations=12))
+    far = newton(quadratics(np.array([1e4])), np.array([[1.0, 2.0]]), np.ones((1, 2)), NewtonOptions(iterations=12))
     assert not far.converged.any()
     assert far.x[0, 0] == pytest.approx(1.0 + 12 * 0.5, rel=1e-12)
 

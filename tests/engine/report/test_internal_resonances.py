@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from engine.outcome import Outcome
-from engine.report.internal_resonances import motion_shares, nearest_ratio, resonance_rows
+from engine.report.internal_resonances import internal_resonance_rows, motion_shares, nearest_ratio
 from engine.result import FrequencyRow
 from engine.spec import Analysis, Model
 from tests.builders import only, run, source_line
@@ -17,7 +17,7 @@ def test_the_nearest_ratio_is_the_one_of_least_relative_difference(ratio: float,
 
 
 def test_the_three_frequencies_make_three_ratios() -> None:
-    rows = resonance_rows([FrequencyRow(Model.HYBRID, 2, 0.8, 0.4, 2.52)])
+    rows = internal_resonance_rows([FrequencyRow(Model.HYBRID, 2, 0.8, 0.4, 2.52)])
     assert [(row.directions, row.nearest_ratio) for row in rows] == [
         ("horizontal:vertical", "1:2"),
         ("torsional:vertical", "3:1"),
@@ -30,7 +30,7 @@ def test_the_three_frequencies_make_three_ratios() -> None:
 
 def test_a_frequency_that_there_is_not_has_no_ratio() -> None:
     row = FrequencyRow(Model.HYBRID, 1, 0.48, 0.45, None, Outcome.STATICALLY_UNSTABLE)
-    assert [found.directions for found in resonance_rows([row])] == ["horizontal:vertical"]
+    assert [found.directions for found in internal_resonance_rows([row])] == ["horizontal:vertical"]
 
 
 def test_shares_are_those_of_the_mean_kinetic_energy() -> None:

@@ -24,10 +24,10 @@ def source_result(subconductors: int) -> Result:
 @pytest.mark.parametrize("inertia", LongitudinalInertia)
 def test_the_joint_model_of_one_number_of_loops_is_the_hybrid_model(inertia: LongitudinalInertia) -> None:
     generator = np.random.default_rng(5)
-    made = discretized(random_line(generator), random_line(generator))
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1, 2, 3))
+    discretization = discretized(random_line(generator), random_line(generator))
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1, 2, 3))
     asked = Analysis(longitudinal_inertia=inertia)
-    one, joint = hybrid_model(made, shapes, (2,), asked), joint_model(made, shapes, (2,), asked)
+    one, joint = hybrid_model(discretization, shapes, (2,), asked), joint_model(discretization, shapes, (2,), asked)
     for name in ("mass", "damping", "stiffness", "shapes"):
         assert getattr(joint, name) == pytest.approx(getattr(one, name)[:, 0], rel=1e-9, abs=1e-9)
     state = generator.normal(scale=0.1, size=(2, 7, 6))
@@ -38,9 +38,12 @@ def test_the_joint_model_of_one_number_of_loops_is_the_hybrid_model(inertia: Lon
 
 
 def test_each_loops_keeps_its_own_part_of_the_joint_model() -> None:
-    made = discretized(source_line(2))
-    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1, 2, 3))
-    apart, joint = hybrid_model(made, shapes, (3, 1), Analysis()), joint_model(made, shapes, (3, 1), Analysis())
+    discretization = discretized(source_line(2))
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1, 2, 3))
+    apart, joint = (
+        hybrid_model(discretization, shapes, (3, 1), Analysis()),
+        joint_model(discretization, shapes, (3, 1), Analysis()),
+    )
     for column in range(2):
         own = np.ix_([0], [column, 2 + column, 4 + column], [column, 2 + column, 4 + column])
         assert joint.mass[own][0] == pytest.approx(apart.mass[0, column], rel=1e-9, abs=1e-9)

@@ -11,7 +11,7 @@ from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.outcome import Outcome, Stability
 from engine.result import LimitCycleRow
 from engine.spec import Model, TorusSearch
-from engine.tori.quasi_periodic import QuasiPeriodic, integrated, quasi_periodic_motions
+from engine.tori.quasi_periodic import QuasiPeriodicMotions, check_by_integration, quasi_periodic_motions
 from engine.tori.spectrum import amplitude_range, base_frequencies
 from tests.builders import only, run, source_line
 from tests.engine.coupled_circles import FREQUENCIES, coupled_circles, two_lines
@@ -20,12 +20,12 @@ from tests.engine.motions import LIGHT
 ONE = np.zeros(1, dtype=np.intp)
 
 
-def motions(linear: tuple[float, float], winds: list[float], search: TorusSearch) -> QuasiPeriodic:
+def motions(linear: tuple[float, float], winds: list[float], search: TorusSearch) -> QuasiPeriodicMotions:
     """Find the tori of two circles; the second one begins to move beside the first at U = 1."""
     model, speeds = coupled_circles((0.4, 1.0), linear), np.array(winds)
     crossings = critical_wind_speeds(model, 5.0)
     cycles = find_cycles(model, crossings, speeds, energy_starts(model, speeds, 5), 5)
-    found = bifurcations(cycles.traces, cycles.followed, model, crossings)
+    found = bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
     return quasi_periodic_motions(model, cycles, found, speeds, search)
 
 
@@ -39,16 +39,16 @@ def test_a_torus_that_takes_over_from_its_cycle_is_found_and_stable(search: Toru
     assert found.truncation.max() < 1e-4
     frequencies, _ = base_frequencies(coupled_circles((0.4, 1.0)), found.member, found.tori)
     assert frequencies == pytest.approx(np.array([FREQUENCIES, FREQUENCIES]), rel=2e-3)
-    assert found.lost.size == 0
+    assert found.missing.size == 0
 
 
 def test_direct_integration_stays_on_a_stable_torus() -> None:
     found = motions((2.0, 3.0), [1.2], TorusSearch.LASTING)
     assert np.isnan(found.direct).all()
-    direct = integrated(coupled_circles((0.4, 1.0), (2.0, 3.0)), found).direct
+    direct = check_by_integration(coupled_circles((0.4, 1.0), (2.0, 3.0)), found).direct
     assert np.abs(direct) == pytest.approx([0.0], abs=1e-4)
     wrong = replace(found, tori=replace(found.tori, coefficients=1.1 * found.tori.coefficients))
-    assert np.abs(integrated(coupled_circles((0.4, 1.0), (2.0, 3.0)), wrong).direct) > 0.01
+    assert np.abs(check_by_integration(coupled_circles((0.4, 1.0), (2.0, 3.0)), wrong).direct) > 0.01
 
 
 def test_it_is_found_from_one_wind_speed_alone() -> None:

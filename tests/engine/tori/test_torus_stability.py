@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.outcome import Stability
-from engine.tori.torus_stability import long_map
+from engine.tori.torus_stability import torus_stability
 from tests.engine.coupled_circles import FREQUENCIES, GROWTHS, circle_radii, coupled_circles, two_lines
 
 
@@ -15,7 +15,7 @@ from tests.engine.coupled_circles import FREQUENCIES, GROWTHS, circle_radii, cou
 )
 def test_growth_across_an_exact_torus(coupling: tuple[float, float], expected: Stability) -> None:
     radii = circle_radii(coupling)
-    judged = long_map(coupled_circles(coupling), two_lines(radii, FREQUENCIES, (2, 2)))
+    judged = torus_stability(coupled_circles(coupling), two_lines(radii, FREQUENCIES, (2, 2)))
     assert judged.stability is expected
     slow = np.array([[1.0, coupling[0]], [coupling[1], 1.0]])
     exponents = np.linalg.eigvals(-np.array(GROWTHS)[:, None] * np.square(radii)[:, None] * slow)
@@ -25,11 +25,11 @@ def test_growth_across_an_exact_torus(coupling: tuple[float, float], expected: S
 
 
 def test_a_torus_that_is_none_is_not_judged() -> None:
-    judged = long_map(coupled_circles((0.5, 0.5)), two_lines((1.0, 0.0), FREQUENCIES, (2, 2)))
+    judged = torus_stability(coupled_circles((0.5, 0.5)), two_lines((1.0, 0.0), FREQUENCIES, (2, 2)))
     assert judged.stability is Stability.UNKNOWN
 
 
 def test_a_motion_that_does_not_solve_the_equations_is_not_judged_stable() -> None:
     radii = circle_radii((0.5, 0.5))
     wrong = two_lines((1.3 * radii[0], 0.7 * radii[1]), (1.0, 1.36), (2, 2))
-    assert long_map(coupled_circles((0.5, 0.5)), wrong).stability is not Stability.STABLE
+    assert torus_stability(coupled_circles((0.5, 0.5)), wrong).stability is not Stability.STABLE

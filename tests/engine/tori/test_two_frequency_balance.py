@@ -9,7 +9,7 @@ from engine.models.reduced_model import take
 from engine.tori.two_frequency_balance import (
     Tori,
     balance,
-    lattice,
+    harmonic_lattice,
     linearized,
     phasors,
     points_of,
@@ -25,13 +25,13 @@ ONE = np.zeros(1, dtype=np.intp)
 
 def strengths(torus: Tori, *pairs: list[int]) -> FloatArray:
     """Return the amplitudes of some pairs of harmonics of one torus: (m, pairs)."""
-    known = lattice(torus.order).pairs.tolist()
+    known = harmonic_lattice(torus.order).pairs.tolist()
     return np.asarray(np.abs(phasors(torus.coefficients[0]))[:, [known.index(pair) for pair in pairs]])
 
 
 def random_tori(seed: int) -> Tori:
     generator = np.random.default_rng(seed)
-    coefficients = 0.05 * generator.normal(size=(2, 3, 2 * len(lattice((3, 2)).pairs) - 1))
+    coefficients = 0.05 * generator.normal(size=(2, 3, 2 * len(harmonic_lattice((3, 2)).pairs) - 1))
     return Tori(coefficients, np.array([[5.6, 0.3], [5.5, 0.2]]), np.array([8.0, 9.0]), (3, 2))
 
 

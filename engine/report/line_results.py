@@ -7,10 +7,17 @@ from engine.mechanics.modes import DirectionalShapes
 from engine.mechanics.static_profile import mean_mass
 from engine.models.discretization import Discretization
 from engine.outcome import Outcome
-from engine.report.internal_resonances import resonance_rows
-from engine.report.limit_cycles import Motion, motion_rows
+from engine.report.internal_resonances import internal_resonance_rows
+from engine.report.limit_cycles import Motion, limit_cycle_rows
 from engine.report.model_comparisons import model_comparisons
-from engine.report.rows import Found, FrequencyTable, bifurcation_rows, critical_rows, dropped_warnings, frequency_rows
+from engine.report.rows import (
+    ModelFindings,
+    NaturalFrequencies,
+    bifurcation_rows,
+    critical_wind_speed_rows,
+    dropped_warnings,
+    frequency_rows,
+)
 from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
 from engine.spec import AirflowSpoiler, Analysis, Ice, IceSegment, Line, ice_properties
 
@@ -18,11 +25,11 @@ HEAVY_DEVICES = 0.1  # of the span's weight
 LEAST_INERTIA = 1e-6  # about the mass centre, of that about the reference curve: below it M is nearly singular
 
 
-def assembled(
-    made: Discretization,
+def line_results(
+    discretization: Discretization,
     shapes: DirectionalShapes,
-    squares: tuple[FrequencyTable, ...],
-    found: tuple[Found, ...],
+    natural_frequencies: tuple[NaturalFrequencies, ...],
+    findings: tuple[ModelFindings, ...],
     analysis: Analysis,
     competitions: list[list[LoopCompetitionRow]],
 ) -> list[Result]:
@@ -30,11 +37,11 @@ def assembled(
 
     Parameters
     ----------
-    made : Discretization
+    discretization : Discretization
     shapes : DirectionalShapes
-    squares : tuple of FrequencyTable
+    natural_frequencies : tuple of NaturalFrequencies
         One for each model asked for.
-    found : tuple of Found
+    findings : tuple of ModelFindings
         One for each model whose motions are asked for.
     analysis : Analysis
     competitions : list of lists of LoopCompetitionRow
@@ -46,27 +53,27 @@ def assembled(
         In the order of the lines.
     """
     lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
-    frequencies = [frequency_rows(table, analysis.loops) for table in squares]
-    critical = [critical_rows(one) for one in found]
-    turning = [bifurcation_rows(one) for one in found]
-    motions = [motion_rows(made, one, analysis.loops, lowest) for one in found]
-    dropped = [dropped_warnings(one, len(made.lines)) for one in found]
+    frequencies = [frequency_rows(table, analysis.loops) for table in natural_frequencies]
+    critical = [critical_wind_speed_rows(model_findings) for model_findings in findings]
+    bifurcations = [bifurcation_rows(model_findings) for model_findings in findings]
+    motions = [limit_cycle_rows(discretization, model_findings, analysis.loops, lowest) for model_findings in findings]
+    dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
     results = []
-    for i, line in enumerate(made.lines):
+    for i, line in enumerate(discretization.lines):
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
         outside = sum(cycle.outcome is Outcome.OUTSIDE_FIT for cycle in cycles)
         fit = [f"{outside} cycles leave the range of angles to which the coefficients were fitted."] if outside else []
-        said = line_warnings(line) + _twist_warnings(made, i)
-        natural = tuple(row for table in frequencies for row in table[i])
+        about_line = line_warnings(line) + _twist_warnings(discretization, i)
+        own_frequencies = tuple(row for table in frequencies for row in table[i])
         results.append(
             Result(
-                static=_static_state(made, i),
-                den_hartog=_den_hartog(made, i),
-                frequencies=natural,
-                internal_resonances=resonance_rows(natural),
+                static=_static_state(discretization, i),
+                den_hartog=_den_hartog(discretization, i),
+                frequencies=own_frequencies,
+                internal_resonances=internal_resonance_rows(own_frequencies),
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 limit_cycles=cycles,
-                bifurcations=tuple(row for table in turning for row in table[i]),
+                bifurcations=tuple(row for table in bifurcations for row in table[i]),
                 model_comparisons=model_comparisons(cycles),
                 loop_competitions=tuple(competitions[i]),
                 device_effects=(),
@@ -74,7 +81,7 @@ def assembled(
                 followed_cycles=(),
                 followed_bifurcations=(),
                 orbits=orbits,
-                warnings=(*said, *fit, *(text for table in dropped for text in table[i])),
+                warnings=(*about_line, *fit, *(text for table in dropped for text in table[i])),
                 engine_version=ENGINE_VERSION,
             )
         )
@@ -125,34 +132,34 @@ def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...]
     return tuple(motion.row for motion in motions), tuple(orbits)
 
 
-def _den_hartog(made: Discretization, line: int) -> DenHartog:
+def _den_hartog(discretization: Discretization, line: int) -> DenHartog:
     """Return the smallest a_y1 on the span: with partial ice, one piece below zero is what feeds the motion."""
-    here = made.sections.local_weight[line] > 0.0
-    coefficient = float(made.sections.aerodynamics[line, here, 0, 1].min())
+    here = discretization.sections.local_weight[line] > 0.0
+    coefficient = float(discretization.sections.aerodynamics[line, here, 0, 1].min())
     return DenHartog(coefficient, coefficient < 0.0)
 
 
-def _static_state(made: Discretization, line: int) -> StaticState:
-    profile = made.profile
+def _static_state(discretization: Discretization, line: int) -> StaticState:
+    profile = discretization.profile
     stiffness = float(profile.end_stiffness[line].min())
     return StaticState(
         horizontal_tension_n=float(profile.horizontal_tension[line]),
         catenary_parameter_m=float(profile.catenary_parameter[line]),
         sag_m=float(profile.sag[line]),
         longitudinal_stiffness_n_per_m=stiffness if np.isfinite(stiffness) else None,
-        twist_rad=_largest_twist(made, line),
+        twist_rad=_largest_twist(discretization, line),
     )
 
 
-def _largest_twist(made: Discretization, line: int) -> float | None:
+def _largest_twist(discretization: Discretization, line: int) -> float | None:
     """Return the static twist of largest size [rad], None where it is neglected or was not found."""
-    if made.twist is None or made.twist.outcome[line] is not Outcome.CONVERGED:
+    if discretization.twist is None or discretization.twist.outcome[line] is not Outcome.CONVERGED:
         return None
-    angle = made.twist.angle[line]
+    angle = discretization.twist.angle[line]
     return float(angle[np.abs(angle).argmax()])
 
 
-def _twist_warnings(made: Discretization, line: int) -> list[str]:
-    if made.twist is None or made.twist.outcome[line] is Outcome.CONVERGED:
+def _twist_warnings(discretization: Discretization, line: int) -> list[str]:
+    if discretization.twist is None or discretization.twist.outcome[line] is Outcome.CONVERGED:
         return []
     return ["The static twist was not found; everything is computed about the untwisted state."]
