@@ -1,8 +1,10 @@
-"""Fixtures for tests that need a database, a broker, or the whole service."""
+"""The one Hypothesis profile, and fixtures for tests that need a database, a broker, or the whole service."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
+import hypothesis
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
@@ -11,6 +13,10 @@ from app.storage.database import make_engine, session_factory
 from app.storage.migration import migrate
 from tests import servers
 from tests.documents import hasty_settings
+
+# A busy machine makes any example slow, so none has a deadline; under CI every run draws the same examples.
+hypothesis.settings.register_profile("galloping", deadline=None, derandomize="CI" in os.environ, print_blob=True)
+hypothesis.settings.load_profile("galloping")
 
 
 @pytest.fixture(scope="session")

@@ -200,7 +200,7 @@ CHOICES = st.builds(
 )
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=50, suppress_health_check=[HealthCheck.too_slow])
 @given(st.integers(0, 10**6), CHOICES)
 def test_random_lines_always_get_plausible_rows(seed: int, analysis: Analysis) -> None:
     result = run(random_line(np.random.default_rng(seed)), analysis)

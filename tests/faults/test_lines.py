@@ -48,7 +48,6 @@ def test_lines_are_answered_or_their_faults_named(
 
     @settings(
         max_examples=max(10, round(SCALE * count)),
-        deadline=None,
         derandomize=True,
         phases=[Phase.generate],
         suppress_health_check=list(HealthCheck),

@@ -104,7 +104,6 @@ def test_every_answer_is_one_that_the_document_tells_of(served: Served, mode: Ge
 
         @settings(
             max_examples=CASES_AN_OPERATION,
-            deadline=None,
             derandomize=True,
             database=None,
             phases=[Phase.explicit, Phase.generate],

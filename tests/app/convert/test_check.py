@@ -302,14 +302,14 @@ JSON = st.recursive(
 PATHS = st.sampled_from(sorted({path for path, _, _ in BAD_LINES} | {"devices", "wind", "ice", "supports", "span"}))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(PATHS, JSON)
 def test_whatever_stands_in_a_field_is_taken_or_named(path: str, value: Any) -> None:
     found = convert.check({"line": changed(path, value)})
     assert all(isinstance(fault, Fault) and fault.detail for fault in found)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(JSON)
 def test_whatever_comes_as_a_request_is_refused_with_reasons(document: Any) -> None:
     assert convert.check(document)

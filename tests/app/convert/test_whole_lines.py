@@ -8,7 +8,7 @@ from engine.outcome import InvalidSpec
 from tests.app import whole_lines
 from tests.app.whole_lines import Json, assert_answers_every_wind, assert_is_named
 
-a_few = settings(deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+a_few = settings(derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 
 
 def assert_is_answered(request: Json) -> None:

@@ -225,19 +225,19 @@ def test_the_document_of_a_problem_lists_a_thousand_faults_at_most() -> None:
     assert document["type"] == "/problems/invalid-document"
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.binary(max_size=200))
 def test_no_bytes_are_more_than_a_fault_of_the_client(shared_client: httpx.Client, body: bytes) -> None:
     problem(post(shared_client, body), 422)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.text(max_size=40), st.text(max_size=40))
 def test_no_query_is_more_than_a_fault_of_the_client(shared_client: httpx.Client, name: str, value: str) -> None:
     assert shared_client.get("/v1/jobs", params={"asset_id": value, "cursor": name}).status_code in {200, 400}
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.text(min_size=1, max_size=40).map(lambda text: quote(text, safe="")))
 def test_no_path_is_more_than_a_fault_of_the_client(shared_client: httpx.Client, path: str) -> None:
     for address in (f"/v1/jobs/{path}", f"/v1/jobs/{path}/results/{path}", f"/v1/jobs/{path}/plots/{path}.svg"):

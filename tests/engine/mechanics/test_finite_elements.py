@@ -48,7 +48,7 @@ def without_springs(line: Line) -> Line:
     return replace(line, supports=Supports(longitudinal_stiffness=1e-12))
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 10**6))
 def test_matrices_are_symmetric_and_mass_is_positive(seed: int) -> None:
     system = discretized(random_line(np.random.default_rng(seed))).matrices

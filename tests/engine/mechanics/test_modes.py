@@ -25,7 +25,7 @@ def test_symmetric_problem_is_solved_with_vectors_orthonormal_in_the_mass() -> N
     assert (np.diff(values, axis=-1) >= 0.0).all()
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(0, 10**6))
 def test_full_modes_solve_the_eigenproblem_and_are_orthonormal(seed: int) -> None:
     discretization = discretized(random_line(np.random.default_rng(seed)))
@@ -42,7 +42,7 @@ def test_full_modes_solve_the_eigenproblem_and_are_orthonormal(seed: int) -> Non
     assert np.abs(vectors[:, ~free]).max() == 0.0
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(0, 10**6))
 def test_every_label_gets_a_mode_of_its_own(seed: int) -> None:
     discretization = discretized(random_line(np.random.default_rng(seed)))

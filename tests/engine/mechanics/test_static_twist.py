@@ -66,7 +66,7 @@ def eventful_line(seed: int) -> Line:
     )
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(0, 10**6))
 def test_second_derivative_at_zero_is_the_stiffness_of_section_3(seed: int) -> None:
     discretization = discretized(eventful_line(seed))

@@ -121,7 +121,7 @@ def test_relative_wind_load_is_the_integral_of_the_unexpanded_one_to_third_order
     assert np.log2(error[0] / error[1]) == pytest.approx(3.0, abs=0.3)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(st.integers(0, 10**6))
 def test_relative_wind_table_is_the_taylor_expansion_of_the_unexpanded_formula(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -143,7 +143,7 @@ def test_relative_wind_table_is_the_taylor_expansion_of_the_unexpanded_formula(s
         assert table[:, column] == pytest.approx(expected, rel=1e-3, abs=2e-3)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.integers(0, 10**6), st.sampled_from([Analysis(), RELATIVE]))
 def test_gradient_is_the_derivative_of_the_force(seed: int, analysis: Analysis) -> None:
     rng = np.random.default_rng(seed)

@@ -26,7 +26,7 @@ def test_monomials_stand_in_the_documented_order(variables: int) -> None:
     ]
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(SIZES, SEEDS)
 def test_powers_are_the_products(variables: int, seed: int) -> None:
     x = np.random.default_rng(seed).normal(size=(2, 3, variables))
@@ -35,7 +35,7 @@ def test_powers_are_the_products(variables: int, seed: int) -> None:
     assert powers(x, 2)[0, 1] == pytest.approx(direct(x[0, 1])[:lower], rel=1e-13)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(SIZES, SEEDS)
 def test_slopes_are_the_derivatives(variables: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -50,7 +50,7 @@ def test_slopes_are_the_derivatives(variables: int, seed: int) -> None:
         assert found[:, i] == pytest.approx(table @ difference / (12.0 * step), rel=1e-9, abs=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(1, 3), SIZES, SEEDS)
 def test_substitution_is_evaluation_at_the_forms(local: int, variables: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
