@@ -129,16 +129,6 @@ def _double_loop(sag: float, length: float) -> float:
     return math.sqrt(0.375 * chord * slack)
 
 
-def loop_scale(position: FloatArray, loops: int) -> FloatArray:
-    """Return 4 n^2 (x - b) (a - x), by which ellipses shrink away from mid-loop.
-
-    position is x, as a fraction of the span (...,), in the loop from b to a of n loops; the shape is kept.
-    """
-    within = np.clip(np.asarray(position) * loops, 0.0, loops)
-    x = within - np.minimum(np.floor(within), loops - 1)
-    return np.asarray(4.0 * x * (1.0 - x))
-
-
 @lru_cache
 def directions() -> FloatArray:
     """Return the unit vectors (y, z), clockwise from straight up: (DIRECTIONS, 2)."""

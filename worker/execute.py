@@ -23,20 +23,10 @@ from app.jobs import leases, reuse
 from app.jobs.leases import Beat, Claim, Failure
 from app.runtime import correlation, telemetry
 from app.runtime.settings import Settings
-from app.storage.database import make_engine, session_factory
 from app.tables import FailureKind
 from engine.outcome import InvalidSpec
 
 _logger = logging.getLogger(__name__)
-
-
-def run_job(settings: Settings, job_id: UUID, owner: str) -> None:
-    """Run a job with database connections of its own, since a forked process must not share its parent's."""
-    engine = make_engine(settings)
-    try:
-        execute(session_factory(engine), settings, job_id, owner)
-    finally:
-        engine.dispose()
 
 
 def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, owner: str) -> None:

@@ -1,6 +1,6 @@
 """The border to the engine: JSON documents in, plain rows out. Units change here and nowhere else."""
 
-from app.convert.check import check, read, request_faults, with_further_faults
+from app.convert.check import read, request_faults, with_further_faults
 from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
 from app.convert.mode_shapes import mode_shapes
@@ -17,7 +17,6 @@ __all__ = [
     "NumberedLine",
     "PointResult",
     "Table",
-    "check",
     "clearances",
     "columns",
     "ellipse",

@@ -37,15 +37,6 @@ def read(document: object) -> schemas.JobRequest:
     return request
 
 
-def check(document: Mapping[str, object]) -> list[Fault]:
-    """Return every fault of a request document; none if it can be run."""
-    try:
-        read(document)
-    except BadInput as error:
-        return list(error.faults)
-    return []
-
-
 def request_faults(request: schemas.JobRequest) -> list[Fault]:
     """Return the faults that a request has beyond its schema."""
     axes = request.study.axes if request.study else []

@@ -20,7 +20,6 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.coalescing.grouped_calls import Groups
 from app.jobs import leases
 from app.runtime.settings import Settings
-from app.storage.database import make_engine, session_factory
 
 TASK_NAME = "galloping.run_job"
 QUEUE_NAME = "galloping"
@@ -92,20 +91,6 @@ def open_queue(settings: Settings) -> Iterator[Queue]:
         raise BrokerUnavailable(f"{type(error).__name__}: {error}") from error
 
 
-def dispatch(settings: Settings, job_id: UUID) -> bool:
-    """Send a committed job to the workers and mark it as dispatched; on any fault leave it to the sweeper.
-
-    True means that the message is with the broker. False does not prove the opposite: a second message is harmless.
-    A process that sends often keeps a `Sender`.
-    """
-    return _dispatch_once(settings, [job_id], chunk=False)
-
-
-def dispatch_chunks(settings: Settings, job_ids: Sequence[UUID]) -> bool:
-    """Send the committed chunks of a batch like jobs; what cannot be sent is left to the sweeper."""
-    return _dispatch_once(settings, job_ids, chunk=True)
-
-
 @dataclass(frozen=True, slots=True)
 class Sender:
     """What a process keeps that sends often: connections to broker and database that threads share."""
@@ -114,7 +99,10 @@ class Sender:
     sessions: sessionmaker[Session]
 
     def send(self, job_ids: Sequence[UUID], *, chunk: bool = False) -> bool:
-        """Send committed jobs, or chunks, as `dispatch` does."""
+        """Send committed jobs, or chunks, and mark them as dispatched; on any fault leave them to the sweeper.
+
+        True means that the messages are with the broker. False does not prove the opposite: a second one is harmless.
+        """
         return self.hand_over(job_ids, chunk=chunk) and self.mark(job_ids)
 
     def hand_over(self, job_ids: Sequence[UUID], *, chunk: bool = False) -> bool:
@@ -181,16 +169,6 @@ def _left(job_ids: Sequence[UUID], error: Exception) -> bool:
 def _send(application: Celery, job_id: UUID, queue: Any, **by: Any) -> None:
     """Send a message by a connection or a producer to a queue, by its name or as a channel has declared it."""
     application.send_task(TASK_NAME, args=[str(job_id)], queue=queue, retry=False, **by)
-
-
-def _dispatch_once(settings: Settings, job_ids: Sequence[UUID], *, chunk: bool) -> bool:
-    engine = make_engine(settings)
-    sender = Sender(celery_application(settings), session_factory(engine))
-    try:
-        return sender.send(job_ids, chunk=chunk)
-    finally:
-        sender.close()
-        engine.dispose()
 
 
 def _transport_options(settings: Settings) -> dict[str, object]:

@@ -58,12 +58,6 @@ def tables_of(packed: bytes | None) -> dict[Table, list[dict[str, Any]]]:
     return found
 
 
-def axes(session: Session, job_id: UUID) -> list[str]:
-    """Return the parameters that the job's study varies, which are the first columns of every row; none without one."""
-    found = session.execute(select(PointRow.axes).where(PointRow.job_id == job_id).limit(1)).scalar_one_or_none()
-    return list(found or ())
-
-
 def rows(session: Session, job_id: UUID, table: Table) -> Iterator[dict[str, Any]]:
     """Stream the rows of one table in the order of the points; the values of the study's axes come first in each."""
     statement = select(PointRow.axes, PointRow.tables).where(PointRow.job_id == job_id).order_by(PointRow.point)

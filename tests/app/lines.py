@@ -1,10 +1,12 @@
-"""A line that uses every field of the contract, and how to change one of its fields."""
+"""A line that uses every field of the contract, how to change one of its fields, and what is wrong with a request."""
 
 import json
 import math
 from typing import Any
 
+from app import convert
 from app.reference.source_lines import example
+from app.schemas.faults import BadInput, Fault
 
 COEFFICIENTS = example("c11-twin")["ice"]["aerodynamics"]
 FULL_LINE: dict[str, Any] = {
@@ -74,6 +76,15 @@ def changed(path: str, value: Any, line: dict[str, Any] | None = None) -> dict[s
     else:
         node[last] = value
     return document
+
+
+def faults(document: object) -> list[Fault]:
+    """Return every fault for which a request is refused; none if it is taken."""
+    try:
+        convert.read(document)
+    except BadInput as error:
+        return list(error.faults)
+    return []
 
 
 def close(row: dict[str, Any], expected: dict[str, Any]) -> bool:

@@ -16,8 +16,8 @@ from app.runtime.settings import Settings
 from app.serve import HTTP
 from app.storage.migration import migrate
 from tests.documents import short_request
+from tests.in_process import run_job
 from tests.servers import wait_until
-from worker.execute import run_job
 
 
 @contextlib.contextmanager
@@ -58,8 +58,22 @@ def submit(client: httpx.Client, document: dict[str, Any] | None = None) -> dict
 def finished(client: httpx.Client, settings: Settings, document: dict[str, Any] | None = None) -> str:
     """Post a request, work it off in this process with the real engine, and return the address of its status."""
     status = submit(client, document)
-    run_job(settings, UUID(status["id"]), "test")
+    run_job(settings, UUID(status["id"]))
     return f"/v1/jobs/{status['id']}"
+
+
+def chunks(client: httpx.Client, address: str, status: str = "accepted") -> list[UUID]:
+    """Return the ids of a batch's chunks in a state."""
+    query = {"batch_id": address.rpartition("/")[2], "status": status}
+    return [UUID(job["id"]) for job in client.get("/v1/jobs", params=query).json()["jobs"]]
+
+
+def work_off(client: httpx.Client, settings: Settings, address: str) -> dict[str, Any]:
+    """Work off the chunks of a batch that wait, in this process with the real engine, and return its status."""
+    for chunk in chunks(client, address):
+        run_job(settings, chunk)
+    status: dict[str, Any] = client.get(address).json()
+    return status
 
 
 def submit_as(client: httpx.Client, header: dict[str, str]) -> str:

@@ -20,7 +20,6 @@ from engine.clearance import (
     ellipse_support,
     extents,
     galloping_ellipse,
-    loop_scale,
     path_support,
     subconductor_paths,
 )
@@ -92,15 +91,6 @@ def test_toyes_ellipse_uses_up_the_slack_of_a_parabola() -> None:
     arc = np.hypot(1.0, 8.0 * sag / length**2 * (x - length / 2.0)).mean() * length
     chord = math.hypot(length / 2.0, sag)
     assert found.major_axis - FOOT == pytest.approx(math.sqrt(0.375 * chord * (arc - 2.0 * chord)), rel=2e-3)
-
-
-@pytest.mark.parametrize(("loops", "middle"), [(1, 0.5), (2, 0.25), (3, 5.0 / 6.0)])
-def test_ellipses_are_full_in_the_middle_of_a_loop_and_nothing_at_its_ends(loops: int, middle: float) -> None:
-    ends = np.arange(loops + 1) / loops
-    np.testing.assert_allclose(loop_scale(ends, loops), 0.0, atol=1e-14)
-    assert loop_scale(np.array(middle), loops) == pytest.approx(1.0)
-    quarter = middle - 0.25 / loops
-    assert loop_scale(np.array(quarter), loops) == pytest.approx(0.75)
 
 
 def circle(radius: float) -> FloatArray:

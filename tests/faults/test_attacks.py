@@ -27,7 +27,7 @@ from app.storage.migration import migrate
 from app.tables import Base, Job
 from tests.app import service
 from tests.documents import short_request
-from worker.execute import run_job
+from tests.in_process import run_job
 
 NDJSON = {"Content-Type": "application/x-ndjson"}
 ANALYSIS = short_request()["analysis"]
@@ -85,7 +85,7 @@ def finished_batch(client: httpx.Client, own: Settings, *lines: Any) -> str:
         chunks = session.scalars(select(Job.id).where(Job.batch_id == UUID(identity))).all()
     engine.dispose()
     for chunk in chunks:
-        run_job(own, chunk, "test")
+        run_job(own, chunk)
     return f"/v1/batches/{identity}"
 
 

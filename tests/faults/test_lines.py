@@ -15,7 +15,7 @@ from tests.app import service, whole_lines
 from tests.app.whole_lines import Json, assert_answers_every_wind, assert_is_named
 from tests.faults import figures
 from tests.faults.scale import SCALE
-from worker.execute import run_job
+from tests.in_process import run_job
 
 JSON = {"Content-Type": "application/json", **service.ANEW}
 
@@ -69,7 +69,7 @@ def outcome(client: httpx.Client, own: Settings, request: Json) -> str:
         return "refused, faults named"
     assert answer.status_code == 202, answer.text
     address = f"/v1/jobs/{answer.json()['id']}"
-    run_job(own, UUID(answer.json()["id"]), "test")
+    run_job(own, UUID(answer.json()["id"]))
     job = client.get(address).raise_for_status().json()
     if job["status"] == "failed":
         assert job["failure"]["kind"] == "input", job

@@ -38,7 +38,7 @@ from app.tables import Job
 from tests.app import service
 from tests.documents import short_request
 from tests.faults import figures
-from worker.execute import run_job
+from tests.in_process import run_job
 
 CASES_AN_OPERATION = 6
 CHECKS: list[CheckFunction] = [
@@ -87,7 +87,7 @@ def finished_ids(client: httpx.Client, own: Settings) -> dict[str, str]:
     batch = client.post("/v1/batches", json=posted).raise_for_status().json()["id"]
     with writing(own) as session:
         (chunk,) = session.scalars(select(Job.id).where(Job.batch_id == UUID(batch)))
-    run_job(own, chunk, "test")
+    run_job(own, chunk)
     return {"job_id": job, "batch_id": batch}
 
 

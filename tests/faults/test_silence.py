@@ -12,12 +12,12 @@ import redis
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.client import Client
-from app.jobs.dispatch import dispatch
 from app.runtime.settings import Settings
 from app.tables import JobStatus
 from tests.documents import add_job, count_points, history, long_request, look, short_request
 from tests.faults import figures
 from tests.faults.deployment import deployed
+from tests.in_process import send
 from tests.processes import busy_child, children, running_worker
 from tests.servers import wait_until
 
@@ -68,7 +68,7 @@ def test_a_zombies_late_result_is_dropped(deployment: Settings, deployed: sessio
     points = 4
     with running_worker(deployment) as zombie:
         job_id = add_job(deployed, long_request(points))
-        assert dispatch(deployment, job_id)
+        assert send(deployment, job_id)
         wait_until(lambda: look(deployed, job_id).progress > 0.0, 60.0, "progress")
         (pool,) = children(zombie.pid)
         with frozen(zombie.pid, pool, busy_child(zombie)), running_worker(deployment):

@@ -10,7 +10,6 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.batches import batch_records, line_results
 from app.batches.intake import Incoming, receive
 from app.jobs import batch_progress, job_records
-from app.jobs.dispatch import dispatch, dispatch_chunks
 from app.jobs.job_records import JobFilters
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
@@ -18,6 +17,7 @@ from app.security.caller import LOCAL
 from app.tables import JobStatus, PointRow
 from tests.app.lines import SHORT, changed
 from tests.documents import add_job, look, short_request
+from tests.in_process import send
 from tests.processes import kill_group, running_worker
 from tests.servers import wait_until
 
@@ -32,7 +32,7 @@ def submit(sessions: sessionmaker[Session], settings: Settings, *, most_chunk_li
     )
     small = settings.model_copy(update={"most_chunk_lines": most_chunk_lines})
     receipt = receive(sessions, small, LOCAL, Incoming(SHORT, lines), atomic=False)
-    assert dispatch_chunks(settings, receipt.chunk_ids)
+    assert send(settings, *receipt.chunk_ids, chunk=True)
     return receipt.batch_id
 
 
@@ -83,7 +83,7 @@ def test_running_batch_stops_when_cancelled(deployment: Settings, deployed: sess
 def test_a_single_job_is_not_stuck_behind_a_batch(deployment: Settings, deployed: sessionmaker[Session]) -> None:
     batch_id = submit(deployed, deployment, most_chunk_lines=2)
     single = add_job(deployed, short_request())
-    assert dispatch(deployment, single)
+    assert send(deployment, single)
     with running_worker(deployment):
         begin = time.monotonic()
         wait_until(lambda: look(deployed, single).status is JobStatus.SUCCESSFUL, 60.0, "the single job")

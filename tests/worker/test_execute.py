@@ -24,8 +24,9 @@ from tests.documents import (
     point_result,
     short_request,
 )
+from tests.in_process import run_job
 from tests.servers import wait_until
-from worker.execute import execute, run_job
+from worker.execute import execute
 
 
 def stopped_while_running(
@@ -42,7 +43,7 @@ def stopped_while_running(
 
 def test_job_is_computed_and_stored(sessions: sessionmaker[Session], settings: Settings) -> None:
     job_id = add_job(sessions, short_request())
-    run_job(settings, job_id, "here")
+    run_job(settings, job_id)
     expected = [item for item in convert.run(short_request()) if isinstance(item, PointResult)]
     with sessions() as session:
         assert list(stored_results.rows(session, job_id, "limit_cycles")) == expected[0].tables["limit_cycles"]
@@ -63,7 +64,7 @@ def test_input_that_the_engine_refuses_fails_by_input(sessions: sessionmaker[Ses
     document = short_request()
     document["line"]["span"]["length_m"] = -1.0
     job_id = add_job(sessions, document)
-    run_job(settings, job_id, "here")
+    run_job(settings, job_id)
     job = look(sessions, job_id)
     assert (job.status, job.failure_kind, job.attempt) == (JobStatus.FAILED, FailureKind.INPUT, 1)
     assert "length_m" in (job.failure_detail or "")
@@ -89,7 +90,7 @@ def test_a_search_for_places_stops_between_generations(sessions: sessionmaker[Se
 def test_job_past_the_soft_limit_keeps_the_points_it_has(sessions: sessionmaker[Session], settings: Settings) -> None:
     hasty = settings.model_copy(update={"soft_time_limit_seconds": 1e-3})
     job_id = add_job(sessions, long_request(5))
-    run_job(hasty, job_id, "here")
+    run_job(hasty, job_id)
     job = look(sessions, job_id)
     assert (job.status, job.failure_kind) == (JobStatus.FAILED, FailureKind.TIME_LIMIT)
     assert job.failure_detail == "The job ran longer than the limit of 0.001 s."
@@ -118,7 +119,7 @@ def test_fault_of_our_own_fails_the_job_without_showing_its_inside(
 
     monkeypatch.setattr(convert, "run", broken)
     job_id = add_job(sessions)
-    run_job(settings, job_id, "here")
+    run_job(settings, job_id)
     job = look(sessions, job_id)
     assert (job.status, job.failure_kind) == (JobStatus.FAILED, FailureKind.INTERNAL)
     assert job.failure_detail == "The computation stopped on an internal error (RuntimeError); the log has the details."
@@ -131,9 +132,9 @@ def test_all_points_failed_is_a_failed_job(
     points = [point_result(0, failure="It overflowed."), point_result(1, failure="Again.")]
     monkeypatch.setattr(convert, "run", lambda _: iter(points))
     failed, mixed = add_job(sessions), add_job(sessions)
-    run_job(settings, failed, "here")
+    run_job(settings, failed)
     points[1] = point_result(1)
-    run_job(settings, mixed, "here")
+    run_job(settings, mixed)
     assert look(sessions, failed).failure_kind is FailureKind.NO_CONVERGENCE
     assert look(sessions, failed).failure_detail == "It overflowed."
     assert look(sessions, mixed).status is JobStatus.SUCCESSFUL
@@ -155,7 +156,7 @@ def test_long_step_does_not_lose_the_lease(
     monkeypatch.setattr(convert, "run", slow)
     short = settings.model_copy(update={"lease_seconds": 0.8, "heartbeat_seconds": 0.05})
     job_id = add_job(sessions)
-    run_job(short, job_id, "here")
+    run_job(short, job_id)
     assert released == [0] * 6
     assert look(sessions, job_id).status is JobStatus.SUCCESSFUL
 
@@ -172,5 +173,5 @@ def test_missed_heartbeats_do_not_end_the_job(
         yield point_result(0)
 
     monkeypatch.setattr(convert, "run", outage)
-    run_job(settings, job_id, "here")
+    run_job(settings, job_id)
     assert look(sessions, job_id).status is JobStatus.SUCCESSFUL

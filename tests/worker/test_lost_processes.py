@@ -10,12 +10,13 @@ import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import job_records
-from app.jobs.dispatch import dispatch, open_queue
+from app.jobs.dispatch import open_queue
 from app.runtime.settings import Settings
 from app.security.caller import LOCAL
 from app.storage import stored_results
 from app.tables import FailureKind, JobStatus
 from tests.documents import add_job, count_points, history, long_request, look, short_request
+from tests.in_process import send
 from tests.processes import Process, busy_child, children, group, kill_group, pool_children, running_worker
 from tests.servers import free_port, redis_server, wait_until
 
@@ -26,7 +27,7 @@ FINISHED_AT_SECOND_ATTEMPT = [("accepted", 0), ("running", 1), ("released", 1), 
 
 def submit(sessions: sessionmaker[Session], settings: Settings) -> UUID:
     job_id = add_job(sessions, long_request(POINTS))
-    assert dispatch(settings, job_id)
+    assert send(settings, job_id)
     return job_id
 
 
@@ -146,7 +147,7 @@ def test_process_that_hangs_is_killed_and_its_job_fails_by_the_limit(
     strict = deployment.model_copy(update={**limits, "worker_processes": 1})
     with running_worker(strict) as worker:
         job_id = add_job(deployed, long_request(60))
-        assert dispatch(strict, job_id)
+        assert send(strict, job_id)
         wait_for_progress(deployed, job_id)
         hanging = busy_child(worker)
         os.kill(hanging, signal.SIGSTOP)  # it neither computes nor beats nor hears of the soft limit
@@ -154,7 +155,7 @@ def test_process_that_hangs_is_killed_and_its_job_fails_by_the_limit(
         job = look(deployed, job_id)
         assert (job.failure_kind, job.attempt) == (FailureKind.TIME_LIMIT, 1)
         next_job = add_job(deployed, short_request())
-        assert dispatch(strict, next_job)
+        assert send(strict, next_job)
         assert wait_for_end(deployed, next_job) is JobStatus.SUCCESSFUL
         assert hanging not in pool_children(worker)
 
@@ -164,7 +165,7 @@ def test_job_too_long_ends_at_the_soft_limit(deployment: Settings, deployed: ses
     with running_worker(strict) as worker:
         before = pool_children(worker)
         job_id = add_job(deployed, long_request(60))
-        assert dispatch(strict, job_id)
+        assert send(strict, job_id)
         assert wait_for_end(deployed, job_id) is JobStatus.FAILED
         assert look(deployed, job_id).failure_kind is FailureKind.TIME_LIMIT
         assert pool_children(worker) == before
@@ -174,7 +175,7 @@ def test_job_too_long_ends_at_the_soft_limit(deployment: Settings, deployed: ses
 def test_stopped_worker_gives_its_job_back(deployment: Settings, deployed: sessionmaker[Session]) -> None:
     with running_worker(deployment) as worker:
         job_id = add_job(deployed, long_request(60))
-        assert dispatch(deployment, job_id)
+        assert send(deployment, job_id)
         wait_for_progress(deployed, job_id)
         assert stop_in_time(worker, 20.0) == 0
         assert group(worker) == []
@@ -226,9 +227,9 @@ def test_worker_outlives_its_redis(deployment: Settings, deployed: sessionmaker[
         with redis_server(port):
             worker.enter_context(running_worker(moved))
             before = add_job(deployed, short_request())
-            assert dispatch(moved, before)
+            assert send(moved, before)
             assert wait_for_end(deployed, before) is JobStatus.SUCCESSFUL
         between = add_job(deployed, short_request())
-        assert not dispatch(moved, between)
+        assert not send(moved, between)
         with redis_server(port):
             assert wait_for_end(deployed, between) is JobStatus.SUCCESSFUL

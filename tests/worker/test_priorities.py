@@ -7,11 +7,11 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.batches import batch_records
 from app.batches.batch_records import Chunk
-from app.jobs.dispatch import dispatch, dispatch_chunks
 from app.runtime.settings import Settings
 from app.security.caller import LOCAL
 from app.tables import Job, JobStatus
 from tests.documents import add_job, look, short_request
+from tests.in_process import send
 from tests.processes import running_worker
 from tests.servers import wait_until
 
@@ -37,12 +37,12 @@ def add_batch(sessions: sessionmaker[Session]) -> list[UUID]:
 
 def test_a_single_job_passes_the_chunks_that_wait(deployment: Settings, deployed: sessionmaker[Session]) -> None:
     alone = deployment.model_copy(update={"worker_processes": 1})
-    assert dispatch_chunks(alone, add_batch(deployed))
+    assert send(alone, *add_batch(deployed), chunk=True)
     with running_worker(alone):
         wait_until(lambda: begun_after(deployed, None) >= 2, 60.0, "the first chunks")
         job_id = add_job(deployed, short_request())
         before = begun_after(deployed, None)
-        assert dispatch(alone, job_id)
+        assert send(alone, job_id)
         wait_until(lambda: look(deployed, job_id).status is JobStatus.SUCCESSFUL, 60.0, "the end of the job")
         assert begun_after(deployed, job_id) - before <= MOST_BEFORE
         assert before < CHUNKS // 2

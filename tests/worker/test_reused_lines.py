@@ -3,7 +3,6 @@
 import json
 from collections.abc import Iterator
 from typing import Any
-from uuid import UUID
 
 import httpx
 import pytest
@@ -21,7 +20,6 @@ from tests.app import service
 from tests.app.lines import SHORT, changed
 from tests.documents import STRANGER
 from tests.servers import wait_until
-from worker.execute import run_job
 
 TWIN = example("c11-twin")
 LINES = [{**changed("span.length_m", 100.0 + number, TWIN), "reference": f"r{number}"} for number in range(4)]
@@ -39,9 +37,7 @@ def finished(client: httpx.Client, settings: Settings, lines: list[dict[str, Any
     headers = {"Cache-Control": "no-cache"} if changes.pop("anew", False) else {}
     body = {"lines": lines, "analysis": {**SHORT, **changes}}
     address = client.post("/v1/batches", json=body, headers=headers).headers["location"]
-    for chunk in client.get("/v1/jobs", params={"batch_id": address[-36:]}).json()["jobs"]:
-        run_job(settings, UUID(chunk["id"]), "test")
-    found: dict[str, Any] = client.get(address).json()
+    found = service.work_off(client, settings, address)
     assert found["status"] == "successful"
     return found
 

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from app import convert
 from app.schemas.faults import BadInput, Fault
-from tests.app.lines import FULL_LINE, changed
+from tests.app.lines import FULL_LINE, changed, faults
 
 
 def pointers(document: dict[str, Any]) -> list[str]:
-    return [fault.pointer for fault in convert.check(document)]
+    return [fault.pointer for fault in faults(document)]
 
 
 BAD_LINES = [
@@ -146,7 +146,7 @@ def test_a_study_that_fits_is_taken() -> None:
         {"parameter": "devices.0.position_m", "values": [20, 30.5]},
         {"parameter": "damping.model", "values": ["constant_ratio", "constant_coefficient"]},
     ]
-    assert convert.check({"line": FULL_LINE, "study": {"axes": axes}}) == []
+    assert faults({"line": FULL_LINE, "study": {"axes": axes}}) == []
 
 
 def numbers(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, float]]:
@@ -161,7 +161,7 @@ def numbers(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, float]
 @pytest.mark.parametrize(("parameter", "value"), list(numbers(FULL_LINE)))
 def test_every_number_of_a_line_can_be_varied(parameter: str, value: float) -> None:
     near = [value * 0.999, value * 1.001] if isinstance(value, float) else [value]  # the span's end bounds positions
-    assert [] in [convert.check(studied(FULL_LINE, (parameter, [value, other]))) for other in near]
+    assert [] in [faults(studied(FULL_LINE, (parameter, [value, other]))) for other in near]
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_every_number_of_a_line_can_be_varied(parameter: str, value: float) -> N
     ],
 )
 def test_what_is_left_open_can_be_varied(path: str, value: float) -> None:
-    assert convert.check(studied(FULL_LINE, (path, [value]))) == []
+    assert faults(studied(FULL_LINE, (path, [value]))) == []
 
 
 def studied(line: dict[str, Any], *axes: tuple[str, list[Any]]) -> dict[str, Any]:
@@ -242,16 +242,14 @@ def test_a_fault_of_the_analysis_hides_none_that_it_has_with_the_line(analysis: 
 
 
 def test_choices_that_exclude_each_other_are_both_held_against_the_line() -> None:
-    faults = convert.check(
-        {"line": FULL_LINE, "analysis": {"closure": "published", "aerodynamic_model": "relative_wind"}}
-    )
-    assert [fault.pointer for fault in faults] == [
+    found = faults({"line": FULL_LINE, "analysis": {"closure": "published", "aerodynamic_model": "relative_wind"}})
+    assert [fault.pointer for fault in found] == [
         "/analysis/closure",
         "/analysis/closure",
         "/line/devices/2/aerodynamics_at_rest",
     ]
-    assert "relative wind" in faults[0].detail
-    assert "wind profile" in faults[1].detail
+    assert "relative wind" in found[0].detail
+    assert "wind profile" in found[1].detail
 
 
 def test_loops_at_fault_are_no_excuse_for_others() -> None:
@@ -267,9 +265,9 @@ def test_points_that_only_together_do_not_fit_are_named() -> None:
         {"parameter": "devices.0.position_m", "values": [20.0, 110.0]},
     ]
     line = changed("devices", FULL_LINE["devices"][:1], changed("wind.profile", [], changed("ice.segments", [])))
-    faults = convert.check({"line": line, "study": {"axes": axes}})
-    assert [fault.pointer for fault in faults] == ["/study/axes"]
-    assert "span.length_m = 100.0, devices.0.position_m = 110.0" in faults[0].detail
+    found = faults({"line": line, "study": {"axes": axes}})
+    assert [fault.pointer for fault in found] == ["/study/axes"]
+    assert "span.length_m = 100.0, devices.0.position_m = 110.0" in found[0].detail
 
 
 @pytest.mark.parametrize("name", ["list", "range", "spacer", "detuning_pendulum", "airflow_spoiler"])
@@ -305,11 +303,11 @@ PATHS = st.sampled_from(sorted({path for path, _, _ in BAD_LINES} | {"devices", 
 @settings(max_examples=200)
 @given(PATHS, JSON)
 def test_whatever_stands_in_a_field_is_taken_or_named(path: str, value: Any) -> None:
-    found = convert.check({"line": changed(path, value)})
+    found = faults({"line": changed(path, value)})
     assert all(isinstance(fault, Fault) and fault.detail for fault in found)
 
 
 @settings(max_examples=100)
 @given(JSON)
 def test_whatever_comes_as_a_request_is_refused_with_reasons(document: Any) -> None:
-    assert convert.check(document)
+    assert faults(document)

@@ -6,6 +6,7 @@ import pytest
 from app import convert, schemas
 from app.reference.source_lines import example
 from app.schemas.faults import BadInput
+from tests.app.lines import faults
 
 A_Y, A_Z, A_M = (0.2, -0.1667, -4.0547, 8.3581), (1.1, 0.8605, 0.8325, 1.7815), (-0.1, -0.7272, 0.2935, 5.9704)
 
@@ -97,7 +98,7 @@ def _tables(document: dict[str, Any]) -> object:
 def test_faults_of_a_table_point_into_the_line(change: dict[str, Any], pointer: str) -> None:
     line = example("c11-twin")
     line["ice"]["aerodynamics"] = measured() | change
-    assert [fault.pointer for fault in convert.check({"line": line})] == [pointer]
+    assert [fault.pointer for fault in faults({"line": line})] == [pointer]
 
 
 def test_values_at_rest_beside_a_table_are_refused() -> None:
@@ -106,7 +107,7 @@ def test_values_at_rest_beside_a_table_are_refused() -> None:
         "aerodynamics": measured(),
         "aerodynamics_at_rest": {"vertical": 0, "horizontal": 1, "torsional": 0},
     }
-    assert [fault.pointer for fault in convert.check({"line": line})] == ["/line/ice/aerodynamics_at_rest"]
+    assert [fault.pointer for fault in faults({"line": line})] == ["/line/ice/aerodynamics_at_rest"]
 
 
 def test_static_twist_is_asked_for_by_its_word() -> None:

@@ -10,6 +10,7 @@ from app.reference.source_lines import example
 from app.schemas.answers import ResultDocument
 from app.schemas.placement import EXAMPLE
 from app.schemas.rows import PlacedDevice
+from tests.app.lines import faults
 
 ANALYSIS = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0]}
 SEARCH: dict[str, Any] = EXAMPLE | {"generations": 1, "population": 5}
@@ -22,7 +23,7 @@ def request(**changes: Any) -> dict[str, Any]:
 
 def pointers(document: dict[str, Any]) -> list[str]:
     """Return where faults are found."""
-    return [fault.pointer for fault in convert.check(document)]
+    return [fault.pointer for fault in faults(document)]
 
 
 def test_a_search_gives_devices_and_their_effect() -> None:

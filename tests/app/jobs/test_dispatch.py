@@ -16,11 +16,11 @@ from app.jobs.dispatch import (
     Dispatcher,
     Sender,
     celery_application,
-    dispatch,
     open_queue,
 )
 from app.runtime.settings import Settings
 from tests.documents import add_job, look
+from tests.in_process import send
 from tests.servers import free_port
 from tests.statements import counted
 
@@ -33,7 +33,7 @@ def test_dispatch_hands_over_the_id_and_nothing_else(
     sessions: sessionmaker[Session], settings: Settings, redis_address: str
 ) -> None:
     job_id = add_job(sessions, {"line": {"secret": "of the utility"}})
-    assert dispatch(on_broker(settings, redis_address), job_id)
+    assert send(on_broker(settings, redis_address), job_id)
     with redis.Redis.from_url(redis_address) as client:
         (message,) = client.lrange(QUEUE_NAME, 0, -1)
     assert isinstance(message, bytes)
@@ -49,7 +49,7 @@ def test_embedded_broker_holds_the_message_as_a_file(
     job_id = add_job(sessions)
     with open_queue(settings) as queue:
         assert queue.is_empty()
-    assert dispatch(settings, job_id)
+    assert send(settings, job_id)
     with open_queue(settings) as queue:
         assert not queue.is_empty()
     (message,) = (tmp_path / "broker" / "messages").iterdir()
@@ -67,7 +67,7 @@ def test_redis_queue_tells_whether_messages_wait(
 
 def test_refusing_broker_leaves_the_job_to_the_sweeper(sessions: sessionmaker[Session], settings: Settings) -> None:
     job_id = add_job(sessions)
-    assert not dispatch(on_broker(settings, f"redis://127.0.0.1:{free_port()}/0"), job_id)
+    assert not send(on_broker(settings, f"redis://127.0.0.1:{free_port()}/0"), job_id)
     assert look(sessions, job_id).dispatched_at is None
 
 
@@ -111,7 +111,7 @@ def test_silent_broker_does_not_hold_up_the_sender(sessions: sessionmaker[Sessio
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"redis://127.0.0.1:{silent.getsockname()[1]}/0"
         start = time.monotonic()
-        assert not dispatch(on_broker(settings, address), job_id)
+        assert not send(on_broker(settings, address), job_id)
         assert time.monotonic() - start < 5.0
     assert look(sessions, job_id).dispatched_at is None
 
@@ -126,7 +126,7 @@ def test_folder_that_cannot_be_made_counts_as_no_broker(settings: Settings, tmp_
 def test_database_that_fails_after_sending_leaves_the_job_to_the_sweeper(settings: Settings, tmp_path: Path) -> None:
     nowhere = settings.model_copy(update={"database_url": f"sqlite:///{tmp_path}/without-tables.sqlite3"})
     job_id = uuid4()
-    assert not dispatch(nowhere, job_id)
+    assert not send(nowhere, job_id)
 
 
 def test_a_message_comes_back_only_after_its_process_must_be_dead(settings: Settings, redis_address: str) -> None:

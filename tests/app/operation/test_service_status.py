@@ -5,12 +5,12 @@ from sqlalchemy import text
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import leases
-from app.jobs.dispatch import dispatch
 from app.operation import service_status, workers
 from app.runtime.settings import Settings
 from app.tables import JobStatus
 from tests.batch_rows import add_batch, run
 from tests.documents import add_job
+from tests.in_process import send
 from tests.processes import running_worker
 from tests.servers import free_port, wait_until
 
@@ -23,7 +23,7 @@ def test_work_is_counted_as_it_is(deployment: Settings, deployed: sessionmaker[S
         workers.report(session, deployment, "here")
         leases.claim(session, running, "here", 60.0)
         leases.claim(session, lost, "gone", -1.0)
-    assert dispatch(deployment, waiting)
+    assert send(deployment, waiting)
     found = service_status.look(deployment)
     assert (found.database, found.broker) == ("ok", "ok")
     assert found.contents is not None

@@ -1,9 +1,10 @@
 import httpx
 import pytest
 
-from app import convert, schemas
+from app import schemas
 from app.reference.source_lines import example
 from app.routes.reference_documentation import FIT, FIT_REQUEST
+from tests.app.lines import faults
 
 ADDRESS = "/v1/aerodynamics/fit"
 
@@ -25,7 +26,7 @@ def test_the_answer_can_be_put_into_a_line(shared_client: httpx.Client) -> None:
     found = shared_client.post(ADDRESS, json=FIT_REQUEST).json()
     line = example("c11-twin")
     line["ice"] |= {name: found[name] for name in ("aerodynamics", "aerodynamics_at_rest")}
-    assert convert.check({"line": line, "analysis": {"aerodynamic_model": "relative_wind"}}) == []
+    assert faults({"line": line, "analysis": {"aerodynamic_model": "relative_wind"}}) == []
     taken = schemas.Line.model_validate(line).ice.aerodynamics
     assert isinstance(taken, schemas.Aerodynamics)
     assert taken.fitted_range == pytest.approx(20.0)

@@ -7,7 +7,7 @@ from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.schemas.batch import RankingPage
 from tests.app.lines import SHORT, changed
-from tests.app.routes.worked_off import work_off
+from tests.app.service import work_off
 
 TWIN = example("c11-twin")
 LINES = [

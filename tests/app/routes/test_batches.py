@@ -19,8 +19,8 @@ from app.runtime.settings import Settings
 from app.tables import FailureKind
 from tests.app import service
 from tests.app.lines import SHORT, changed, close
-from tests.app.routes.worked_off import chunks, work_off
-from worker.execute import run_job
+from tests.app.service import chunks, work_off
+from tests.in_process import run_job
 
 TWIN = example("c11-twin")
 BAD = changed("span.length_m", -1.0, TWIN)
@@ -136,7 +136,7 @@ def test_parquet_says_the_same_as_ndjson(client: httpx.Client, settings: Setting
 
 def test_results_wait_for_the_end_unless_partial_ones_are_asked_for(client: httpx.Client, settings: Settings) -> None:
     address = accepted(client, [TWIN, TWIN, TWIN])
-    run_job(settings, chunks(client, address)[-1], "test")
+    run_job(settings, chunks(client, address)[-1])
     answer = client.get(f"{address}/results")
     assert (answer.status_code, answer.json()["links"][0]["href"]) == (409, address)
     states = [line["status"] for line in ndjson(client, f"{address}/results?partial=true")]

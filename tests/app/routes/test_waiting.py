@@ -17,9 +17,10 @@ from app.runtime.settings import Settings
 from app.tables import FailureKind
 from tests.app import service
 from tests.app.lines import SHORT
+from tests.app.service import chunks
 from tests.documents import point_result, short_request
+from tests.in_process import run_job
 from tests.servers import wait_until
-from worker.execute import run_job
 
 TWIN = short_request()["line"]
 
@@ -39,11 +40,6 @@ def finish(sessions: sessionmaker[Session], held: Claim) -> None:
 def batch_address(client: httpx.Client) -> str:
     answer = client.post("/v1/batches", json={"lines": [TWIN, TWIN], "analysis": SHORT})
     return str(answer.headers["location"])
-
-
-def chunks(client: httpx.Client, address: str) -> list[str]:
-    found = client.get("/v1/jobs", params={"batch_id": address[-36:], "status": "accepted"}).json()["jobs"]
-    return [job["id"] for job in found]
 
 
 def events(lines: Iterator[str]) -> Iterator[dict[str, Any]]:
@@ -97,7 +93,7 @@ def test_waiting_for_a_batch_ends_with_it(client: httpx.Client, settings: Settin
     with ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(client.get, address, headers={"Prefer": "wait=25"})
         for chunk in chunks(client, address):
-            run_job(settings, UUID(chunk), "test")
+            run_job(settings, chunk)
         assert waiting.result().json()["status"] == "successful"
 
 
@@ -173,7 +169,7 @@ def test_a_batch_tells_its_counts_until_it_ends(client: httpx.Client, settings: 
     with ThreadPoolExecutor(1) as pool:
         following = pool.submit(stream, client, address)
         for chunk in chunks(client, address):
-            run_job(settings, UUID(chunk), "test")
+            run_job(settings, chunk)
         seen = following.result()
     assert seen[-1]["event"] == "successful"
     assert (seen[-1]["data"]["progress"], seen[-1]["data"]["lines"]["successful"]) == (1.0, 2)
@@ -247,7 +243,7 @@ def test_a_batch_has_a_new_tag_when_lines_were_run_again(
 ) -> None:
     address = batch_address(client)
     assert "etag" not in client.get(f"{address}/results?partial=true").headers
-    held = claim(sessions, chunks(client, address)[0])
+    held = claim(sessions, str(chunks(client, address)[0]))
     with sessions.begin() as session:
         leases.fail(session, held, Failure(FailureKind.TIME_LIMIT, "too long"))
     tag = client.get(f"{address}/results").headers["etag"]
@@ -256,7 +252,7 @@ def test_a_batch_has_a_new_tag_when_lines_were_run_again(
     assert client.get(f"{address}/results?format=csv", headers=known).status_code == 200
     client.post(f"{address}/resubmit")
     for chunk in chunks(client, address):
-        run_job(settings, UUID(chunk), "test")
+        run_job(settings, chunk)
     wait_until(lambda: client.get(address).json()["status"] == "successful", what="the end")
     answer = client.get(f"{address}/results", headers=known)
     assert answer.status_code == 200

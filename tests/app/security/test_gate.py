@@ -24,7 +24,7 @@ from app.storage.migration import migrate
 from app.tables import AuditAction, AuditEvent, Job
 from tests.app import service
 from tests.documents import short_request
-from worker.execute import run_job
+from tests.in_process import run_job
 
 CACHE_SECONDS = 0.3
 PARAMETERS = {"table": "frequencies", "picture": "amplitude", "extension": "svg", "slug": "not-found"}
@@ -79,13 +79,13 @@ def owned(guarded: Guarded, header: dict[str, str]) -> dict[str, str]:
     """Make a finished job and a finished batch, one line of which failed, and return their ids."""
     client = guarded.client
     job = client.post("/v1/jobs", json=short_request(), headers=header).raise_for_status().json()["id"]
-    run_job(guarded.settings, UUID(job), "test")
+    run_job(guarded.settings, UUID(job))
     lines = [short_request()["line"], {"span": 1}]
     document = {"lines": lines, "analysis": short_request()["analysis"]}
     batch = client.post("/v1/batches", json=document, headers=header).raise_for_status().json()["id"]
     with guarded.sessions() as session:
         (chunk,) = session.scalars(select(Job.id).where(Job.batch_id == UUID(batch)))
-    run_job(guarded.settings, chunk, "test")
+    run_job(guarded.settings, chunk)
     return {"job_id": job, "batch_id": batch}
 
 
@@ -114,10 +114,13 @@ def test_lists_hold_the_owners_own_only(guarded: Guarded) -> None:
     ids = owned(guarded, mine)
     theirs = service.submit_as(guarded.client, stranger)
     document = guarded.client.get("/openapi.json").json()
-    for method, path, _ in operations(document):
-        if method == "GET" and "{" not in path and path.startswith("/v1/"):
-            said = guarded.client.get(path, headers=stranger).text
-            assert not any(value in said for value in ids.values()), path
+    lists = [path for method, path, _ in operations(document) if method == "GET" and "{" not in path]
+    assert {"/v1/jobs", "/v1/batches"} < set(lists)
+    for path in lists:
+        said = {name: guarded.client.get(path, headers=header).text for name, header in (("a", mine), ("b", stranger))}
+        assert not any(value in said["b"] for value in ids.values()), path
+        if path in {"/v1/jobs", "/v1/batches"}:
+            assert any(value in said["a"] for value in ids.values()), path
     listed = guarded.client.get("/v1/jobs", headers=stranger).json()["jobs"]
     assert [job["id"] for job in listed] == [theirs]
     assert guarded.client.get("/v1/jobs", params={"batch_id": ids["batch_id"]}, headers=stranger).json()["jobs"] == []
