@@ -118,11 +118,12 @@ def test_wind_without_galloping_is_an_answer() -> None:
 
 
 def test_equilibrium_has_amplitude_zero_and_no_branch() -> None:
-    for row in run(source_line(2), SHORT).limit_cycles:
-        if row.kind == "equilibrium":
-            assert (row.vertical_m, row.horizontal_m, row.torsional_rad) == (0.0, 0.0, 0.0)
-            assert row.branch is None
-            assert row.frequency_hz is None
+    equilibria = [row for row in run(source_line(2), SHORT).limit_cycles if row.kind == "equilibrium"]
+    assert len(equilibria) == len(SHORT.models) * len(SHORT.loops)
+    for row in equilibria:
+        assert (row.vertical_m, row.horizontal_m, row.torsional_rad) == (0.0, 0.0, 0.0)
+        assert row.branch is None
+        assert row.frequency_hz is None
 
 
 def test_non_dimensional_columns_follow_section_8() -> None:

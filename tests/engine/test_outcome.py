@@ -18,8 +18,12 @@ def linear_line() -> Line:
     return replace(line, ice=replace(line.ice, aerodynamics=load))
 
 
-def test_every_outcome_has_its_sentence() -> None:
-    assert all(outcome.sentence.endswith(".") for outcome in Outcome)
+def test_every_outcome_has_its_word_and_its_sentence() -> None:
+    words = ["converged", "no_convergence", "statically_unstable", "outside_fit", "limit_reached"]
+    assert [outcome.value for outcome in Outcome] == words
+    sentences = [outcome.sentence for outcome in Outcome]
+    assert len(set(sentences)) == len(Outcome)
+    assert all(len(sentence.split()) > 3 and sentence.endswith(".") for sentence in sentences)
 
 
 def test_a_wind_speed_without_a_cycle_to_converge_to_has_its_row_and_stops_no_other() -> None:

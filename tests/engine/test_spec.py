@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from engine.outcome import Fault, InvalidSpec, Outcome, require
+from engine.outcome import Fault, InvalidSpec, require
 from engine.spec import (
     AerodynamicModel,
     Aerodynamics,
@@ -204,12 +204,6 @@ def test_segments_override_only_what_they_name() -> None:
     assert ice_properties(LINE, segment) == (LINE.ice.eccentricity_y, 1e-3, 2.379)
     assert ice_properties(LINE, IceSegment(0.0, 5.0, mass=3.0))[2] == 3.0
     assert ice_properties(LINE, LINE.ice) == (2.05e-3, -0.63e-3, 2.379)
-
-
-def test_outcomes_carry_a_word_and_a_sentence() -> None:
-    assert len({outcome.value for outcome in Outcome}) == len(Outcome)
-    assert all(outcome.sentence.endswith(".") for outcome in Outcome)
-    assert Outcome.STATICALLY_UNSTABLE.value == "statically_unstable"
 
 
 def test_finite_element_loops_are_bounded_where_motions_are_asked_for() -> None:

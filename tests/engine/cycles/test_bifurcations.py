@@ -45,8 +45,10 @@ def test_branch_joins_both_hopf_points_and_is_number_zero() -> None:
 
 
 def test_every_bifurcation_is_located_to_a_millionth() -> None:
-    for subconductors, ratio, loops in ((1, LIGHT, 2), (2, LIGHT, 2), (3, LIGHT, 2), (1, 0.01, 1)):
-        _, _, found = analysed(subconductors, ratio, loops)
+    cases = [((1, LIGHT, 2), 6), ((2, LIGHT, 2), 4), ((3, LIGHT, 2), 3), ((1, 0.01, 1), 6)]
+    for case, number in cases:
+        _, _, found = analysed(*case)
+        assert found.wind_speed.size == number
         assert (found.uncertainty <= 1e-6 * found.wind_speed).all()
 
 

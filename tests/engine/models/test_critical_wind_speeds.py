@@ -68,8 +68,10 @@ def test_unstable_pairs_counts_a_real_eigenvalue_and_a_pair_once_each() -> None:
 
 def models() -> list[ReducedModel]:
     """Return hybrid models of 30 random lines, one and two loops in turn, that are statically stable."""
-    discretization = [hybrid(random_line(np.random.default_rng(seed)), 1 + seed % 2) for seed in range(30)]
-    return [model for model in discretization if not model.statically_unstable[0]]
+    made = [hybrid(random_line(np.random.default_rng(seed)), 1 + seed % 2) for seed in range(30)]
+    stable = [model for model in made if not model.statically_unstable[0]]
+    assert len(stable) > 20
+    return stable
 
 
 def confirmed(model: ReducedModel, found: Crossings) -> None:
@@ -119,7 +121,7 @@ def test_finite_element_crossings_are_confirmed_too() -> None:
 
 
 def test_divergence_of_torsion_by_hand() -> None:
-    # k - U^2 a = 0 for one coordinate; the other is damped and idle.
+    # k - U^2 a = 0 for one co-ordinate; the other is damped and idle.
     stiffness, slope = 5.0, 0.03
     model = hand_made(
         Oscillators(np.eye(2), 0.4 * np.eye(2), np.diag([stiffness, 9.0]), {(0, (0,)): slope, (0, (0, 0, 0)): -1.0})
@@ -129,7 +131,7 @@ def test_divergence_of_torsion_by_hand() -> None:
     assert found.oscillation.tolist() == [False]
     assert found.onset.tolist() == [True]
     assert found.angular_frequency.tolist() == [0.0]
-    assert found.coordinate.tolist() == [0]
+    assert found.co_ordinate.tolist() == [0]
     assert found.unstable_after.tolist() == [1]
 
 
@@ -141,12 +143,12 @@ def test_two_pairs_that_cross_on_their_own_are_both_reported() -> None:
     found = critical_wind_speeds(model, LIMIT)
     assert found.wind_speed == pytest.approx([4.0, 15.0], rel=1e-12)
     assert found.angular_frequency == pytest.approx([2.0, 3.0], rel=1e-12)
-    assert found.coordinate.tolist() == [0, 1]
+    assert found.co_ordinate.tolist() == [0, 1]
     assert found.unstable_after.tolist() == [1, 2]
 
 
 def test_classical_flutter_by_routh_and_hurwitz() -> None:
-    # Two coordinates coupled by U^2 in the stiffness, equal damping c: imaginary pair where
+    # Two co-ordinates coupled by U^2 in the stiffness, equal damping c: imaginary pair where
     # (k_2 - k_1)^2 - 4 U^4 b^2 = -2 c^2 (k_1 + k_2), from s = i w with w^2 = (k_1 + k_2)/2.
     k_1, k_2, b, c = 4.0, 9.0, 0.05, 0.3
     coupled: dict[tuple[int, tuple[int, ...]], float] = {(0, (1,)): b, (1, (0,)): -b}
@@ -167,7 +169,7 @@ def test_limit_cuts_and_members_are_kept_apart() -> None:
 
 
 def test_neutral_saddles_are_no_crossings() -> None:
-    # One oscillator crosses at U = 4 and one coordinate diverges at 5; its growing real
+    # One oscillator crosses at U = 4 and one co-ordinate diverges at 5; its growing real
     # eigenvalue then passes the mirror images of the two decaying ones of an overdamped third: sums that vanish without
     # an imaginary pair.
     stiffness, damping = np.diag([4.0, 1.0, 2.2165]), np.diag([0.2, 0.1, 3.0])

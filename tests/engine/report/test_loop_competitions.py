@@ -85,6 +85,7 @@ def test_nothing_competes_unless_it_is_asked_for() -> None:
 def test_the_order_of_the_loops_does_not_matter() -> None:
     backward = only(Model.HYBRID, wind_speeds=(4.0,), loops=(2, 1), loop_competition=LoopCompetition.CHECKED)
     rows = {row.loops: row for row in run(source_line(1), backward).loop_competitions}
+    assert rows.keys() == {row.loops for row in source_result(1).loop_competitions} == {1, 2}
     for row in source_result(1).loop_competitions:
         assert rows[row.loops].growing_loops == row.growing_loops
         assert rows[row.loops].growth_per_cycle == pytest.approx(row.growth_per_cycle, rel=1e-6)
