@@ -121,7 +121,7 @@ def test_finite_element_crossings_are_confirmed_too() -> None:
 
 
 def test_divergence_of_torsion_by_hand() -> None:
-    # k - U^2 a = 0 for one co-ordinate; the other is damped and idle.
+    # k - U^2 a = 0 for one coordinate; the other is damped and idle.
     stiffness, slope = 5.0, 0.03
     model = hand_made(
         Oscillators(np.eye(2), 0.4 * np.eye(2), np.diag([stiffness, 9.0]), {(0, (0,)): slope, (0, (0, 0, 0)): -1.0})
@@ -131,7 +131,7 @@ def test_divergence_of_torsion_by_hand() -> None:
     assert found.oscillation.tolist() == [False]
     assert found.onset.tolist() == [True]
     assert found.angular_frequency.tolist() == [0.0]
-    assert found.co_ordinate.tolist() == [0]
+    assert found.coordinate.tolist() == [0]
     assert found.unstable_after.tolist() == [1]
 
 
@@ -143,12 +143,12 @@ def test_two_pairs_that_cross_on_their_own_are_both_reported() -> None:
     found = critical_wind_speeds(model, LIMIT)
     assert found.wind_speed == pytest.approx([4.0, 15.0], rel=1e-12)
     assert found.angular_frequency == pytest.approx([2.0, 3.0], rel=1e-12)
-    assert found.co_ordinate.tolist() == [0, 1]
+    assert found.coordinate.tolist() == [0, 1]
     assert found.unstable_after.tolist() == [1, 2]
 
 
 def test_classical_flutter_by_routh_and_hurwitz() -> None:
-    # Two co-ordinates coupled by U^2 in the stiffness, equal damping c: imaginary pair where
+    # Two coordinates coupled by U^2 in the stiffness, equal damping c: imaginary pair where
     # (k_2 - k_1)^2 - 4 U^4 b^2 = -2 c^2 (k_1 + k_2), from s = i w with w^2 = (k_1 + k_2)/2.
     k_1, k_2, b, c = 4.0, 9.0, 0.05, 0.3
     coupled: dict[tuple[int, tuple[int, ...]], float] = {(0, (1,)): b, (1, (0,)): -b}
@@ -169,7 +169,7 @@ def test_limit_cuts_and_members_are_kept_apart() -> None:
 
 
 def test_neutral_saddles_are_no_crossings() -> None:
-    # One oscillator crosses at U = 4 and one co-ordinate diverges at 5; its growing real
+    # One oscillator crosses at U = 4 and one coordinate diverges at 5; its growing real
     # eigenvalue then passes the mirror images of the two decaying ones of an overdamped third: sums that vanish without
     # an imaginary pair.
     stiffness, damping = np.diag([4.0, 1.0, 2.2165]), np.diag([0.2, 0.1, 3.0])
