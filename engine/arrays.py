@@ -30,3 +30,10 @@ def merge_axes(array: AnyArray, first: int, last: int = -1) -> AnyArray:
     stop = array.ndim + last + 1
     start = array.ndim + first
     return array.reshape(*shape[:start], math.prod(shape[start:stop]), *shape[stop:])
+
+
+def filled(count: int, value: object) -> ObjectArray:
+    """Return an array (count,) that holds one object; `numpy.full` would store a `StrEnum`'s member as plain text."""
+    result = np.empty(count, dtype=np.object_)
+    result.fill(value)
+    return result

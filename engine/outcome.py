@@ -1,10 +1,10 @@
 """How a computation ended, what may be said of a motion's stability, and the one error that misuse raises."""
 
 from dataclasses import dataclass
-from enum import Enum, StrEnum
+from enum import StrEnum
 
 
-class Outcome(Enum):
+class Outcome(StrEnum):
     """How one point of an analysis ended; every member carries its sentence."""
 
     CONVERGED = ("converged", "The equations are met to the tolerance.")
@@ -20,7 +20,7 @@ class Outcome(Enum):
 
     def __new__(cls, value: str, sentence: str) -> "Outcome":
         """Make a member whose value is the word that results carry."""
-        member = object.__new__(cls)
+        member = str.__new__(cls, value)
         member._value_ = value
         member.sentence = sentence
         return member

@@ -1,7 +1,7 @@
 """What came of the lines of a batch, streamed in the order of their numbers, a bounded number in memory at a time."""
 
 from collections.abc import Iterator
-from typing import Any, Literal
+from typing import Any
 from uuid import UUID
 
 import orjson
@@ -9,11 +9,8 @@ from sqlalchemy import Row, and_, select
 from sqlalchemy.orm import Session
 
 from app import convert
-from app.convert import Table
 from app.storage.stored_results import PEAKS, STATIC, tables_of, unpacked
 from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
-
-BatchTable = Literal[Table, "summary"]
 
 _LINES_A_FETCH = 200
 _LABELS = ("number", "reference", "asset_id")
@@ -21,14 +18,14 @@ _OPEN = (JobStatus.ACCEPTED, JobStatus.RUNNING, JobStatus.DISMISSED)
 _HARTOG = ("den_hartog_coefficient", "den_hartog_unstable")
 
 
-def columns(table: BatchTable) -> list[str]:
+def columns(table: str) -> list[str]:
     """Return the names of a table's columns in order."""
     if table == "summary":
         return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *PEAKS, "engine_version"]
     return [*_LABELS, *convert.columns(table)]
 
 
-def rows(session: Session, batch_id: UUID, table: BatchTable) -> Iterator[dict[str, Any]]:
+def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any]]:
     """Yield the rows of a table; the summary has one for every line, the others those of the lines that have any."""
     for item in _lines(session, batch_id, unpacking=table != "summary"):
         if table == "summary":

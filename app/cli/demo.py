@@ -21,9 +21,9 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from rich.table import Table
 
 from app import client
+from app.answers.jobs import JobDocument
 from app.client import Client
 from app.reference.source_lines import EXAMPLE_NAMES, example
-from app.schemas.answers import JobDocument
 
 Json = Mapping[str, Any]
 Jobs = dict[str, dict[str, JobDocument]]

@@ -10,12 +10,13 @@ from uuid import UUID
 import httpx
 from pydantic import BaseModel
 
+from app.answers.batches import BatchDocument, BatchTableName
+from app.answers.jobs import JobDocument, JobPage
+from app.answers.results import ResultDocument, TableName
 from app.client import uploads
 from app.client.connection import Connection, ServiceError, Show
 from app.client.uploads import Lines, Upload, as_json
 from app.schemas import Analysis, Line, Study
-from app.schemas.answers import JobDocument, JobPage, ResultDocument, TableName
-from app.schemas.batch import BatchDocument, BatchTableName
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -4,22 +4,32 @@ from app.convert.check import read, request_faults, with_further_faults
 from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
 from app.convert.mode_shapes import mode_shapes
-from app.convert.run import TABLES, Advance, PointResult, Table, columns, run
+from app.convert.run import Advance, PointResult, run
 from app.convert.stack import STACK, NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
+from app.convert.tables import TABLES_BY_ADDRESS, columns, example_row, example_tables
 from engine import ENGINE_VERSION
+from engine.result import TABLES, Column, DenHartog, StaticState, Table, Tables, columns_of
 
 __all__ = [
     "ENGINE_VERSION",
     "STACK",
     "TABLES",
+    "TABLES_BY_ADDRESS",
     "Advance",
+    "Column",
+    "DenHartog",
     "EllipseMethodName",
     "NumberedLine",
     "PointResult",
+    "StaticState",
     "Table",
+    "Tables",
     "clearances",
     "columns",
+    "columns_of",
     "ellipse",
+    "example_row",
+    "example_tables",
     "fit",
     "mode_shapes",
     "read",

@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import islice
-from typing import Any, Literal
+from typing import Any
 
 import orjson
 
@@ -15,49 +15,8 @@ from app.convert.assemble import SoundParts, gather
 from app.convert.ranking_figures import peaks
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
-from engine.result import (
-    BifurcationRow,
-    CriticalWindSpeedRow,
-    DeviceEffectRow,
-    FollowedBifurcationRow,
-    FollowedCycleRow,
-    FrequencyRow,
-    InternalResonanceRow,
-    LimitCycleRow,
-    LoopCompetitionRow,
-    ModelComparisonRow,
-    PlacementRow,
-    Progress,
-    Result,
-)
+from engine.result import TABLES, Progress, Result
 
-Table = Literal[
-    "frequencies",
-    "internal_resonances",
-    "critical_wind_speeds",
-    "limit_cycles",
-    "bifurcations",
-    "model_comparisons",
-    "loop_competitions",
-    "device_effects",
-    "placements",
-    "followed_cycles",
-    "followed_bifurcations",
-]
-_ROW_TYPES: Mapping[Table, type[Any]] = {
-    "frequencies": FrequencyRow,
-    "internal_resonances": InternalResonanceRow,
-    "critical_wind_speeds": CriticalWindSpeedRow,
-    "limit_cycles": LimitCycleRow,
-    "bifurcations": BifurcationRow,
-    "model_comparisons": ModelComparisonRow,
-    "loop_competitions": LoopCompetitionRow,
-    "device_effects": DeviceEffectRow,
-    "placements": PlacementRow,
-    "followed_cycles": FollowedCycleRow,
-    "followed_bifurcations": FollowedBifurcationRow,
-}
-TABLES: tuple[Table, ...] = tuple(_ROW_TYPES)
 _NO_ROWS = orjson.dumps({name: [] for name in TABLES})
 
 
@@ -92,9 +51,9 @@ class PointResult:
     reused: bool = False
 
     @cached_property
-    def tables(self) -> dict[Table, list[dict[str, Any]]]:
+    def tables(self) -> dict[str, list[dict[str, Any]]]:
         """Rows by the name of their table."""
-        found: dict[Table, list[dict[str, Any]]] = orjson.loads(self.tables_json)
+        found: dict[str, list[dict[str, Any]]] = orjson.loads(self.tables_json)
         return found
 
     @cached_property
@@ -102,11 +61,6 @@ class PointResult:
         """Fourier coefficients of the cycles, each with the number of its row among the limit cycles."""
         found: list[dict[str, Any]] = orjson.loads(self.orbits_json)
         return found
-
-
-def columns(table: Table) -> list[str]:
-    """Return the names of a table's columns in the order of the contract, without the study's axes."""
-    return [field.name for field in fields(_ROW_TYPES[table])]
 
 
 def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:

@@ -1,33 +1,19 @@
-"""The columns of result tables with type, unit and meaning, read out of the schemas of the answers."""
+"""The columns of result tables with type, unit and meaning, as the tables declare them."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import NoneType
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Literal, get_args
 
-from pydantic import BaseModel
-
-from app.schemas import answers, batch
+from app import convert
+from app.answers.batches import LineSummary
 from app.schemas.field_table import input_fields
-from app.schemas.fields import Answer
 
 Kind = Literal["number", "integer", "truth", "text"]
 
 _KINDS: Mapping[type, Kind] = {float: "number", int: "integer", bool: "truth"}
 _UNIT = re.compile(r" \[(.+)\]$")
-
-
-def _models() -> Iterator[tuple[str, type[BaseModel]]]:
-    """Yield the schema of each table's rows: a result document holds its tables as lists of them."""
-    yield "summary", batch.LineSummary
-    for name, field in answers.ResultDocument.model_fields.items():
-        for item in get_args(field.annotation):
-            if get_origin(field.annotation) is list and issubclass(item, Answer):
-                yield name, item
-
-
-_MODELS: Mapping[str, type[BaseModel]] = dict(_models())
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +34,9 @@ def columns_of(table: str, names: Iterable[str]) -> list[Column]:
     KeyError
         If there is no such table or column.
     """
-    known = {**batch.LineSummary.model_fields, **_MODELS[table].model_fields}
-    return [_column(name, known[name].annotation, str(known[name].description)) for name in names]
+    own = {} if table == "summary" else _declared(convert.TABLES[table].row)
+    known = {**_SUMMARY, **own}
+    return [known[name] for name in names]
 
 
 def axis_columns(axes: Sequence[Mapping[str, Any]]) -> list[Column]:
@@ -66,7 +53,31 @@ def axis_columns(axes: Sequence[Mapping[str, Any]]) -> list[Column]:
     ]
 
 
-def _column(name: str, annotation: Any, description: str) -> Column:
+def _declared(row: type[Any], prefix: str = "") -> dict[str, Column]:
+    """Return the columns that a dataclass of rows declares."""
+    return {
+        prefix + name: Column(prefix + name, _kind(kind), column.unit, column.description)
+        for name, (kind, column) in convert.columns_of(row).items()
+    }
+
+
+def _labels() -> dict[str, Column]:
+    """Return the columns that only the summary of a batch has, whose units stand in their descriptions."""
+    found = {}
+    for name, field in LineSummary.model_fields.items():
+        description = str(field.description)
+        unit = _UNIT.search(description)
+        found[name] = Column(name, _kind(field.annotation), unit.group(1) if unit else None, _UNIT.sub("", description))
+    return found
+
+
+def _kind(annotation: Any) -> Kind:
     kinds = {_KINDS.get(kind, "text") for kind in get_args(annotation) or (annotation,) if kind is not NoneType}
-    unit = _UNIT.search(description)
-    return Column(name, kinds.pop(), unit.group(1) if unit else None, _UNIT.sub("", description))
+    return kinds.pop()
+
+
+_SUMMARY: Mapping[str, Column] = {
+    **_labels(),
+    **_declared(convert.StaticState),
+    **_declared(convert.DenHartog, "den_hartog_"),
+}

@@ -6,12 +6,12 @@ from fastapi import APIRouter, Body, Response
 from fastapi.responses import JSONResponse
 
 from app import convert, schemas
+from app.answers.aerodynamics import FitAnswer
 from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document
 from app.jobs import idempotency, job_records
 from app.routes import documentation, reference_documentation
 from app.routes.common import PREFIX, Writers
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
-from app.schemas.aerodynamics import FitAnswer
 from app.schemas.faults import BadInput
 
 router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route_class=StrictJsonRoute)

@@ -3,10 +3,12 @@
 import json
 from typing import Any
 
+from app import convert
+from app.answers.batches import RankedLine
 from app.export.formats import PARQUET
 from app.reference.source_lines import example
 from app.routes import documentation
-from app.schemas.batch import BatchRequest, RankedLine
+from app.schemas.batch import BatchRequest
 from app.schemas.fields import example_of
 
 _BATCH = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"
@@ -72,33 +74,16 @@ ACCEPTED_ANSWER: dict[str, Any] = {
 PAGE: dict[str, Any] = {"batches": [_SUMMARY], "next": None}
 RANKING: dict[str, Any] = {"lines": [example_of(RankedLine) | {"clearance_m": None}], "next": None}
 ERRORS: dict[str, Any] = {"errors": [FAULT]}
+_LABELS = {"number": 1, "reference": "row-1", "asset_id": "L204-S017"}
 RESULT: dict[str, Any] = {
-    "number": 1,
-    "reference": "row-1",
-    "asset_id": "L204-S017",
+    **_LABELS,
     "status": "successful",
     "failure": None,
-    "static": {
-        "horizontal_tension_n": 30000.0,
-        "catenary_parameter_m": 1285.5,
-        "sag_m": 1.54,
-        "longitudinal_stiffness_n_per_m": 128490.0,
-        "twist_rad": None,
-    },
-    "den_hartog": {"coefficient": -0.1667, "unstable": True},
+    "static": convert.example_row(convert.StaticState),
+    "den_hartog": convert.example_row(convert.DenHartog),
     "warnings": [],
     "engine_version": "0.1.0",
-    "frequencies": [],
-    "internal_resonances": [],
-    "critical_wind_speeds": [],
-    "limit_cycles": [],
-    "bifurcations": [],
-    "model_comparisons": [],
-    "loop_competitions": [],
-    "device_effects": [],
-    "placements": [],
-    "followed_cycles": [],
-    "followed_bifurcations": [],
+    **convert.example_tables(),
 }
 RESULTS_ANSWER: dict[str, Any] = {
     "description": "NDJSON with one object a line, or rows of a table",
@@ -106,8 +91,7 @@ RESULTS_ANSWER: dict[str, Any] = {
         "application/x-ndjson": {"schema": {"type": "string"}, "example": json.dumps(RESULT) + "\n"},
         "text/csv": {
             "schema": {"type": "string"},
-            "example": "number,reference,asset_id,model,loops,vertical_hz,horizontal_hz,torsional_hz,outcome\r\n"
-            "1,row-1,L204-S017,hybrid,1,0.4816,0.446,0.6343,converged\r\n",
+            "example": documentation.table_as_csv("frequencies", _LABELS),
         },
         PARQUET: {"schema": {"type": "string", "format": "binary"}},
     },

@@ -14,6 +14,7 @@ from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
 from starlette.requests import ClientDisconnect
 
+from app.answers.batches import BatchDocument
 from app.batches import intake
 from app.batches.intake import BodyTooLarge, Incoming
 from app.http.problems import ProblemError, ProblemKind, invalid_document, query_fault
@@ -24,7 +25,6 @@ from app.routes.batch_common import BATCHES, accepted_batch
 from app.routes.common import CallerOf, MayReuse, SenderOf, Writers, vet_webhook
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, as_kept, held
 from app.runtime.settings import Settings
-from app.schemas.batch import BatchDocument
 from app.schemas.faults import BadInput, Fault, parse_json
 from app.security.caller import Caller
 

@@ -9,6 +9,7 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import Row
 
+from app.answers.batches import RankingPage
 from app.batches import ranking
 from app.batches.ranking import Order, Place
 from app.http import paging
@@ -17,7 +18,6 @@ from app.routes import batch_documentation, documentation
 from app.routes.batch_common import batch_address, require_results
 from app.routes.common import PREFIX, CallerOf, Readers, SettingsOf
 from app.runtime.settings import cursor_key
-from app.schemas.batch import RankingPage
 from app.storage.stored_results import PEAKS
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])

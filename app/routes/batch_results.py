@@ -1,7 +1,7 @@
 """Results of a batch, streamed as NDJSON, CSV or Parquet, and the faults of the lines that were rejected."""
 
 from collections.abc import Iterator
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 from uuid import UUID
 
 from fastapi import APIRouter, Query, Request
@@ -9,8 +9,9 @@ from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session
 
+from app import convert
+from app.answers.batches import BatchErrors, BatchTableName
 from app.batches import line_results
-from app.batches.line_results import BatchTable
 from app.export import formats
 from app.export.columns import columns_of
 from app.http.conditional import strong_tag, unless_known
@@ -19,7 +20,6 @@ from app.routes import batch_documentation, documentation
 from app.routes.batch_common import require_results
 from app.routes.common import PREFIX, CallerOf, Readers, streamed
 from app.routes.ended import Known
-from app.schemas.batch import BatchErrors, BatchTableName
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
@@ -29,7 +29,6 @@ _MEDIA_TYPES: dict[BatchFormat, str] = {
     "csv": "text/csv",
     "parquet": formats.PARQUET,
 }
-_TABLES: dict[BatchTableName, BatchTable] = dict(zip(get_args(BatchTableName), get_args(BatchTable), strict=True))
 
 
 class ResultsQuery(BaseModel):
@@ -73,7 +72,7 @@ def results(
     state = require_results(readers, caller, batch_id, partial=asked.partial)
     # What still changes has no tag: a strong one would have to be known before the last row is read.
     headers = unless_known(known, strong_tag(state, form)) if state else {"Vary": "Accept"}
-    name: BatchTable = _TABLES[asked.table or "summary"]
+    name = convert.TABLES_BY_ADDRESS.get(asked.table or "summary", "summary")
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
         if form == "ndjson" and asked.table is None:

@@ -9,6 +9,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
 from app import convert
+from app.answers.batches import BatchDocument, BatchPage
 from app.batches import batch_records, intake
 from app.http import paging
 from app.http.problems import ProblemKind, query_fault
@@ -27,7 +28,6 @@ from app.routes.common import RETRY_SECONDS, CallerOf, Readers, SenderOf, Settin
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
 from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
 from app.runtime.settings import cursor_key
-from app.schemas.batch import BatchDocument, BatchPage
 from app.tables import ENDED
 
 router = APIRouter(prefix=BATCHES, tags=["batches"])

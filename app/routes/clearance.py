@@ -7,12 +7,12 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
 from app import convert
+from app.answers.clearance import Clearance
 from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.routes import documentation
 from app.routes.common import PREFIX, Readers
 from app.routes.ended import EndedJob
 from app.routes.results import point_rows, request_of_point
-from app.schemas.clearance import Clearance
 from app.schemas.fields import example_of
 from app.storage import stored_results
 

@@ -7,13 +7,13 @@ from fastapi import APIRouter
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
+from app.answers.deliveries import DeliveryLog, WebhookSecret
 from app.http.problems import ProblemKind
 from app.jobs import idempotency, webhooks
 from app.routes import documentation
 from app.routes.batch_common import batch_address, find_batch
 from app.routes.common import PREFIX, CallerOf, Readers, SettingsOf, Writers, find_job, job_address
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
-from app.schemas.deliveries import DeliveryLog, WebhookSecret
 from app.schemas.fields import example_of
 from app.tables import WebhookDelivery
 

@@ -1,16 +1,19 @@
 """Examples of every body and every problem for OpenAPI; each validates against its own schema (tests see to it)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
-from app.export.formats import PARQUET
+from app import convert
+from app.answers.jobs import JobDocument
+from app.answers.problems import Problem
+from app.answers.results import ResultDocument
+from app.export.formats import PARQUET, csv_text
 from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document
 from app.reference.source_lines import EXAMPLE_NAMES, example
-from app.schemas.answers import Problem
 from app.schemas.faults import Fault
 from app.schemas.fields import example_of
 from app.schemas.placement import EXAMPLE as PLACEMENT
-from app.schemas.rows import LimitCycle
 from app.security.gate import is_open
 
 _NULL = "\0null"
@@ -28,34 +31,11 @@ def _marked(value: Any) -> Any:
     return _NULL if value is None else value
 
 
-_QUASI_PERIODIC = ("second_frequency_hz", "vertical_min_m", "horizontal_min_m", "torsional_min_rad")
-_RESULT_CYCLE: dict[str, Any] = {**example_of(LimitCycle), **dict.fromkeys(_QUASI_PERIODIC), "direct_difference": None}
-_FREQUENCY: dict[str, Any] = {
-    "model": "hybrid",
-    "loops": 1,
-    "vertical_hz": 0.4816,
-    "horizontal_hz": 0.4460,
-    "torsional_hz": 0.6343,
-    "outcome": "converged",
-}
-_RESONANCE: dict[str, Any] = {
-    "model": "hybrid",
-    "loops": 1,
-    "directions": "horizontal:vertical",
-    "frequency_ratio": 0.9261,
-    "nearest_ratio": "1:1",
-    "detuning": -0.0739,
-}
-_CRITICAL: dict[str, Any] = {
-    "model": "hybrid",
-    "loops": 1,
-    "wind_speed_m_per_s": 2.403,
-    "crossing": "onset",
-    "type": "oscillation",
-    "direction": "vertical",
-    "frequency_hz": 0.4816,
-    "unstable_pairs_after": 1,
-}
+def table_as_csv(name: str, before: Mapping[str, object] = MappingProxyType({})) -> str:
+    """Return an example of a table as CSV, after the columns `before`."""
+    (row,) = convert.example_tables()[name]
+    return "".join(csv_text([*before, *row], [{**before, **row}]))
+
 
 REPLAYED_HEADER: dict[str, Any] = {
     "Idempotency-Replayed": {
@@ -68,77 +48,31 @@ ACCEPTED_HEADERS: dict[str, Any] = {
     "Retry-After": {"description": "Seconds to wait before looking", "schema": {"type": "integer"}},
     **REPLAYED_HEADER,
 }
+_NOTHING_YET = ("started_at", "finished_at", "failure", "engine_version", "reused_from")
 ACCEPTED_JOB: dict[str, Any] = {
-    "id": _JOB,
+    **example_of(JobDocument),
     "status": "accepted",
     "progress": 0.0,
     "step": "",
-    "name": "C11 twin, 126 m",
-    "asset_id": None,
-    "tags": {"source": "c11"},
-    "created_at": "2026-11-22T10:00:00+00:00",
-    "started_at": None,
-    "finished_at": None,
     "attempt": 0,
-    "cancel_requested": False,
-    "failure": None,
-    "engine_version": None,
-    "reused_from": None,
-    "links": [{"rel": "self", "href": _ADDRESS}],
+    **dict.fromkeys(_NOTHING_YET),
 }
 FINISHED_JOB: dict[str, Any] = {
-    **ACCEPTED_JOB,
+    **example_of(JobDocument),
     "status": "successful",
     "progress": 1.0,
     "step": "done",
-    "started_at": "2026-11-22T10:00:01+00:00",
-    "finished_at": "2026-11-22T10:00:04+00:00",
-    "attempt": 1,
-    "engine_version": "0.1.0",
+    "failure": None,
+    "reused_from": None,
     "links": [{"rel": "self", "href": _ADDRESS}, {"rel": "results", "href": f"{_ADDRESS}/results"}],
 }
 DISMISSED_JOB: dict[str, Any] = {**ACCEPTED_JOB, "status": "dismissed", "finished_at": "2026-11-22T10:00:02+00:00"}
 STOPPING_JOB: dict[str, Any] = {
-    **ACCEPTED_JOB,
-    "status": "running",
-    "progress": 0.4,
-    "step": "limit cycles",
-    "started_at": "2026-11-22T10:00:01+00:00",
-    "attempt": 1,
+    **example_of(JobDocument),
     "cancel_requested": True,
+    **dict.fromkeys(("finished_at", "failure", "engine_version", "reused_from")),
 }
-RESULT: dict[str, Any] = {
-    "input": {"line": example("c11-twin"), "analysis": {"loops": [1], "models": ["hybrid"]}},
-    "static": {
-        "horizontal_tension_n": 30000.0,
-        "catenary_parameter_m": 1285.5,
-        "sag_m": 1.54,
-        "longitudinal_stiffness_n_per_m": 128490.0,
-        "twist_rad": None,
-    },
-    "den_hartog": {"coefficient": -0.1667, "unstable": True},
-    "frequencies": [_FREQUENCY],
-    "internal_resonances": [_RESONANCE],
-    "critical_wind_speeds": [_CRITICAL],
-    "limit_cycles": [_RESULT_CYCLE],
-    "bifurcations": [],
-    "model_comparisons": [],
-    "loop_competitions": [],
-    "device_effects": [],
-    "placements": [],
-    "followed_cycles": [],
-    "followed_bifurcations": [],
-    "warnings": [],
-    "failures": [],
-    "failure": None,
-    "engine_version": "0.1.0",
-}
-TABLE_EXAMPLES: dict[str, dict[str, Any]] = {
-    "frequencies": _FREQUENCY,
-    "internal_resonances": _RESONANCE,
-    "critical_wind_speeds": _CRITICAL,
-    "limit_cycles": _RESULT_CYCLE,
-}
+RESULT: dict[str, Any] = {**example_of(ResultDocument), "failures": [], "failure": None}
 PROBLEM_PAGE: dict[str, Any] = {
     "slug": ProblemKind.NOT_READY.slug,
     "status": ProblemKind.NOT_READY.status,
@@ -150,12 +84,11 @@ TABLE_ANSWER: dict[str, Any] = {
     "content": {
         "application/json": {
             "schema": {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "object"}}},
-            "examples": {name: {"value": _marked({name: [row]})} for name, row in TABLE_EXAMPLES.items()},
+            "examples": {name: {"value": _marked({name: rows})} for name, rows in convert.example_tables().items()},
         },
         "text/csv": {
             "schema": {"type": "string"},
-            "example": "model,loops,vertical_hz,horizontal_hz,torsional_hz,outcome\r\n"
-            "hybrid,1,0.4816,0.446,0.6343,converged\r\n",
+            "example": table_as_csv("frequencies"),
         },
         PARQUET: {"schema": {"type": "string", "format": "binary"}},
     },

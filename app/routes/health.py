@@ -10,13 +10,14 @@ from fastapi.responses import JSONResponse
 from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 
+from app.answers.health import Health
+from app.answers.problems import ProblemPage
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.operation import metrics
 from app.routes import documentation
 from app.routes.common import Readers, SettingsOf
 from app.runtime.settings import Settings
-from app.schemas.answers import Health, ProblemPage
 from app.storage.migration import is_newest
 
 router = APIRouter(tags=["service"])

@@ -13,6 +13,7 @@ from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 from app import convert, schemas
+from app.answers.jobs import JobDocument, JobPage
 from app.http import paging
 from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document, query_fault
 from app.jobs import idempotency, job_records
@@ -37,7 +38,6 @@ from app.routes.common import (
 from app.routes.once import KEY_PROBLEMS, KeyOf, as_kept, first_answer
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import cursor_key
-from app.schemas.answers import JobDocument, JobPage
 from app.schemas.fields import Label
 from app.tables import ENDED, JobStatus
 

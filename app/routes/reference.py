@@ -5,12 +5,12 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from fastapi.responses import JSONResponse
 
+from app.answers.reference import ConductorList, FieldList
 from app.http.problems import ProblemKind
 from app.reference import conductors
 from app.routes import documentation, reference_documentation
 from app.routes.common import PREFIX
 from app.schemas import field_table
-from app.schemas.reference import ConductorList, FieldList
 
 router = APIRouter(prefix=PREFIX, tags=["reference"])
 

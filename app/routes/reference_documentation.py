@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from app.answers.reference import ConductorRow, FieldRow
 from app.schemas.fields import example_of
-from app.schemas.reference import ConductorRow, FieldRow
 
 _MEASURED = (
     (20.0, -0.2734, 0.9778, -0.0643),

@@ -1,7 +1,7 @@
 """Results of a job: the whole document, single tables as JSON, CSV or Parquet, and pictures. Everything is streamed."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 from uuid import UUID
 
 from fastapi import APIRouter, Query, Request, Response
@@ -9,8 +9,8 @@ from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session
 
 from app import convert
+from app.answers.results import ResultDocument, TableName
 from app.batches import batch_records
-from app.convert import Table
 from app.export import formats
 from app.export.columns import axis_columns, columns_of
 from app.export.formats import Format
@@ -18,7 +18,6 @@ from app.http.problems import ProblemError, ProblemKind
 from app.routes import documentation
 from app.routes.common import PREFIX, Readers, failure_of, streamed
 from app.routes.ended import EndedJob
-from app.schemas.answers import ResultDocument, TableName
 from app.storage import stored_results
 from app.tables import Job
 
@@ -28,7 +27,6 @@ Picture = Literal["amplitude", "orbit", "modes"]
 PictureFormat = Literal["svg", "png"]
 Rows = Iterator[dict[str, object]]
 
-_TABLES: dict[TableName, Table] = dict(zip(get_args(TableName), convert.TABLES, strict=True))
 _PROBLEMS = {
     **documentation.UNCHANGED,
     **documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED),
@@ -80,7 +78,7 @@ def table(
     if chosen is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {formats.PARQUET}.")
     job, headers = ended.job, ended.headers(chosen)
-    name = _TABLES[table]
+    name = convert.TABLES_BY_ADDRESS[table]
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
         rows = stored_results.rows(session, job.id, name)
@@ -164,7 +162,7 @@ def request_of_point(session: Session, job: Job, point: int) -> tuple[Mapping[st
     return {"line": next(line.document for line in lines if line.number == point), "analysis": analysis}, 0
 
 
-def _parquet(job: Job, name: Table, rows: Rows) -> Iterator[bytes]:
+def _parquet(job: Job, name: str, rows: Rows) -> Iterator[bytes]:
     from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
     study = (job.document.get("study") or {"axes": []})["axes"]
@@ -191,11 +189,11 @@ def point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dic
         raise ProblemError(ProblemKind.NOT_FOUND, f"The job has no results at point {point}.")
     wanted = dict(axes) if isinstance(axes, dict) else {}
 
-    def at_point(name: Table) -> list[dict[str, Any]]:
+    def at_point(name: str) -> list[dict[str, Any]]:
         rows = stored_results.rows(session, job_id, name)
         return [row for row in rows if all(row[key] == value for key, value in wanted.items())]
 
-    found: dict[str, list[dict[str, Any]]] = {name: at_point(name) for name in _TABLES.values()}
+    found: dict[str, list[dict[str, Any]]] = {name: at_point(name) for name in convert.TABLES}
     found["orbits"] = [orbit for orbit in stored_results.orbits(session, job_id) if orbit["point"] == point]
     return found
 

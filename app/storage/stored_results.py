@@ -10,14 +10,14 @@ import zstandard
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.convert import TABLES, Table
+from app.convert import TABLES, StaticState, columns_of
 from app.storage.database import insert_rows
 from app.tables import PointRow
 
 if TYPE_CHECKING:
     from app.convert import PointResult
 
-STATIC = ("horizontal_tension_n", "catenary_parameter_m", "sag_m", "longitudinal_stiffness_n_per_m", "twist_rad")
+STATIC = tuple(columns_of(StaticState))
 PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100
@@ -52,13 +52,13 @@ def _unpacker() -> zstandard.ZstdDecompressor:
     return unpacker
 
 
-def tables_of(packed: bytes | None) -> dict[Table, list[dict[str, Any]]]:
+def tables_of(packed: bytes | None) -> dict[str, list[dict[str, Any]]]:
     """Return the rows that a packed column holds, by the name of their table."""
-    found: dict[Table, list[dict[str, Any]]] = orjson.loads(unpacked(packed))
+    found: dict[str, list[dict[str, Any]]] = orjson.loads(unpacked(packed))
     return found
 
 
-def rows(session: Session, job_id: UUID, table: Table) -> Iterator[dict[str, Any]]:
+def rows(session: Session, job_id: UUID, table: str) -> Iterator[dict[str, Any]]:
     """Stream the rows of one table in the order of the points; the values of the study's axes come first in each."""
     statement = select(PointRow.axes, PointRow.tables).where(PointRow.job_id == job_id).order_by(PointRow.point)
     for point_axes, packed in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled
 from engine.kernels import compiled
 from engine.models.aerodynamic_load import force_gradient
 from engine.models.reduced_model import ReducedModel
@@ -166,7 +166,7 @@ def integrate_until_settled(
     weight = np.sqrt(np.concatenate([mass * rate**2, mass]))
     state, size, before = start.T.copy(), np.full_like(start.T, np.inf), np.full_like(start.T, np.inf)
     blocks, at_rest = np.zeros(member.size, dtype=np.intp), np.zeros(member.size, dtype=np.bool_)
-    outcome = np.full(member.size, Outcome.LIMIT_REACHED, dtype=np.object_)
+    outcome = filled(member.size, Outcome.LIMIT_REACHED)
     first, last = np.linalg.norm(weight * start.T, axis=0), np.broadcast_to(most_blocks, member.shape)
     active = np.arange(member.size)
     while active.size:

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled, lengths
 from engine.numerics.newton import NewtonOptions, Solution, newton, solve_systems
 from engine.outcome import Outcome
 
@@ -163,7 +163,7 @@ def continue_branches(
     last = make_points(problem, active, start.copy(), direction)
     before = BranchPoints(active, np.full_like(start, np.nan), last.scale.copy(), last.tangent.copy())
     length, count = np.full(active.size, steps.first), np.zeros(active.size, dtype=np.intp)
-    outcome = np.full(active.size, Outcome.CONVERGED, dtype=np.object_)
+    outcome = filled(active.size, Outcome.CONVERGED)
     while active.size:
         here = last.select(active)
         guess = _predict(before.select(active), here, length[active])

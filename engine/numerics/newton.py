@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled
 from engine.outcome import Outcome
 
 System = Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]
@@ -84,7 +84,7 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOpti
 
 def solution_from_steps(x: FloatArray, step: FloatArray, iterations: IntArray, options: NewtonOptions) -> Solution:
     """Judge the last steps."""
-    outcome = np.full(step.shape, Outcome.NO_CONVERGENCE, dtype=np.object_)
+    outcome = filled(step.size, Outcome.NO_CONVERGENCE)
     outcome[step <= options.tolerance] = Outcome.CONVERGED
     return Solution(x, outcome, step, iterations)
 

@@ -12,7 +12,7 @@ from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
 from engine.outcome import Outcome
 from engine.report.device_effects import device_effects, largest_amplitude, lowest_onset
-from engine.result import PlacementRow, Progress, Result
+from engine.result import PlacedDeviceRow, Progress, Result
 from engine.spec import (
     AirflowSpoiler,
     Analysis,
@@ -153,14 +153,14 @@ class _Search:
     generations: int
 
 
-def _rows(fitted: Line, before: int, placement: Placement, search: _Search) -> tuple[PlacementRow, ...]:
+def _rows(fitted: Line, before: int, placement: Placement, search: _Search) -> tuple[PlacedDeviceRow, ...]:
     """Write the devices that were added after so many others."""
     rows = []
     for number, device in enumerate(fitted.devices[before:], start=before):
         spoiler = device if isinstance(device, AirflowSpoiler) else None
         pendulum = device if isinstance(device, DetuningPendulum) else None
         rows.append(
-            PlacementRow(
+            PlacedDeviceRow(
                 device=number,
                 type="airflow_spoiler" if spoiler else "detuning_pendulum",
                 position_m=pendulum.position if pendulum else None,

@@ -7,8 +7,10 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from app import schemas
+from app.answers import aerodynamics, batches, clearance, health, jobs, problems, reference, results
+from app.answers.rows import row_schema
+from app.convert import TABLES
 from app.reference.source_lines import EXAMPLE_NAMES, example
-from app.schemas import aerodynamics, answers, batch, clearance, reference, rows
 from app.schemas.fields import Answer
 
 MODELS = [
@@ -18,10 +20,10 @@ MODELS = [
 ]
 ANSWERS = [
     model
-    for module in (answers, batch, aerodynamics, clearance, reference, rows)
+    for module in (jobs, results, problems, health, batches, aerodynamics, clearance, reference)
     for model in vars(module).values()
     if isinstance(model, type) and issubclass(model, Answer)
-]
+] + [row_schema(table.row) for table in TABLES.values()]
 FIELDS = [(model, name, field) for model in (*MODELS, *ANSWERS) for name, field in model.model_fields.items()]
 
 

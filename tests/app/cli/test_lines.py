@@ -9,10 +9,10 @@ from typing import Any
 import httpx
 import pytest
 
+from app.answers.results import ResultDocument
 from app.reference.source_lines import EXAMPLE_NAMES, example
 from app.reference.source_studies import study_request
 from app.runtime.settings import Settings
-from app.schemas.answers import ResultDocument
 from app.schemas.placement import EXAMPLE
 from tests.app.command_line import galloping, refused
 from tests.app.lines import SHORT, changed

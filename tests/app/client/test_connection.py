@@ -7,9 +7,9 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import pytest
 
+from app.answers.jobs import JobDocument
 from app.client import Client, ServiceError
 from app.reference.source_lines import example
-from app.schemas.answers import JobDocument
 from app.schemas.fields import example_of
 from tests.servers import free_port
 

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 from app import convert
+from app.answers.results import ResultDocument
+from app.answers.rows import row_schema
 from app.reference.source_lines import example
-from app.schemas.answers import ResultDocument
 from app.schemas.placement import EXAMPLE
-from app.schemas.rows import PlacedDevice
 from tests.app.lines import faults
 
 ANALYSIS = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0]}
@@ -40,8 +40,8 @@ def test_a_search_gives_devices_and_their_effect() -> None:
     assert list(effect) == convert.columns("device_effects")
     fields = ResultDocument.model_fields
     assert {"placements", "device_effects", "model_comparisons", "loop_competitions"} <= fields.keys()
-    row = PlacedDevice.model_validate(point.tables["placements"][0])
-    assert row.device == 0
+    row = row_schema(convert.TABLES["placements"].row).model_validate(point.tables["placements"][0])
+    assert row.model_dump()["device"] == 0
 
 
 def test_the_effect_of_a_lines_own_devices_is_reported_if_asked_for() -> None:

@@ -3,8 +3,8 @@ from importlib.resources import files
 
 import pytest
 
+from app.answers.reference import ConductorRow
 from app.reference import conductors
-from app.schemas.reference import ConductorRow
 
 ALUMINIUM, STEEL = 2703.0, 7780.0  # kg/m3, IEC 60889 and IEC 60888
 ROWS = conductors.search("")

@@ -3,9 +3,9 @@ from typing import Any
 import httpx
 import pytest
 
+from app.answers.batches import RankingPage
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
-from app.schemas.batch import RankingPage
 from tests.app.lines import SHORT, changed
 from tests.app.service import work_off
 

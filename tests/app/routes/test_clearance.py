@@ -4,8 +4,8 @@ import httpx
 import pytest
 
 from app import convert
+from app.answers.clearance import Clearance
 from app.runtime.settings import Settings
-from app.schemas.clearance import Clearance
 from tests.app import service
 from tests.documents import short_request
 

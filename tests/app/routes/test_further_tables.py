@@ -8,10 +8,10 @@ import httpx
 import pyarrow.parquet as pq
 import pytest
 
+from app.answers.results import ResultDocument, TableName
 from app.client import Client
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
-from app.schemas import answers
 from app.schemas.placement import EXAMPLE
 from tests.app import service
 from tests.app.lines import close
@@ -70,7 +70,7 @@ def rows(client: httpx.Client, address: str, table: str) -> Rows:
     )
     whole = client.get(f"{address}/results").json()
     assert whole[name] == found
-    answers.ResultDocument.model_validate(whole)
+    ResultDocument.model_validate(whole)
     return found
 
 
@@ -122,7 +122,7 @@ def test_placements(shared_client: httpx.Client, placed: str) -> None:
 
 @pytest.mark.parametrize("table", TABLES)
 def test_a_batch_has_these_tables_line_by_line(
-    shared_client: httpx.Client, address: str, batch: str, table: answers.TableName
+    shared_client: httpx.Client, address: str, batch: str, table: TableName
 ) -> None:
     alone = rows(shared_client, address, table)
     assert alone

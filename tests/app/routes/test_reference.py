@@ -1,7 +1,7 @@
 import httpx
 
+from app.answers.reference import ConductorList, FieldList
 from app.schemas.field_table import input_fields
-from app.schemas.reference import ConductorList, FieldList
 
 
 def test_conductors_are_sought_by_words(shared_client: httpx.Client) -> None:

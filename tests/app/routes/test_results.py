@@ -8,11 +8,11 @@ import httpx
 import pyarrow.parquet as pq
 import pytest
 
+from app.answers.results import ResultDocument
 from app.export.formats import PARQUET
 from app.jobs import leases
 from app.runtime.settings import Settings
 from app.schemas import JobRequest
-from app.schemas.answers import ResultDocument
 from app.storage.database import make_engine, session_factory
 from app.tables import FailureKind
 from tests.app import service

@@ -1,8 +1,9 @@
 """Fits of measured coefficients: what goes out, ready for a line's ice."""
 
+from app import convert
+from app.answers.rows import DenHartog
 from app.schemas.environment import COEFFICIENTS, Aerodynamics, AerodynamicsAtRest
 from app.schemas.fields import Answer, example_of, told
-from app.schemas.rows import DenHartog
 
 
 class FitResidual(Answer):
@@ -32,5 +33,7 @@ class FitAnswer(Answer):
     )
     residual: FitResidual = told("What the fit leaves", example_of(FitResidual))
     rows_used: int = told("Rows of the table within the range [1]", 21)
-    den_hartog: DenHartog = told("Den Hartog's criterion of the fit, at the static angle", example_of(DenHartog))
+    den_hartog: DenHartog = told(
+        "Den Hartog's criterion of the fit, at the static angle", convert.example_row(convert.DenHartog)
+    )
     den_hartog_over_angle: list[DenHartogRow] = told("The same over the whole table", [example_of(DenHartogRow)])

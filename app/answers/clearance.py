@@ -5,13 +5,12 @@ from typing import Literal
 from pydantic import Field
 
 from app.schemas.fields import Answer, example_of, told
-from app.schemas.rows import Model
 
 
 class MotionClearance(Answer):
     """The room that one computed cycle takes where it is observed, and what it leaves if both phases gallop alike."""
 
-    model: Model = told("Model that the row comes from", "hybrid")
+    model: Literal["hybrid", "finite_element"] = told("Model that the row comes from", "hybrid")
     loops: int = told("Loops per span [1]", 1)
     wind_speed_m_per_s: float = told("Wind speed [m/s]", 6.0)
     branch: int | None = told("Family of cycles", 0)

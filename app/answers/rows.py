@@ -1,0 +1,77 @@
+"""Schemas of result rows, made of the columns that the engine declares: description, unit and example of each."""
+
+from collections.abc import Mapping
+from enum import Enum
+from inspect import cleandoc
+from types import UnionType
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
+
+from app import convert
+from app.convert import Column, Table
+from app.schemas.fields import Answer, told
+
+__all__ = ["DenHartog", "Row", "StaticState", "row_schema", "with_tables"]
+
+
+class Row(Answer):
+    """A result row; in a study the values of the axes stand before these columns."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+
+def row_schema(row: type[Any], *, nullable: bool = False) -> type[Row]:
+    """Make the schema of a declared row.
+
+    Parameters
+    ----------
+    row : type
+        A dataclass of `engine.result`; the first paragraph of its docstring becomes the schema's.
+    nullable : bool
+        Whether any column may be null, as in SQL: what is not finite is null there.
+    """
+    columns: dict[str, Any] = {
+        name: (_inlined(kind) | None if nullable else _inlined(kind), _field(column))
+        for name, (kind, column) in convert.columns_of(row).items()
+    }
+    sentence = cleandoc(row.__doc__ or "").partition("\n\n")[0]
+    return create_model(
+        row.__name__.removesuffix("Row"), __base__=Row, __doc__=sentence, __module__=__name__, **columns
+    )
+
+
+def with_tables(head: type[BaseModel], tables: Mapping[str, Table]) -> type[BaseModel]:
+    """Make a schema that has a field for every table beside those of another one."""
+    fields: dict[str, Any] = {}
+    for name, table in tables.items():
+        rows = tuple[row_schema(table.row), ...]  # type: ignore[misc, valid-type]  # a type that is made here
+        fields[name] = (rows, told(table.title, [convert.example_row(table.row)]))
+    return create_model("WithTables", __base__=head, __module__=__name__, **fields)
+
+
+def _field(column: Column) -> Any:
+    if column.unit is None:
+        return told(column.description, column.example)
+    return Field(
+        description=f"{column.description} [{column.unit}]",
+        examples=[column.example],
+        json_schema_extra={"unit": column.unit},
+    )
+
+
+def _inlined(kind: Any) -> Any:
+    """Return a type whose enums are words in the JSON schema, and members of the enum when they are read."""
+    if isinstance(kind, UnionType):
+        return Union[tuple(_inlined(part) for part in get_args(kind))]  # noqa: UP007 - of parts known at run time
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return Annotated[Literal[tuple(member.value for member in kind)], AfterValidator(kind)]
+    return kind
+
+
+# Type checkers see the engine's rows, which have the same attributes: what is made at run time has no types for them.
+if TYPE_CHECKING:
+    from app.convert import DenHartog, StaticState
+else:
+    StaticState = row_schema(convert.StaticState, nullable=True)
+    DenHartog = row_schema(convert.DenHartog, nullable=True)

@@ -1,0 +1,54 @@
+"""What an analysis returns: flat rows, one fact a row, in tables that `Tables` declares once for the whole house.
+
+A column says its unit in its name and beside it, what it holds, and a usual value; `app` makes JSON, CSV, Parquet and
+the OpenAPI document of that, by the name of the table. A new table is a dataclass of rows and a field of `Tables`.
+"""
+
+from engine.result.at_rest import (
+    CriticalWindSpeedRow,
+    DenHartog,
+    Direction,
+    FrequencyRow,
+    InternalResonanceRow,
+    StaticState,
+)
+from engine.result.columns import Column, Table, Title, columns_of, tables_of
+from engine.result.devices import DeviceEffectRow, PlacedDeviceRow
+from engine.result.motions import (
+    BifurcationRow,
+    FoundBy,
+    LimitCycleRow,
+    LoopCompetitionRow,
+    ModelComparisonRow,
+    Orbit,
+)
+from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
+from engine.result.tables import TABLES, Progress, Result, Tables
+
+__all__ = [
+    "TABLES",
+    "BifurcationRow",
+    "Column",
+    "CriticalWindSpeedRow",
+    "DenHartog",
+    "DeviceEffectRow",
+    "Direction",
+    "FollowedBifurcationRow",
+    "FollowedCycleRow",
+    "FoundBy",
+    "FrequencyRow",
+    "InternalResonanceRow",
+    "LimitCycleRow",
+    "LoopCompetitionRow",
+    "ModelComparisonRow",
+    "Orbit",
+    "PlacedDeviceRow",
+    "Progress",
+    "Result",
+    "StaticState",
+    "Table",
+    "Tables",
+    "Title",
+    "columns_of",
+    "tables_of",
+]

@@ -1,0 +1,86 @@
+"""What is known of the span before it moves: static state, Den Hartog's criterion, frequencies, critical winds."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from engine.outcome import Outcome
+from engine.result.columns import Column
+from engine.spec import Model
+
+Direction = Literal["vertical", "horizontal", "torsional"]
+ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
+LoopsColumn = Annotated[int, Column("Loops per span", 1, unit="1")]
+OutcomeColumn = Annotated[Outcome, Column("How the computation ended", "converged")]
+
+
+@dataclass(frozen=True, slots=True)
+class StaticState:
+    """Static state of the span; in a study one row a point, after the values of the axes.
+
+    Theory section 2. The stiffness is the smaller of both ends.
+    """
+
+    horizontal_tension_n: Annotated[float, Column("Horizontal tension of one iced sub-conductor", 30000.0, unit="N")]
+    catenary_parameter_m: Annotated[float, Column("Tension over weight per length", 1285.46, unit="m")]
+    sag_m: Annotated[float, Column("Sag at mid-span", 1.5412, unit="m")]
+    longitudinal_stiffness_n_per_m: Annotated[
+        float | None, Column("Longitudinal stiffness of the supports; null at dead ends", 128460.7, unit="N/m")
+    ]
+    twist_rad: Annotated[
+        float | None, Column("Largest static twist of the sections; null where it is neglected", -0.75, unit="rad")
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class DenHartog:
+    """Den Hartog's criterion; in a study one row a point, after the values of the axes.
+
+    The coefficient a_y1 is the smallest on the span.
+    """
+
+    coefficient: Annotated[float, Column("dC_L/dalpha + C_D of one sub-conductor", -0.1667, unit="1/rad")]
+    unstable: Annotated[bool, Column("Whether the coefficient is negative; null if it is unknown", True)]
+
+
+@dataclass(frozen=True, slots=True)
+class FrequencyRow:
+    """Natural frequencies without wind, labelled by dominant direction.
+
+    They are None unless converged.
+    """
+
+    model: ModelColumn
+    loops: LoopsColumn
+    vertical_hz: Annotated[float | None, Column("Dominantly vertical", 0.4816, unit="Hz")]
+    horizontal_hz: Annotated[float | None, Column("Dominantly horizontal", 0.4460, unit="Hz")]
+    torsional_hz: Annotated[float | None, Column("Dominantly torsional", 0.6343, unit="Hz")]
+    outcome: OutcomeColumn = Outcome.CONVERGED
+
+
+@dataclass(frozen=True, slots=True)
+class InternalResonanceRow:
+    """How near two natural frequencies without wind are to a ratio of small integers."""
+
+    model: ModelColumn
+    loops: LoopsColumn
+    directions: Annotated[str, Column("Whose frequencies are compared, in this order", "horizontal:vertical")]
+    frequency_ratio: Annotated[float, Column("The first frequency over the second", 0.9261, unit="1")]
+    nearest_ratio: Annotated[str, Column("Nearest ratio of integers up to 3", "1:1")]
+    detuning: Annotated[float, Column("Frequency ratio over the nearest one, less 1", -0.0739, unit="1")]
+
+
+@dataclass(frozen=True, slots=True)
+class CriticalWindSpeedRow:
+    """A wind speed at which the resting span loses or regains stability.
+
+    Theory section 6: eigenvalues of the static state cross the imaginary axis.
+    """
+
+    model: ModelColumn
+    loops: LoopsColumn
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed of the crossing", 2.403, unit="m/s")]
+    crossing: Annotated[Literal["onset", "restabilization"], Column("Whether stability is lost or regained", "onset")]
+    type: Annotated[Literal["oscillation", "divergence"], Column("Whether what grows oscillates", "oscillation")]
+    direction: Annotated[Direction, Column("Dominant direction of what grows", "vertical")]
+    frequency_hz: Annotated[float, Column("0 for a divergence", 0.4816, unit="Hz")]
+    unstable_pairs_after: Annotated[int, Column("Unstable pairs of eigenvalues above this wind speed", 1, unit="1")]

@@ -1,0 +1,171 @@
+"""How the span moves: limit cycles, where they change, and what is said beside them."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from engine.outcome import Stability
+from engine.result.at_rest import LoopsColumn, ModelColumn, OutcomeColumn
+from engine.result.columns import Column
+
+FoundBy = Literal[
+    "hopf_branch", "explicit", "energy_balance", "direct_integration", "branch", "torus_point", "unstable_cycle"
+]
+BifurcationType = Literal["hopf", "fold", "torus", "period_doubling", "branch_point"]
+
+
+@dataclass(frozen=True)  # without slots, since a line has dozens of these, which orjson writes by their `__dict__`
+class LimitCycleRow:
+    """A motion at one wind speed; amplitudes are half of peak-to-peak.
+
+    The equilibrium or a cycle, theory section 8. The shares divide the mean kinetic energy between the directions.
+    """
+
+    model: ModelColumn
+    loops: LoopsColumn
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed", 4.0, unit="m/s")]
+    branch: Annotated[int | None, Column("Family of cycles; null for the equilibrium", 0)]
+    kind: Annotated[
+        Literal["equilibrium", "periodic", "quasi_periodic"], Column("Rest, or what kind of motion", "periodic")
+    ]
+    stability: Annotated[Stability, Column("Whether the motion lasts; unknown if it was not decided", "stable")]
+    frequency_hz: Annotated[float | None, Column("Frequency; null for the equilibrium", 0.4816, unit="Hz")]
+    second_frequency_hz: Annotated[float | None, Column("Of a quasi-periodic motion", None, unit="Hz")]
+    observed_at_m: Annotated[float, Column("Where the amplitudes hold, from the left support", 62.94, unit="m")]
+    vertical_m: Annotated[float | None, Column("Vertical amplitude", 0.1568, unit="m")]
+    horizontal_m: Annotated[float | None, Column("Horizontal amplitude", 0.0099, unit="m")]
+    torsional_rad: Annotated[float | None, Column("Torsional amplitude", 0.0020, unit="rad")]
+    vertical_min_m: Annotated[
+        float | None, Column("Smaller vertical amplitude of a quasi-periodic motion", None, unit="m")
+    ]
+    horizontal_min_m: Annotated[
+        float | None, Column("Smaller horizontal amplitude of a quasi-periodic motion", None, unit="m")
+    ]
+    torsional_min_rad: Annotated[
+        float | None, Column("Smaller torsional amplitude of a quasi-periodic motion", None, unit="rad")
+    ]
+    vertical_ratio: Annotated[float | None, Column("Vertical amplitude over the static sag", 0.1018, unit="1")]
+    horizontal_ratio: Annotated[float | None, Column("Horizontal amplitude over the static sag", 0.0064, unit="1")]
+    reduced_wind_speed: Annotated[float | None, Column("Wind speed over frequency and span", 0.066, unit="1")]
+    vertical_share: Annotated[
+        float | None, Column("Vertical share of the mean kinetic energy; null at rest", 0.9927, unit="1")
+    ]
+    horizontal_share: Annotated[
+        float | None, Column("Horizontal share of the mean kinetic energy; null at rest", 0.0034, unit="1")
+    ]
+    torsional_share: Annotated[
+        float | None, Column("Torsional share of the mean kinetic energy; null at rest", 0.0039, unit="1")
+    ]
+    found_by: Annotated[
+        FoundBy | None,
+        Column(
+            "How it was found: on the branch of a Hopf point, from the explicit formula, the balance of energy or "
+            "direct integration, on the branch of such a one; if quasi-periodic from a torus point or beside an "
+            "unstable cycle; null at rest",
+            "hopf_branch",
+        ),
+    ]
+    harmonics: Annotated[
+        int | None,
+        Column("Harmonics of the balance, of the cycle's frequency if quasi-periodic; null at rest", 5, unit="1"),
+    ]
+    residual: Annotated[
+        float | None, Column("Largest rest of the equations over the largest elastic force", 2.1e-13, unit="1")
+    ]
+    truncation: Annotated[
+        float | None, Column("Relative change of the amplitude with one harmonic more", 3.4e-8, unit="1")
+    ]
+    detuning_sensitivity: Annotated[
+        float | None,
+        Column("Relative change of the amplitude if the horizontal frequency rises by 0.1 %", -0.0031, unit="1"),
+    ]
+    direct_difference: Annotated[
+        float | None,
+        Column(
+            "Relative change of the amplitude in 50 periods of direct integration; null unless check is direct",
+            None,
+            unit="1",
+        ),
+    ]
+    outcome: OutcomeColumn
+
+
+@dataclass(frozen=True, slots=True)
+class BifurcationRow:
+    """A wind speed at which the kind or the number of motions changes."""
+
+    model: ModelColumn
+    loops: LoopsColumn
+    branch: Annotated[int, Column("Family of cycles", 0)]
+    type: Annotated[BifurcationType, Column("What happens there", "torus")]
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed", 6.82, unit="m/s")]
+    frequency_hz: Annotated[float, Column("Frequency of the motion there", 0.4816, unit="Hz")]
+    second_frequency_hz: Annotated[float | None, Column("Second frequency that begins there", 0.0121, unit="Hz")]
+    uncertainty_m_per_s: Annotated[float, Column("How well the place is known", 0.01, unit="m/s")]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelComparisonRow:
+    """A stable cycle of the hybrid model beside the nearest of the finite element model with as many loops.
+
+    The columns of the finite element model are None if it has no cycle of these loops.
+    """
+
+    loops: Annotated[int, Column("Loops per span", 2, unit="1")]
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed", 4.0, unit="m/s")]
+    branch: Annotated[int | None, Column("Family of the hybrid model's cycle", 0)]
+    hybrid_vertical_m: Annotated[float, Column("Vertical amplitude of the hybrid model", 0.0994, unit="m")]
+    hybrid_horizontal_m: Annotated[float, Column("Horizontal amplitude of the hybrid model", 0.3592, unit="m")]
+    hybrid_torsional_rad: Annotated[float, Column("Torsional amplitude of the hybrid model", 0.0145, unit="rad")]
+    finite_element_branch: Annotated[
+        int | None, Column("Family of the other cycle; null if there is none of these loops", 2)
+    ]
+    finite_element_stability: Annotated[Stability | None, Column("Whether it lasts", "stable")]
+    finite_element_vertical_m: Annotated[
+        float | None, Column("Vertical amplitude of the finite element model", 0.0776, unit="m")
+    ]
+    finite_element_horizontal_m: Annotated[
+        float | None, Column("Horizontal amplitude of the finite element model", 0.3038, unit="m")
+    ]
+    finite_element_torsional_rad: Annotated[
+        float | None, Column("Torsional amplitude of the finite element model", 0.0121, unit="rad")
+    ]
+    amplitude_difference: Annotated[
+        float | None, Column("Of sqrt(vertical^2 + horizontal^2), over the hybrid model's", -0.159, unit="1")
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class LoopCompetitionRow:
+    """A cycle of the hybrid model that is stable alone, when the other loops asked for may move too.
+
+    The factor is the largest modulus of the Floquet multipliers beside the trivial one.
+    """
+
+    loops: LoopsColumn
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed", 4.0, unit="m/s")]
+    branch: Annotated[int, Column("Family of the cycle", 0)]
+    stability: Annotated[Stability, Column("Whether it survives the other loops", "unstable")]
+    growing_loops: Annotated[
+        int | None, Column("Loops of what grows fastest or decays slowest; null if unknown", 2, unit="1")
+    ]
+    growth_per_cycle: Annotated[
+        float | None, Column("Factor of that motion a cycle; null if unknown", 1.0008, unit="1")
+    ]
+    vertical_m: Annotated[float | None, Column("Vertical amplitude among the other loops", 0.1303, unit="m")]
+    horizontal_m: Annotated[float | None, Column("Horizontal amplitude among the other loops", 0.0101, unit="m")]
+    torsional_rad: Annotated[float | None, Column("Torsional amplitude among the other loops", 0.0895, unit="rad")]
+    outcome: OutcomeColumn
+
+
+@dataclass(frozen=True, slots=True)
+class Orbit:
+    """Fourier coefficients of a cycle where it is observed, for pictures.
+
+    cycle is the index into `Result.limit_cycles`. vertical and horizontal [m] and torsional [rad] each hold
+    (mean, cos 1, sin 1, cos 2, sin 2, ...) of the base frequency.
+    """
+
+    cycle: int
+    vertical: tuple[float, ...]
+    horizontal: tuple[float, ...]
+    torsional: tuple[float, ...]

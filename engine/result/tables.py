@@ -1,0 +1,73 @@
+"""The registry of result tables: a field of `Tables` is a table, and everything else follows from its name and rows."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+from engine.result.at_rest import CriticalWindSpeedRow, DenHartog, FrequencyRow, InternalResonanceRow, StaticState
+from engine.result.columns import Table, Title, tables_of
+from engine.result.devices import DeviceEffectRow, PlacedDeviceRow
+from engine.result.motions import (
+    BifurcationRow,
+    LimitCycleRow,
+    LoopCompetitionRow,
+    ModelComparisonRow,
+    Orbit,
+)
+from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tables:
+    """Every table of flat rows that a result holds, in the order of the result document."""
+
+    frequencies: Annotated[tuple[FrequencyRow, ...], Title("Natural frequencies")] = ()
+    internal_resonances: Annotated[tuple[InternalResonanceRow, ...], Title("Ratios of the natural frequencies")] = ()
+    critical_wind_speeds: Annotated[
+        tuple[CriticalWindSpeedRow, ...],
+        Title("Wind speeds at which the resting span loses or regains stability"),
+    ] = ()
+    limit_cycles: Annotated[tuple[LimitCycleRow, ...], Title("Motions at every wind speed")] = ()
+    bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Changes of the motions over the wind speed")] = ()
+    model_comparisons: Annotated[
+        tuple[ModelComparisonRow, ...], Title("Stable cycles of the hybrid model beside the finite element model's")
+    ] = ()
+    loop_competitions: Annotated[
+        tuple[LoopCompetitionRow, ...],
+        Title("Stable cycles against the other loops; empty unless loop_competition is checked"),
+    ] = ()
+    device_effects: Annotated[
+        tuple[DeviceEffectRow, ...],
+        Title("Without and with devices; empty unless device_effect is reported or devices were placed"),
+    ] = ()
+    placements: Annotated[tuple[PlacedDeviceRow, ...], Title("Devices that a search has placed")] = ()
+    followed_cycles: Annotated[
+        tuple[FollowedCycleRow, ...],
+        Title("Cycles on branches over the field of a study; empty unless it has follow"),
+    ] = ()
+    followed_bifurcations: Annotated[
+        tuple[FollowedBifurcationRow, ...],
+        Title("Where those branches turn, begin or change, with the nearest value of the axis"),
+    ] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result(Tables):
+    """Everything that was found for one line."""
+
+    static: StaticState
+    den_hartog: DenHartog
+    orbits: tuple[Orbit, ...]
+    warnings: tuple[str, ...]
+    engine_version: str
+
+
+TABLES: Mapping[str, Table] = tables_of(Tables)
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far an analysis is: fraction from 0 to 1 and the step at hand in words."""
+
+    fraction: float
+    step: str
