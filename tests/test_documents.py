@@ -35,3 +35,9 @@ def test_links_of_a_page_lead_to_files_and_headings(page: Path) -> None:
         assert target.exists(), name
         if anchor or own:
             assert (anchor or own) in headings(target), f"{name}#{anchor or own}"
+
+
+def test_types_that_the_nomenclature_names_exist() -> None:
+    sources = "\n".join(path.read_text() for top in ("engine", "app") for path in (ROOT / top).rglob("*.py"))
+    named = re.findall(r"`([A-Z]\w+)`", (ROOT / "docs" / "nomenclature.md").read_text())
+    assert [name for name in named if not re.search(rf"^class {name}\b", sources, re.MULTILINE)] == []
