@@ -1,4 +1,4 @@
-"""The JSON that goes in and comes out, as pydantic models: names, units, bounds and examples of the contract."""
+"""The JSON that comes in, as pydantic models: names, units, bounds, defaults and examples of the fields."""
 
 from app.schemas.analysis import Analysis, Axis, JobRequest, Study, WindSpeedRange
 from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
