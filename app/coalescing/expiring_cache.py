@@ -1,4 +1,4 @@
-"""Answers that hold for some seconds, so that most requests cost no look at the database."""
+"""A cache whose entries expire after some seconds, so that most requests need no query of the database."""
 
 import asyncio
 import time
@@ -10,50 +10,50 @@ from anyio import to_thread
 
 _MOST_KEPT = 10_000
 
-Question = TypeVar("Question", bound=Hashable)
-Answer = TypeVar("Answer")
+Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True, slots=True)
-class _Kept(Generic[Answer]):
+class _Entry(Generic[Value]):
     until: float
-    answer: asyncio.Task[Answer]
+    value: asyncio.Task[Value]
 
 
-class Memo(Generic[Question, Answer]):
-    """Asks once, in a thread, what many want to know, and keeps the answer for some seconds unless it is falsy.
+class ExpiringCache(Generic[Key, Value]):
+    """Loads each value once, in a thread, and keeps it for some seconds unless it is falsy.
 
-    Who asks while a look is under way waits for that look.
+    Requests that need a value while it is being loaded wait for that load instead of starting another.
     """
 
-    def __init__(self, look: Callable[[Question], Answer], seconds: float) -> None:
-        """Take what finds an answer, and how long one holds from the moment at which it was asked for."""
-        self._look = look
+    def __init__(self, load: Callable[[Key], Value], seconds: float) -> None:
+        """Take the function that loads a value, and how long a value is kept, counted from the start of its load."""
+        self._load = load
         self._seconds = seconds
-        self._kept: dict[Question, _Kept[Answer]] = {}
+        self._entries: dict[Key, _Entry[Value]] = {}
 
-    def knows(self, question: Question) -> bool:
-        """Tell whether the answer is at hand, or on its way."""
-        kept = self._kept.get(question)
-        return kept is not None and kept.until > time.monotonic()
+    def holds(self, key: Key) -> bool:
+        """Tell whether a value is stored or being loaded."""
+        entry = self._entries.get(key)
+        return entry is not None and entry.until > time.monotonic()
 
-    async def ask(self, question: Question) -> Answer:
-        """Return the answer; whatever the look raises is raised, and not kept."""
-        if not self.knows(question):
-            if len(self._kept) >= _MOST_KEPT:
-                self._kept.clear()
-            task = asyncio.ensure_future(to_thread.run_sync(self._look, question))
-            self._kept[question] = _Kept(time.monotonic() + self._seconds, task)
-        kept = self._kept[question]
+    async def get(self, key: Key) -> Value:
+        """Return the value of a key; an exception of the load is raised and not kept."""
+        if not self.holds(key):
+            if len(self._entries) >= _MOST_KEPT:
+                self._entries.clear()
+            task = asyncio.ensure_future(to_thread.run_sync(self._load, key))
+            self._entries[key] = _Entry(time.monotonic() + self._seconds, task)
+        entry = self._entries[key]
         try:
-            answer = await asyncio.shield(kept.answer)  # one who leaves must not end a look for which others wait
+            value = await asyncio.shield(entry.value)  # a cancelled request must not cancel a load that others await
         except Exception:
-            self._forget(question, kept)
+            self._forget(key, entry)
             raise
-        if not answer:
-            self._forget(question, kept)
-        return answer
+        if not value:
+            self._forget(key, entry)
+        return value
 
-    def _forget(self, question: Question, kept: _Kept[Answer]) -> None:
-        if self._kept.get(question) is kept:
-            del self._kept[question]
+    def _forget(self, key: Key, entry: _Entry[Value]) -> None:
+        if self._entries.get(key) is entry:
+            del self._entries[key]

@@ -10,7 +10,7 @@ from sqlalchemy.exc import OperationalError, SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 from starlette import types
 
-from app.coalescing.expiring_cache import Memo
+from app.coalescing.expiring_cache import ExpiringCache
 from app.http import problems
 from app.http.problems import ProblemError, ProblemKind
 from app.runtime.loopback import is_loopback
@@ -44,8 +44,10 @@ class Gate:
         """Wrap an application."""
         self.app = app
         self._meter = meter
-        self._callers = Memo(partial(_look_up, readers, writers), settings.key_cache_seconds)
-        self._unguarded: Memo[str, bool] = Memo(lambda _: _is_unguarded(readers), settings.key_cache_seconds)
+        self._callers = ExpiringCache(partial(_look_up, readers, writers), settings.key_cache_seconds)
+        self._unguarded: ExpiringCache[str, bool] = ExpiringCache(
+            lambda _: _is_unguarded(readers), settings.key_cache_seconds
+        )
         self._reads = Quota("reads", settings.reads_per_minute)
         self._changes = Quota("changes", settings.changes_per_minute)
         self._strangers = Quota("strangers", settings.strangers_per_minute)
@@ -87,15 +89,15 @@ class Gate:
     async def _caller(self, scope: types.Scope, headers: Headers) -> Caller:
         text = _bearer(headers)
         if text is None:
-            if _asks_from_here(scope, headers) and await self._unguarded.ask(""):
+            if _asks_from_here(scope, headers) and await self._unguarded.get(""):
                 return LOCAL
             said = "Send a key as Authorization: Bearer; a service without keys answers its own machine only."
             raise _refused(ProblemKind.UNAUTHENTICATED, said)
         digest = keys.digest_of(text)
-        if not self._callers.knows(digest):
+        if not self._callers.holds(digest):
             # What is not remembered costs a look at the database, so whoever makes many of those is slowed down.
             await self._take(self._strangers, str((scope.get("client") or ("",))[0]))
-        caller = await self._callers.ask(digest)
+        caller = await self._callers.get(digest)
         if caller is None:
             said = "The key is unknown, revoked or expired."
             raise _refused(ProblemKind.UNAUTHENTICATED, said, error="invalid_token")
