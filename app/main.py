@@ -10,7 +10,7 @@ from sqlalchemy import Engine
 from starlette.types import ASGIApp
 
 from app.coalescing.grouped_calls import Groups, committed_together
-from app.coalescing.shared_watch import Watch
+from app.coalescing.shared_watch import SharedWatch
 from app.convert import ENGINE_VERSION
 from app.http import problems
 from app.http.head_as_get import HeadAsGet
@@ -127,5 +127,5 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.inbox = Groups("inbox", accepted, _GATHERING_SECONDS)
     app.state.dispatcher = Dispatcher(app.state.sender, settings.sweep_seconds / _NOTES_A_SWEEP)
     app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
-    app.state.job_watch = Watch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
-    app.state.batch_watch = Watch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)
+    app.state.job_watch = SharedWatch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
+    app.state.batch_watch = SharedWatch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)

@@ -1,4 +1,4 @@
-"""Jobs and batches watched for all who wait for a change, with one look at the database for everybody."""
+"""Jobs and batches watched on behalf of all requests that wait for a change: one query for all of them."""
 
 import asyncio
 import logging
@@ -17,25 +17,25 @@ _logger = logging.getLogger(__name__)
 
 @dataclass
 class _Watched(Generic[State]):
-    """What was seen last, None if there is nothing; `changed` is set, and replaced, at every change."""
+    """The last state, None if the subject does not exist; `changed` is set, and replaced, at every change."""
 
     state: State | None = None
-    seen: bool = False
+    queried: bool = False
     followers: int = 0
     changed: asyncio.Event = field(default_factory=asyncio.Event)
 
 
-class Watch(Generic[Subject, State]):
-    """Looks at all watched subjects every so often, so that who waits holds neither a thread nor a connection."""
+class SharedWatch(Generic[Subject, State]):
+    """Queries all watched subjects at an interval, so that a waiting request holds no thread and no connection."""
 
     def __init__(
-        self, name: str, look: Callable[[Mapping[Subject, State | None]], Mapping[Subject, State]], seconds: float
+        self, name: str, query: Callable[[Mapping[Subject, State | None]], Mapping[Subject, State]], seconds: float
     ) -> None:
-        """Take the function that looks, called in a thread of this object's own, and the seconds between two looks.
+        """Take the query, which is called in a thread of this object's own, and the seconds between two queries.
 
-        It is given what was seen of each subject before, and returns the states of those that there are.
+        The query gets the last state of each subject and returns the states of those that exist.
         """
-        self._look = look
+        self._query = query
         self._seconds = seconds
         self._thread = ThreadPoolExecutor(1, thread_name_prefix=name)
         self._watched: dict[Subject, _Watched[State]] = {}
@@ -43,14 +43,14 @@ class Watch(Generic[Subject, State]):
         self._released = False
 
     async def follow(self, subject: Subject) -> AsyncGenerator[State]:
-        """Yield the state of a subject and then every other one that is seen, until it is gone or all are released."""
+        """Yield the current state, then every change, until the subject disappears or `release` is called."""
         watched = self._watched.setdefault(subject, _Watched())
         watched.followers += 1
         if self._work is None:
-            self._work = asyncio.create_task(self._look_on())
+            self._work = asyncio.create_task(self._query_repeatedly())
         last: State | None = None
         try:
-            while not self._released and not (watched.seen and watched.state is None):
+            while not self._released and not (watched.queried and watched.state is None):
                 changed = watched.changed
                 if watched.state is not None and watched.state != last:
                     last = watched.state
@@ -63,35 +63,35 @@ class Watch(Generic[Subject, State]):
                 del self._watched[subject]
 
     def release(self) -> None:
-        """Let all go who follow, and those who come later."""
+        """End all iterations of `follow`, present and future."""
         self._released = True
         for watched in self._watched.values():
             watched.changed.set()
 
     async def close(self) -> None:
-        """End the thread; nobody may follow any more."""
+        """End the thread; `follow` must not be called any more."""
         if self._work is not None:
             self._work.cancel()
         self._thread.shutdown()
 
-    async def _look_on(self) -> None:
+    async def _query_repeatedly(self) -> None:
         loop = asyncio.get_running_loop()
         try:
             while self._watched:
                 before = {subject: watched.state for subject, watched in self._watched.items()}
                 try:
-                    self._note(before, await loop.run_in_executor(self._thread, self._look, before))
+                    self._update(before, await loop.run_in_executor(self._thread, self._query, before))
                 except SQLAlchemyError as error:
-                    _logger.warning("the database failed, to be looked at again: %s", error)
+                    _logger.warning("the database failed and is queried again: %s", error)
                 await asyncio.sleep(self._seconds)
         finally:
             self._work = None
 
-    def _note(self, before: Mapping[Subject, State | None], found: Mapping[Subject, State]) -> None:
+    def _update(self, before: Mapping[Subject, State | None], found: Mapping[Subject, State]) -> None:
         for subject in before:
             watched = self._watched.get(subject)
-            if watched is None or (watched.seen and watched.state == found.get(subject)):
+            if watched is None or (watched.queried and watched.state == found.get(subject)):
                 continue
-            watched.state, watched.seen = found.get(subject), True
+            watched.state, watched.queried = found.get(subject), True
             watched.changed.set()
             watched.changed = asyncio.Event()

@@ -16,7 +16,7 @@ from uuid_utils.compat import uuid7
 from app.runtime import correlation
 from app.runtime.correlation import Ids
 from app.security import audit
-from app.security.caller import Caller
+from app.security.caller import Caller, Owned
 from app.storage import counters
 from app.storage.database import database_time, insert_rows
 from app.tables import AuditAction, BatchItem, FailureKind, Job, JobEvent, JobEventKind, JobStatus, JobTag
@@ -166,12 +166,13 @@ def get(session: Session, owner: str, job_id: UUID) -> Job | None:
     return session.scalars(_of(owner, job_id)).one_or_none()
 
 
-def look_up(sessions: sessionmaker[Session], job_ids: Sequence[UUID]) -> list[Job | None]:
-    """Return the jobs of these ids, whoever owns them, with their tags and without their documents."""
-    statement = select(Job).where(Job.id.in_(job_ids)).options(defer(Job.document, raiseload=True))
+def look_up(sessions: sessionmaker[Session], wanted: Sequence[Owned]) -> list[Job | None]:
+    """Return jobs with their tags and without their documents, None where the owner has none of that id."""
+    statement = select(Job).where(tuple_(Job.owner, Job.id).in_(wanted))
     with sessions() as session:
-        found = {job.id: job for job in session.scalars(statement)}
-    return [found.get(job_id) for job_id in job_ids]
+        jobs = session.scalars(statement.options(defer(Job.document, raiseload=True)))
+        found = {Owned(job.owner, job.id): job for job in jobs}
+    return [found.get(key) for key in wanted]
 
 
 def page(

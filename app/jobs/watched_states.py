@@ -1,15 +1,16 @@
-"""What a look at watched jobs and batches sees."""
+"""The states of watched jobs and batches. The query names the owner of each, so that another's is missing."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime
 from uuid import UUID
 
-from sqlalchemy import select
+from sqlalchemy import select, tuple_
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import batch_progress
 from app.jobs.batch_progress import Counts
+from app.security.caller import Owned
 from app.tables import ENDED, Batch, Job, JobEvent, JobEventKind, JobStatus
 
 
@@ -26,9 +27,8 @@ class Happening:
 
 @dataclass(frozen=True, slots=True)
 class JobSeen:
-    """A job as it is, and everything that has happened to it."""
+    """The state of a job and its events so far."""
 
-    owner: str
     status: JobStatus
     attempt: int
     cancel_requested: bool
@@ -44,9 +44,8 @@ class JobSeen:
 
 @dataclass(frozen=True, slots=True)
 class BatchSeen:
-    """A batch as it is."""
+    """The state of a batch."""
 
-    owner: str
     rejected_lines: int
     counts: Counts
 
@@ -56,23 +55,23 @@ class BatchSeen:
         return self.counts.status in ENDED
 
 
-def jobs_seen(readers: sessionmaker[Session], before: Mapping[UUID, JobSeen | None]) -> dict[UUID, JobSeen]:
-    """Look at jobs; the events are read only of those that have changed otherwise."""
-    columns = Job.id, Job.owner, Job.status, Job.attempt, Job.cancel_requested, Job.progress, Job.step
+def jobs_seen(readers: sessionmaker[Session], before: Mapping[Owned, JobSeen | None]) -> dict[Owned, JobSeen]:
+    """Return the states of jobs; the events are read only of those that have changed otherwise."""
+    columns = Job.owner, Job.id, Job.status, Job.attempt, Job.cancel_requested, Job.progress, Job.step
     with readers() as session:
-        rows = session.execute(select(*columns).where(Job.id.in_(before)))
-        found = {row[0]: JobSeen(*row[1:]) for row in rows}
-        events = _events(session, [job_id for job_id, job in found.items() if _stage(job) != _stage(before[job_id])])
-    return {job_id: replace(job, events=_of(before[job_id], events.get(job_id))) for job_id, job in found.items()}
+        rows = session.execute(select(*columns).where(tuple_(Job.owner, Job.id).in_(before)))
+        found = {Owned(*row[:2]): JobSeen(*row[2:]) for row in rows}
+        events = _events(session, [key.id for key, job in found.items() if _stage(job) != _stage(before[key])])
+    return {key: replace(job, events=_of(before[key], events.get(key.id))) for key, job in found.items()}
 
 
-def batches_seen(readers: sessionmaker[Session], before: Mapping[UUID, BatchSeen | None]) -> dict[UUID, BatchSeen]:
-    """Look at batches that have come in whole."""
-    wanted = select(Batch.id, Batch.owner, Batch.rejected_lines)
+def batches_seen(readers: sessionmaker[Session], before: Mapping[Owned, BatchSeen | None]) -> dict[Owned, BatchSeen]:
+    """Return the states of batches that are wholly received."""
+    wanted = select(Batch.owner, Batch.id, Batch.rejected_lines).where(Batch.received_at.is_not(None))
     with readers() as session:
-        rows = session.execute(wanted.where(Batch.id.in_(before), Batch.received_at.is_not(None))).all()
+        rows = session.execute(wanted.where(tuple_(Batch.owner, Batch.id).in_(before))).all()
         counts = batch_progress.counts(session, [row.id for row in rows])
-    return {row.id: BatchSeen(row.owner, row.rejected_lines, counts[row.id]) for row in rows}
+    return {Owned(row.owner, row.id): BatchSeen(row.rejected_lines, counts[row.id]) for row in rows}
 
 
 def _stage(job: JobSeen | None) -> tuple[object, ...]:

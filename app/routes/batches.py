@@ -28,6 +28,7 @@ from app.routes.common import RETRY_SECONDS, CallerOf, Readers, SenderOf, Settin
 from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
 from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
 from app.runtime.settings import cursor_key
+from app.security.caller import Owned
 from app.tables import ENDED
 
 router = APIRouter(prefix=BATCHES, tags=["batches"])
@@ -37,7 +38,7 @@ _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
 
 async def _waited(batch_id: UUID, caller: CallerOf, watch: BatchWatch, wait: Wait) -> int | None:
     """Wait as long as is asked for, and return how long that is."""
-    await wait_for_end(watch, caller, batch_id, wait)
+    await wait_for_end(watch, Owned(caller.owner, batch_id), wait)
     return wait
 
 

@@ -17,7 +17,7 @@ from app.jobs.job_records import Draft
 from app.runtime.settings import Settings
 from app.schemas.faults import Fault
 from app.security import webhook_addresses
-from app.security.caller import Caller
+from app.security.caller import Caller, Owned
 from app.security.webhook_addresses import RefusedAddress
 from app.tables import Job, JobStatus
 
@@ -61,7 +61,7 @@ SenderOf = Annotated[Sender, Depends(_sender)]
 CallerOf = Annotated[Caller, Depends(_caller)]
 
 
-async def find_status(statuses: Groups[UUID, Job | None], caller: Caller, job_id: UUID) -> Job:
+async def find_status(statuses: Groups[Owned, Job | None], caller: Caller, job_id: UUID) -> Job:
     """Return a job of the caller's owner with all but its document.
 
     Raises
@@ -69,8 +69,8 @@ async def find_status(statuses: Groups[UUID, Job | None], caller: Caller, job_id
     ProblemError
         404 if the owner has none of that id, whoever else may have one.
     """
-    job = await statuses.ask(job_id)
-    if job is None or job.owner != caller.owner:
+    job = await statuses.ask(Owned(caller.owner, job_id))
+    if job is None:
         raise _no_job(job_id)
     return job
 

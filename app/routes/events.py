@@ -18,6 +18,7 @@ from app.routes import documentation
 from app.routes.batch_common import find_batch, line_counts
 from app.routes.common import PREFIX, CallerOf, Readers, find_job
 from app.routes.waiting import BatchWatch, JobWatch
+from app.security.caller import Owned
 from app.tables import ENDED, JobEvent, JobEventKind
 
 router = APIRouter(prefix=PREFIX)
@@ -75,13 +76,13 @@ def _event_of_batch(batch_id: UUID, caller: CallerOf, readers: Readers, last_eve
 
 @router.get("/jobs/{job_id}/events", response_class=EventSourceResponse, responses=_STREAM, tags=["jobs"])
 async def job_events(
-    job_id: UUID, watch: JobWatch, last: Annotated[int, Depends(_event_of_job)]
+    job_id: UUID, caller: CallerOf, watch: JobWatch, last: Annotated[int, Depends(_event_of_job)]
 ) -> AsyncIterator[ServerSentEvent]:
     """Send what happens to a job: an event with an id for every change of its state, and its progress between them.
 
     A client that comes back with `Last-Event-ID` gets what it has missed. The stream ends with the final state.
     """
-    async with aclosing(watch.follow(job_id)) as states:
+    async with aclosing(watch.follow(Owned(caller.owner, job_id))) as states:
         async for job in states:
             for happening in job.events:
                 if happening.id > last:
@@ -95,10 +96,10 @@ async def job_events(
 
 @router.get("/batches/{batch_id}/events", response_class=EventSourceResponse, responses=_STREAM, tags=["batches"])
 async def batch_events(
-    batch_id: UUID, watch: BatchWatch, last: Annotated[str, Depends(_event_of_batch)]
+    batch_id: UUID, caller: CallerOf, watch: BatchWatch, last: Annotated[str, Depends(_event_of_batch)]
 ) -> AsyncIterator[ServerSentEvent]:
     """Send the state of a batch and the counts of its lines whenever they change, until nothing waits or runs."""
-    async with aclosing(watch.follow(batch_id)) as states:
+    async with aclosing(watch.follow(Owned(caller.owner, batch_id))) as states:
         async for batch in states:
             if _batch_event_id(batch.counts) != last:
                 yield _counted(batch)

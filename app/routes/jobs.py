@@ -39,6 +39,7 @@ from app.routes.once import KEY_PROBLEMS, KeyOf, as_kept, first_answer
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import cursor_key
 from app.schemas.fields import Label
+from app.security.caller import Owned
 from app.tables import ENDED, JobStatus
 
 router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
@@ -174,7 +175,7 @@ async def status(request: Request, job_id: UUID, wait: Wait) -> JSONResponse:
     statuses, caller = request.app.state.statuses, request.state.caller
     job = await find_status(statuses, caller, job_id)
     if wait and job.status not in ENDED:
-        await wait_for_end(request.app.state.job_watch, caller, job_id, wait)
+        await wait_for_end(request.app.state.job_watch, Owned(caller.owner, job_id), wait)
         job = await find_status(statuses, caller, job_id)
     headers = applied(wait) if job.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
     return JSONResponse(job_document(job), headers=headers)

@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 from uuid import UUID
 
 OWNER_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,63}")
@@ -24,6 +25,13 @@ class Caller:
     owner: str
     scopes: frozenset[Scope]
     key_id: UUID | None = None
+
+
+class Owned(NamedTuple):
+    """A job or batch of an owner by its id; the same id of another owner is missing."""
+
+    owner: str
+    id: UUID
 
 
 LOCAL = Caller("local", frozenset(Scope))

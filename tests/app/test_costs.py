@@ -22,7 +22,7 @@ from app.jobs.submissions import Order
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.schemas import JobRequest
-from app.security.caller import LOCAL
+from app.security.caller import LOCAL, Owned
 from engine import clearance, spec
 from tests.app.lines import SHORT, changed
 from tests.documents import create_job, point_result, short_request
@@ -59,7 +59,7 @@ def test_looks_at_jobs_are_two_statements_however_many_come_together(sessions: s
         made = [create_job(session, LOCAL, short_request(), tags={"n": str(n)}).id for n in range(40)]
     for ids in (made[:1], made):
         with counted() as statements:
-            found = job_records.look_up(sessions, ids)
+            found = job_records.look_up(sessions, [Owned(LOCAL.owner, job_id) for job_id in ids])
         assert [job and job.id for job in found] == ids
         assert len(statements) == 2
         assert not any("document" in text for text in statements)

@@ -5,39 +5,39 @@ from contextlib import aclosing
 
 from sqlalchemy.exc import OperationalError
 
-from app.coalescing.shared_watch import Watch
+from app.coalescing.shared_watch import SharedWatch
 
 Seen = Mapping[int, str | None]
 
 
 class Table:
-    """What there is to be seen, and how often somebody has looked."""
+    """The states that exist, and the queries that were made."""
 
     def __init__(self, **states: str) -> None:
         self.states: dict[int, str] = {int(name[1:]): state for name, state in states.items()}
-        self.looks: list[set[int]] = []
+        self.queries: list[set[int]] = []
         self.faults = 0
 
-    def look(self, before: Seen) -> dict[int, str]:
-        self.looks.append(set(before))
+    def query(self, before: Seen) -> dict[int, str]:
+        self.queries.append(set(before))
         if self.faults:
             self.faults -= 1
             raise OperationalError("SELECT", {}, Exception("gone"))
         return {number: state for number, state in self.states.items() if number in before}
 
 
-async def first(watch: Watch[int, str], subject: int) -> str | None:
+async def first(watch: SharedWatch[int, str], subject: int) -> str | None:
     async with aclosing(watch.follow(subject)) as states:
         async for state in states:
             return state
     return None
 
 
-def test_every_change_arrives_and_what_is_gone_ends() -> None:
+def test_every_change_arrives_until_the_subject_disappears() -> None:
     table = Table(n1="a")
 
     async def main() -> list[str]:
-        watch = Watch("test", table.look, 0.01)
+        watch = SharedWatch("test", table.query, 0.01)
         seen: list[str] = []
         async with aclosing(watch.follow(1)) as states:
             async for state in states:
@@ -52,9 +52,9 @@ def test_every_change_arrives_and_what_is_gone_ends() -> None:
     assert asyncio.run(main()) == ["a", "b"]
 
 
-def test_what_there_is_not_ends_at_once() -> None:
+def test_a_subject_that_does_not_exist_ends_at_once() -> None:
     async def main() -> str | None:
-        watch = Watch("test", Table().look, 0.01)
+        watch = SharedWatch("test", Table().query, 0.01)
         found = await first(watch, 5)
         await watch.close()
         return found
@@ -62,11 +62,11 @@ def test_what_there_is_not_ends_at_once() -> None:
     assert asyncio.run(main()) is None
 
 
-def test_many_who_wait_share_one_look_and_one_thread() -> None:
+def test_followers_share_one_query_and_one_thread() -> None:
     table = Table(n1="a", n2="a")
 
     async def main() -> int:
-        watch = Watch("test", table.look, 0.01)
+        watch = SharedWatch("test", table.query, 0.01)
 
         async def wait_for_b(subject: int) -> None:
             async with aclosing(watch.follow(subject)) as states:
@@ -75,7 +75,7 @@ def test_many_who_wait_share_one_look_and_one_thread() -> None:
                         return
 
         waiting = [asyncio.create_task(wait_for_b(1 + number % 2)) for number in range(500)]
-        while not table.looks:
+        while not table.queries:
             await asyncio.sleep(0.01)
         threads = threading.active_count()
         table.states = {1: "b", 2: "b"}
@@ -85,32 +85,32 @@ def test_many_who_wait_share_one_look_and_one_thread() -> None:
 
     before = threading.active_count()
     assert asyncio.run(main()) <= before + 1
-    assert {frozenset(look) for look in table.looks} == {frozenset({1, 2})}
+    assert {frozenset(query) for query in table.queries} == {frozenset({1, 2})}
 
 
-def test_nobody_is_looked_at_when_nobody_waits() -> None:
+def test_nothing_is_queried_when_nobody_follows() -> None:
     table = Table(n1="a")
 
     async def main() -> int:
-        watch = Watch("test", table.look, 0.001)
+        watch = SharedWatch("test", table.query, 0.001)
         await first(watch, 1)
         await asyncio.sleep(0.05)
-        looks = len(table.looks)
+        queries = len(table.queries)
         await asyncio.sleep(0.05)
-        assert len(table.looks) == looks
+        assert len(table.queries) == queries
         assert await first(watch, 1) == "a"
         await watch.close()
-        return len(table.looks) - looks
+        return len(table.queries) - queries
 
     assert asyncio.run(main()) >= 1
 
 
-def test_a_database_that_fails_is_looked_at_again() -> None:
+def test_a_database_that_fails_is_queried_again() -> None:
     table = Table(n1="a")
     table.faults = 2
 
     async def main() -> str | None:
-        watch = Watch("test", table.look, 0.01)
+        watch = SharedWatch("test", table.query, 0.01)
         found = await first(watch, 1)
         await watch.close()
         return found
@@ -118,9 +118,9 @@ def test_a_database_that_fails_is_looked_at_again() -> None:
     assert asyncio.run(main()) == "a"
 
 
-def test_all_are_let_go_at_once() -> None:
+def test_release_ends_all_followers() -> None:
     async def main() -> list[list[str]]:
-        watch = Watch("test", Table(n1="a").look, 0.01)
+        watch = SharedWatch("test", Table(n1="a").query, 0.01)
 
         async def follow() -> list[str]:
             async with aclosing(watch.follow(1)) as states:

@@ -7,9 +7,10 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import job_records, leases
 from app.jobs.job_records import CancelOutcome, JobFilters
-from app.security.caller import LOCAL
+from app.security.caller import LOCAL, Owned
 from app.tables import Job, JobEvent, JobStatus, JobTag, PointRow
 from tests.documents import STRANGER, add_job, create_job, history, look, point_result
+from tests.statements import counted
 
 DOCUMENT = {"line": {"b": 1.5, "a": "é"}, "analysis": {"loops": [1]}}
 
@@ -44,6 +45,17 @@ def test_job_tags_and_event_are_one_transaction(sessions: sessionmaker[Session])
     with sessions() as session:
         counts = [session.scalar(select(func.count()).select_from(table)) for table in (Job, JobTag, JobEvent)]
     assert counts == [0, 0, 0]
+
+
+def test_looking_up_a_job_names_its_owner_in_the_query(sessions: sessionmaker[Session]) -> None:
+    job_id = add_job(sessions)
+    with counted() as statements:
+        theirs, mine = job_records.look_up(sessions, [Owned(STRANGER.owner, job_id), Owned(LOCAL.owner, job_id)])
+    assert theirs is None and mine is not None and mine.id == job_id
+    with counted() as alone:
+        assert job_records.look_up(sessions, [Owned(STRANGER.owner, job_id)]) == [None]
+    assert all("(jobs.owner, jobs.id) IN" in found[0] for found in (statements, alone))
+    assert (len(statements), len(alone)) == (2, 1)  # no row came back, so no tags were read
 
 
 def test_input_hash_knows_values_but_not_the_order_of_fields() -> None:
