@@ -22,6 +22,7 @@ from engine.cycles.harmonic_balance import balance, half_peak_to_peak, select, s
 from engine.cycles.search import Cycles, explicit_starts, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
+from engine.progress import finished
 from engine.result import Result
 from engine.spec import Analysis, Line, Model
 
@@ -178,13 +179,7 @@ def analysed(lines: Sequence[Line], analysis: Analysis) -> list[Result]:
     """Run the standard job on lines, one stack after another."""
     results: list[Result] = []
     for first in range(0, len(lines), STACK):
-        steps = analyse_stack(lines[first : first + STACK], analysis)
-        while True:
-            try:
-                next(steps)
-            except StopIteration as stop:
-                results += stop.value
-                break
+        results += finished(analyse_stack(lines[first : first + STACK], analysis))
     return results
 
 

@@ -64,7 +64,7 @@ def ends(lines: Sequence[Line], seed: int, winds: Sequence[float] = WINDS, longe
     runs = integrate_until_settled(
         model, np.repeat(member, each), np.repeat(wind, each), starts.reshape(-1, 6), longest
     )
-    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1)) / seen
+    weight = np.sqrt(model.modal_masses) / seen
     cases = [Case(i // 2 + 1, LOOPS[i % 2], u, weight[i]) for i, u in zip(member.tolist(), wind.tolist(), strict=True)]
     scale = np.tile(seen, 2)[np.repeat(member, each)]
     size = np.where(runs.at_rest[:, None], 0.0, runs.size * scale)

@@ -17,6 +17,7 @@ from engine.models.discretization import Discretization
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, with_published_load
 from engine.models.reduced_model import ReducedModel, take
+from engine.progress import finished
 from engine.result import LimitCycleRow, Result
 from engine.spec import (
     Aerodynamics,
@@ -110,13 +111,7 @@ def finite_element(line: Line, loops: tuple[int, ...] = (1, 2, 3), analysis: Ana
 
 def run(line: Line, analysis: Analysis) -> Result:
     """Analyse a line and drop the progress."""
-    steps = analyse(line, analysis)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
+    return finished(analyse(line, analysis))
 
 
 def only(model: Model, **changes: object) -> Analysis:

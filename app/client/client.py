@@ -155,7 +155,8 @@ class Client:
     def rows(self, job: JobDocument, table: TableName) -> list[Json]:
         """Return the rows of one table of an ended job."""
         found: dict[str, list[Json]] = json.loads(self.download(job, f"results/{table}?format=json"))
-        return next(iter(found.values()))
+        (only,) = found.values()
+        return only
 
     def frame(self, job: JobDocument, table: TableName) -> "pd.DataFrame":
         """Return one table of an ended job as a data frame; needs pandas (`galloping[pandas]`)."""
@@ -221,7 +222,7 @@ class Client:
 
 
 def _address(job: JobDocument | BatchDocument) -> str:
-    return next(link.href for link in job.links if link.rel == "self")
+    return {link.rel: link.href for link in job.links}["self"]
 
 
 def _from_start(upload: Upload) -> IO[bytes]:

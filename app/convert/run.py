@@ -15,7 +15,8 @@ from app.convert.assemble import SoundParts, gather
 from app.convert.ranking_figures import peaks
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
-from engine.result import TABLES, Progress, Result
+from engine.progress import Progress, translated
+from engine.result import TABLES, Result
 
 _NO_ROWS = orjson.dumps({name: [] for name in TABLES})
 
@@ -147,14 +148,9 @@ def _point(
 ) -> Iterator[Advance | _Solved | PointResult]:
     try:
         line, analysis = specification(request, values)
-        progress = _steps(request.placement, line, analysis)
-        while True:
-            try:
-                step = next(progress)
-            except StopIteration as end:
-                yield _Solved(number, values, line, end.value)
-                return
-            yield Advance(step.fraction, step.step)
+        steps = _steps(request.placement, line, analysis)
+        result = yield from translated(steps, lambda step: Advance(step.fraction, step.step))
+        yield _Solved(number, values, line, result)
     except (ArithmeticError, ValueError) as error:  # both also cover numpy's, and what a specification raises
         if request.study is None:
             raise

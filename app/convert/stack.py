@@ -15,6 +15,7 @@ from app.convert.run import Advance, PointResult, failed_point, point_results
 from app.schemas.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.outcome import InvalidSpec
+from engine.progress import finished
 
 STACK = 128  # lines side by side: fewer share too little of the work between them, more gain nothing
 _LINE, _ANALYSIS = "/line", "/analysis"
@@ -159,13 +160,7 @@ def _stack_results(stack: Sequence[_Made]) -> Iterator[PointResult]:
     from engine.analysis import analyse_stack  # noqa: PLC0415 - the API and `galloping --help` need no solver
 
     try:
-        progress = analyse_stack([line for _, line, _ in stack], stack[0][2])
-        while True:
-            try:
-                next(progress)
-            except StopIteration as end:
-                results = end.value
-                break
+        results = finished(analyse_stack([line for _, line, _ in stack], stack[0][2]))
     except (ArithmeticError, ValueError, LookupError, TypeError) as error:
         if len(stack) > 1:
             for single in stack:

@@ -70,7 +70,7 @@ def _drafts(session: Session, orders: Sequence[Order]) -> list[_Drafted]:
     now = database_time(session)
     asked = [(order.submission.caller.owner, order.submission.document) for order in orders if order.may_reuse]
     sources = iter(reuse.find(session, asked, ENGINE_VERSION))
-    return [_drafted(order, now, next(sources) if order.may_reuse else None) for order in orders]
+    return [_drafted(order, now, next(sources, None) if order.may_reuse else None) for order in orders]
 
 
 def _drafted(order: Order, now: datetime, source: Source | None) -> _Drafted:

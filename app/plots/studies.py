@@ -4,6 +4,7 @@ import math
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any, Literal
 
 from matplotlib.axes import Axes
@@ -61,14 +62,14 @@ def study(title: str, studies: Mapping[str, Study], extension: Extension, abscis
     abscissa : {"reduced", "parameter"}
         Whether damping, tension, length and wind speed are shown as the source's ratios or in their own units.
     """
-    first = next(iter(studies.values()))
+    first, *_ = studies.values()
     if len(first.axes) > 1:
         return drawn(lambda: map_figure(title, first.axes, first.found), extension)
     return drawn(lambda: _study_figure(title, studies, abscissa), extension)
 
 
 def _study_figure(title: str, studies: Mapping[str, Study], abscissa: Abscissa) -> Figure:
-    first = next(iter(studies.values()))
+    first, *_ = studies.values()
     found = list(curves(studies, abscissa))
     loops = sorted({count for one in studies.values() for count in loops_and_models(one.found)[0]})
     figure = Figure(figsize=(10.5, 1.5 + 2.5 * len(loops)), layout="constrained")
@@ -114,17 +115,16 @@ def _label(axes: Sequence[str], abscissa: Abscissa) -> str:
 def curves(studies: Mapping[str, Study], abscissa: Abscissa) -> Iterator[Curve]:
     """Yield the cycles of each study by model, and by wind speed unless that is what varies."""
     speeds = sorted({row["wind_speed_m_per_s"] for one in studies.values() for row in _lasting(one)})
-    colours = iter(_PALETTE * (1 + len(studies) * len(speeds) // len(_PALETTE)))
-    for number, (name, one) in enumerate(studies.items()):
-        where, size = _places(one, abscissa), _SIZES[number % len(_SIZES)]
-        for speed in speeds if one.axes else [None]:
-            colour = next(colours)
-            parts = [name, f"{speed:g} m/s" if speed is not None and len(speeds) > 1 else ""]
-            rows = [row for row in _lasting(one) if speed is None or row["wind_speed_m_per_s"] == speed]
-            for model in NAMES:
-                points = [(where(row), row) for row in rows if row["model"] == model and where(row) is not None]
-                if points:
-                    yield Curve(", ".join(part for part in parts if part), colour, size, model, points)
+    sizes = dict(zip(studies, cycle(_SIZES), strict=False))
+    shown = [(name, one, speed) for name, one in studies.items() for speed in (speeds if one.axes else [None])]
+    for colour, (name, one, speed) in zip(cycle(_PALETTE), shown, strict=False):
+        where = _places(one, abscissa)
+        parts = [name, f"{speed:g} m/s" if speed is not None and len(speeds) > 1 else ""]
+        rows = [row for row in _lasting(one) if speed is None or row["wind_speed_m_per_s"] == speed]
+        for model in NAMES:
+            points = [(where(row), row) for row in rows if row["model"] == model and where(row) is not None]
+            if points:
+                yield Curve(", ".join(part for part in parts if part), colour, sizes[name], model, points)
 
 
 def _lasting(study: Study) -> list[Row]:

@@ -159,7 +159,7 @@ def request_of_point(session: Session, job: Job, point: int) -> tuple[Mapping[st
     if job.batch_id is None:
         return job.document, point
     analysis, lines = batch_records.lines_of_chunk(session, job.id, job.batch_id)
-    return {"line": next(line.document for line in lines if line.number == point), "analysis": analysis}, 0
+    return {"line": {line.number: line.document for line in lines}[point], "analysis": analysis}, 0
 
 
 def _parquet(job: Job, name: str, rows: Rows) -> Iterator[bytes]:

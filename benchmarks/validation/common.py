@@ -8,6 +8,7 @@ from typing import Any
 
 from benchmarks.lines import source_line
 from engine.analysis import analyse
+from engine.progress import finished
 from engine.result import Result
 from engine.spec import Analysis, Line
 
@@ -25,13 +26,7 @@ def source_results() -> Mapping[int, Result]:
 
 def result(line: Line, analysis: Analysis) -> Result:
     """Analyse a line and drop the progress."""
-    steps = analyse(line, analysis)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as stop:
-            found: Result = stop.value
-            return found
+    return finished(analyse(line, analysis))
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:

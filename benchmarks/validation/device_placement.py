@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from benchmarks.lines import source_line
 from benchmarks.validation.common import SUBCONDUCTORS, table
+from engine.progress import finished
 from engine.result import Result
 from engine.spec import Analysis, Model, Objective, PendulumChoice, Placement
 from engine.studies.placement import place
@@ -41,10 +42,6 @@ def _pair(without: float | None, fitted: float | None) -> str:
 
 
 def _placed(subconductors: int, objective: Objective) -> Result:
-    steps = place(source_line(subconductors), ASKED, Placement(CHOICE, objective, generations=12, population=16))
-    while True:
-        try:
-            next(steps)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
+    return finished(
+        place(source_line(subconductors), ASKED, Placement(CHOICE, objective, generations=12, population=16))
+    )

@@ -142,7 +142,7 @@ def _rows(found: list[Found]) -> Iterator[list[object]]:
 
 
 def _largest(one: Found) -> int:
-    strength = np.diagonal(one.model.mass[0]) * (one.torus.coefficients[0, :, 1:] ** 2).sum(axis=-1)
+    strength = one.model.modal_masses[0] * (one.torus.coefficients[0, :, 1:] ** 2).sum(axis=-1)
     return int(strength.argmax())
 
 

@@ -77,7 +77,7 @@ def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArr
     # Within 0.1 % a close resonance bends: a linear step would not do.
     detuned, solution = balance(_detuned(model), member, orbits, COARSE)
     before, by_harmonic, by_frequency = (half_peak_to_peak(o.coefficients) for o in (orbits, with_one_more, detuned))
-    main = (before * np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]).argmax(axis=-1)
+    main = (before * np.sqrt(model.modal_masses)[member]).argmax(axis=-1)
     row = np.arange(member.size)
     truncation, detuning = (after[row, main] / before[row, main] - 1.0 for after in (by_harmonic, by_frequency))
     return np.stack(
@@ -96,7 +96,7 @@ def _amplitude_drift(model: ReducedModel, orbit: Orbits) -> float:
     from engine.checks.time_integration import amplitude_after_periods  # noqa: PLC0415 - only who asks for it waits for scipy's integrators
 
     own = half_peak_to_peak(orbit.coefficients)[0]
-    main = int((own * np.sqrt(np.diagonal(model.mass))).argmax())
+    main = int((own * np.sqrt(model.modal_masses)).argmax())
     return float(amplitude_after_periods(model, orbit, PERIODS)[main] / own[main] - 1.0)
 
 

@@ -66,8 +66,7 @@ def spread_starts(
 
 def _largest_amplitudes(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the amplitude of a start of level 1 and the natural rate [rad/s] of each coordinate: (cases, m) each."""
-    mass = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
-    rate = np.sqrt(np.diagonal(model.stiffness, axis1=-2, axis2=-1)[member] / mass)
+    rate = np.sqrt(model.uncoupled_squares[member])
     form = np.abs(model.load.angle[member]).max(axis=1)
     vertical, horizontal, torsional = (np.flatnonzero(model.direction == d) for d in range(3))
     largest = np.empty_like(rate)
@@ -118,7 +117,7 @@ def _settled_cycles(
     kept = np.flatnonzero(~runs.at_rest & (runs.outcome != Outcome.NO_CONVERGENCE))
     equations = lawson_equations(model, member[kept], wind_speed[kept], STEPS)
     state, history = runs.state[kept].T, []
-    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member[kept]]
+    weight = np.sqrt(model.modal_masses)[member[kept]]
     with np.errstate(over="ignore", invalid="ignore"):  # a motion may leave all bounds here, too: nothing recurs then
         for _ in range(int(np.ceil(SAMPLED * STEPS * ratio[kept].max(initial=0.0)))):
             state = lawson_step(equations, state)

@@ -161,8 +161,8 @@ def integrate_until_settled(
     """
     equations = lawson_equations(model, member, wind_speed, steps)
     linearly_stable = np.abs(np.linalg.eigvals(np.moveaxis(equations.half_step, -1, 0))).max(axis=-1, initial=0.0) < 1.0
-    mass = np.diagonal(model.mass, axis1=-2, axis2=-1)[member].T
-    rate = np.sqrt(np.diagonal(model.stiffness, axis1=-2, axis2=-1)[member].T / mass)
+    mass = model.modal_masses[member].T
+    rate = np.sqrt(model.uncoupled_squares[member].T)
     weight = np.sqrt(np.concatenate([mass * rate**2, mass]))
     state, size, before = start.T.copy(), np.full_like(start.T, np.inf), np.full_like(start.T, np.inf)
     blocks, at_rest = np.zeros(member.size, dtype=np.intp), np.zeros(member.size, dtype=np.bool_)

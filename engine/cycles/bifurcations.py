@@ -1,7 +1,7 @@
 """Points on branches of limit cycles where the kind or the number of motions changes. Theory sections 7.2 and 7.3.
 
 A pair of multipliers leaves the unit circle at a torus point (Neimark-Sacker), one multiplier passes -1 where the
-period doubles and 1 at a branch point; at a fold the branch turns back over the wind speed. Each is a zero of a smooth
+period doubles and 1 at a branch point; at a fold the branch turns back over its parameter. Each is a zero of a smooth
 function along the branch.
 """
 
@@ -42,15 +42,16 @@ class Kind(StrEnum):
 class Bifurcations:
     """Bifurcations of a stack of models; every array is (k,).
 
-    member: index of the model; branch: number of the connected family; kind: of Kind; wind_speed, uncertainty [m/s];
-    angular_frequency, second [rad/s], the second NaN but at a torus point; coordinate: the one that moves most;
-    may_end_stability: False where the cycle is unstable on both sides for certain.
+    member: index of the model; branch: number of the connected family; kind: of Kind; parameter: where on its branch,
+    the wind speed [m/s] or a field of the line; angular_frequency, second_frequency [rad/s], the second NaN but at a
+    torus point; coordinate: the one that moves most; uncertainty: of the parameter; may_end_stability: False where the
+    cycle is unstable on both sides for certain.
     """
 
     member: IntArray
     branch: IntArray
     kind: ObjectArray
-    wind_speed: FloatArray
+    parameter: FloatArray
     angular_frequency: FloatArray
     second_frequency: FloatArray
     coordinate: IntArray
@@ -100,7 +101,7 @@ def bifurcations(
     Returns
     -------
     Bifurcations
-        Sorted by member, branch and wind speed; points met on two passes over a branch are listed once.
+        Sorted by member, branch and parameter; points met on two passes over a branch are listed once.
     """
     branch = (
         np.split(followed, np.cumsum([branch_set.problem.member.size for branch_set in branch_sets])[:-1])
@@ -165,23 +166,23 @@ def _locate_bifurcations(
     zero = locate_zeros(problem, ends[0], ends[1], lambda points: _test_function(problem, points, kind), ACCURACY)
     multipliers, error = _multipliers(problem, zero.points)
     critical, distance = _critical_multiplier(multipliers, kind)
-    speed = [branch_set.points.z[segment + step, -1] for step in (0, 1)]
+    value = [branch_set.points.z[segment + step, -1] for step in (0, 1)]
     inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE)
     z = np.where(inside[:, None], zero.points.z, ends[0].z)
     orbits = problem.orbits(z, zero.points.branch)
     member = problem.member[zero.points.branch]
     # Two real multipliers whose product is 1 are no torus point.
     real = (np.abs(critical.imag) < ON_CIRCLE) & inside & (kind is Kind.TORUS)
-    width = np.abs(speed[1] - speed[0])
+    width = np.abs(value[1] - value[0])
     noise = width * error  # a multiplier moves by something of order 1 over a segment
     # A zero that more harmonics move out of its segment is as far away as they move the segment's ends.
-    moved = np.max([np.abs(end.z[:, -1] - at) for end, at in zip(ends, speed, strict=True)], axis=0, initial=0.0)
-    moved = np.where(np.isfinite(moved), moved, speed[1])
+    moved = np.max([np.abs(end.z[:, -1] - at) for end, at in zip(ends, value, strict=True)], axis=0, initial=0.0)
+    moved = np.where(np.isfinite(moved), moved, value[1])
     result = Bifurcations(
         member=member,
         branch=families[zero.points.branch],
         kind=_repeated(kind, member.size),
-        wind_speed=np.where(inside, z[:, -1], 0.5 * (speed[0] + speed[1])),
+        parameter=np.where(inside, z[:, -1], 0.5 * (value[0] + value[1])),
         angular_frequency=orbits.angular_frequency,
         second_frequency=_second_frequency(problem.model, member, orbits, critical, kind),
         coordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
@@ -245,7 +246,7 @@ def _second_frequency(
 
 
 def _dominant(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> IntArray:
-    mass = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    mass = model.modal_masses[member]
     return np.asarray((mass * (coefficients**2).sum(axis=-1)).argmax(axis=-1), dtype=np.intp)
 
 
@@ -269,7 +270,7 @@ def _hopf_points(
         member=member,
         branch=number[number >= 0],
         kind=_repeated(Kind.HOPF, index.size),
-        wind_speed=speed,
+        parameter=speed,
         angular_frequency=crossings.angular_frequency[index],
         second_frequency=np.full(index.size, np.nan),
         coordinate=crossings.coordinate[index],
@@ -291,9 +292,9 @@ def _select(points: Bifurcations, index: IntArray) -> Bifurcations:
 
 
 def distinct(parts: list[Bifurcations]) -> Bifurcations:
-    """Keep the best located of points that are one, sorted by member, branch and wind speed."""
+    """Keep the best located of points that are one, sorted by member, branch and parameter."""
     found = _concatenated(parts)
-    order = np.lexsort((found.wind_speed, found.branch, found.member))
+    order = np.lexsort((found.parameter, found.branch, found.member))
     found = _select(found, order)
     kept: dict[tuple[int, Kind], list[int]] = {}
     for i, member in enumerate(found.member.tolist()):
@@ -308,6 +309,6 @@ def distinct(parts: list[Bifurcations]) -> Bifurcations:
 
 def _same_point(found: Bifurcations, i: int, j: int) -> bool:
     """Tell whether two points of one model and kind are one."""
-    apart = abs(found.wind_speed[i] - found.wind_speed[j])
+    apart = abs(found.parameter[i] - found.parameter[j])
     near = abs(found.angular_frequency[i] / found.angular_frequency[j] - 1.0) < SAME
-    return bool(near and apart <= SAME * found.wind_speed[i] + found.uncertainty[i] + found.uncertainty[j])
+    return bool(near and apart <= SAME * found.parameter[i] + found.uncertainty[i] + found.uncertainty[j])

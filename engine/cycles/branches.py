@@ -24,6 +24,7 @@ from engine.numerics.continuation import (
     tangents,
 )
 from engine.numerics.newton import NewtonOptions, Solution
+from engine.progress import driven
 
 STEPS = StepControl(first=0.2)
 REFERENCE_ANGLE = 0.05  # rad; the amplitude with this angle of attack is the smallest scale of a branch
@@ -73,7 +74,7 @@ class CycleProblem(Problem):
     def phase(self, anchor: FloatArray, branch: IntArray) -> FloatArray:
         """Return the derivative of the phase condition by the coefficients: (k, m (2 H + 1))."""
         near = orbits_of(anchor, self.model.mass.shape[-1]).coefficients
-        weight = np.diagonal(self.model.mass, axis1=-2, axis2=-1)[self.member[branch]][..., None]
+        weight = self.model.modal_masses[self.member[branch]][..., None]
         return merge_axes(weight * (near @ basis(near.shape[-1] // 2).derivative.T), -2)
 
     def correct(
@@ -89,7 +90,7 @@ class CycleProblem(Problem):
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
         """Return the scales of points: each coordinate's size or a share of the cycle's, frequency and wind speed."""
-        weight = np.sqrt(np.diagonal(self.model.mass, axis1=-2, axis2=-1))[self.member[branch]]
+        weight = np.sqrt(self.model.modal_masses)[self.member[branch]]
         coefficients = orbits_of(z, weight.shape[-1]).coefficients
         own = weight * lengths(coefficients)
         whole = np.maximum(lengths(own), self.reference[branch])
@@ -254,22 +255,18 @@ def follow_branches(
     """Follow branches from points (branches, n + 1) until they end or leave the limits of the parameter."""
     before = make_points(problem, np.arange(start.shape[0]), start, direction)
     found, last = [before], before.select(before.branch)
-    steps = continue_branches(problem, start, direction, STEPS)
     ended = np.zeros(start.shape[0], dtype=np.bool_)
     slowest = SLOWEST * lowest_frequency(problem.model)[problem.member]
-    alive: BoolArray | None = None
-    while True:
-        try:
-            new = steps.send(alive)
-        except StopIteration as stop:
-            outcome = stop.value
-            break
+
+    def goes_on(new: BranchPoints) -> BoolArray:
         ended_at_equilibrium = _passed_equilibrium(problem, last.select(new.branch), new)
         ended[new.branch] = ended_at_equilibrium
         found.append(new.select(~ended_at_equilibrium))
-        alive = ~ended_at_equilibrium & _stays_in_range(problem, new, limits, slowest)
-        alive &= ~_returned_to_start(problem, before.select(new.branch), new, len(found))
         last.overwrite(new)
+        alive = ~ended_at_equilibrium & _stays_in_range(problem, new, limits, slowest)
+        return np.asarray(alive & ~_returned_to_start(problem, before.select(new.branch), new, len(found)))
+
+    outcome = driven(continue_branches(problem, start, direction, STEPS), goes_on)
     every = BranchPoints(
         *(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent"))
     )
@@ -279,7 +276,7 @@ def follow_branches(
 def _passed_equilibrium(problem: CycleProblem, before: BranchPoints, new: BranchPoints) -> BoolArray:
     """Return which branches passed through the equilibrium, where the first harmonic changes its sign."""
     m = problem.model.mass.shape[-1]
-    weight = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[problem.member[new.branch]]
+    weight = problem.model.modal_masses[problem.member[new.branch]]
     first, second = (orbits_of(p.z, m).coefficients[..., 1:3] for p in (before, new))
     return np.asarray(np.einsum("kmc,kmc,km->k", first, second, weight) < 0.0)
 

@@ -14,7 +14,7 @@ from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArra
 from engine.kernels import compiled
 from engine.models.aerodynamic_load import force
 from engine.models.critical_wind_speeds import at_wind, state_matrices
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.reduced_model import ReducedModel, diagonals, take
 
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 GRID = 40
@@ -87,8 +87,8 @@ def _scalar_equation(model: ReducedModel, wind_speed: FloatArray) -> _ScalarEqua
     """Interpolate the characteristic polynomials on a circle and solve the statics."""
     square = wind_speed[:, None] ** 2
     vectors = square[..., None] * model.load.table[:, 0].swapaxes(-1, -2)
-    frequency = np.sqrt(np.abs(np.diagonal(model.stiffness, axis1=-2, axis2=-1)))
-    frequency /= np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))
+    frequency = np.sqrt(np.abs(diagonals(model.stiffness)))
+    frequency /= np.sqrt(model.modal_masses)
     scale = np.exp(np.log(frequency).mean(axis=-1))
     points = np.exp(2j * np.pi * np.arange(ORDER + 1) / (ORDER + 1))
     s = points * scale[:, None]
@@ -225,7 +225,7 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
         (values.real > 0.0) & (values.imag > 1e-9 * np.abs(values).max(axis=-1, initial=0.0)[:, None])
     )
     m = model.mass.shape[-1]
-    weight = 1.0 / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
+    weight = 1.0 / np.sqrt(model.modal_masses)[member]
     frequency = values.imag[member, mode]
     shape = _complex(_unstable_modes(matrices[member], values[member, mode]) * weight)
     linear, cubic = _work(take(model, member), wind_speed[member], frequency, shape)

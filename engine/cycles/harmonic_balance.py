@@ -142,7 +142,7 @@ def balance(
         How it went; a start that fell to the equilibrium counts as not converged.
     """
     _, m, size = start.coefficients.shape
-    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member]
+    weight = np.sqrt(model.modal_masses)[member]
     start_coefficients = merge_axes(start.coefficients, -2)
     reference = merge_axes(weight[..., None] ** 2 * (start.coefficients @ basis(size // 2).derivative.T), -2)
     norm = np.sqrt(np.einsum("cms,cm->c", start.coefficients**2, weight**2))
@@ -186,13 +186,13 @@ def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[F
 
 def total_size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
     """Return the root of sum M_ii |q_i|^2 over coefficients (cycles, m, 2 H + 1), the mean among them: (cycles,)."""
-    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    weight = model.modal_masses[member]
     return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
 
 
 def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
     """Return the root of sum M_ii |q_i|^2 over the oscillating harmonics: (cycles,)."""
-    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    weight = model.modal_masses[member]
     return np.asarray(np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight)))
 
 

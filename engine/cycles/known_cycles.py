@@ -193,7 +193,7 @@ def _root(parents: list[int], node: int) -> int:
 
 def _phase_invariants(model: ReducedModel, starts: Starts) -> FloatArray:
     """Return mass-weighted means and amplitudes of all harmonics, which do not depend on the phase: (cycles, n)."""
-    weight = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[starts.member]
+    weight = np.sqrt(model.modal_masses)[starts.member]
     coefficients = starts.orbits.coefficients * weight[..., None]
     size = np.hypot(coefficients[..., 1::2], coefficients[..., 2::2])
     return np.concatenate([coefficients[..., 0], merge_axes(size, -2)], axis=-1)

@@ -57,7 +57,7 @@ def state_matrices(model: ReducedModel) -> StateMatrices:
     m = model.mass.shape[-1]
     members = model.mass.shape[0]
     gradient = force_gradient(model.load, np.zeros((members, 1, 2 * m)))[:, 0]
-    scale = np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))
+    scale = np.sqrt(model.modal_masses)
     unit = scale[:, :, None] * np.linalg.inv(model.mass)
 
     def block(matrix: FloatArray) -> FloatArray:
@@ -118,7 +118,7 @@ def critical_modes(model: ReducedModel, member: IntArray, wind_speed: FloatArray
     """Return the mode nearest to the imaginary axis at wind speeds (k,) of models (k,): (k, m), of any size."""
     _, _, vector = _nearest_pair(_select(state_matrices(model), member), wind_speed)
     m = model.mass.shape[-1]
-    return np.asarray(vector[:, :m] / np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1))[member])
+    return np.asarray(vector[:, :m] / np.sqrt(model.modal_masses)[member])
 
 
 def crossing_error(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> FloatArray:

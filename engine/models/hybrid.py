@@ -12,7 +12,7 @@ from engine.mechanics.finite_elements import FIELDS, Matrices
 from engine.mechanics.modes import DirectionalShapes, at_points
 from engine.models.aerodynamic_load import PolynomialLoad, integrate_along_span, published_load, span_load, take_load
 from engine.models.discretization import Discretization
-from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
+from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals
 from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, LongitudinalInertia
 
 
@@ -35,15 +35,13 @@ def hybrid_model(
     ReducedModel
     """
     mass, stiffness = _condensed(discretization.matrices, shapes.nodal[:, :, :, None], analysis.longitudinal_inertia)
-    one_loop = np.diagonal(stiffness, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
-    one_loop = one_loop / np.diagonal(mass, axis1=-2, axis2=-1)[:, shapes.loops.index(1)]
+    squares = diagonals(stiffness) / diagonals(mass)
     selected = [shapes.loops.index(k) for k in loops]
     mass, stiffness = mass[:, selected], stiffness[:, selected]
-    own = np.diagonal(stiffness, axis1=-2, axis2=-1) / np.diagonal(mass, axis1=-2, axis2=-1)
     constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in discretization.lines])
-    square = np.where(constant[:, None, None], one_loop[:, None], own)
+    square = np.where(constant[:, None, None], squares[:, [shapes.loops.index(1)]], squares[:, selected])
     rate = 2.0 * damping_ratios(discretization.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
-    damping = diagonal_matrices(rate * np.diagonal(mass, axis1=-2, axis2=-1))  # (11)
+    damping = diagonal_matrices(rate * diagonals(mass))  # (11)
     unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
     nodal = _diagonal_fields(shapes.nodal[:, selected, 1:])
     load = _hybrid_load(discretization, nodal, analysis)
@@ -64,7 +62,7 @@ def joint_model(
     mass, stiffness = (
         matrix[:, 0] for matrix in _condensed(discretization.matrices, together, analysis.longitudinal_inertia)
     )
-    rates = np.diagonal(alone.damping, axis1=-2, axis2=-1).swapaxes(-1, -2)
+    rates = diagonals(alone.damping).swapaxes(-1, -2)
     nodal = np.moveaxis(alone.shapes, 1, 2).reshape(len(discretization.lines), -1, *alone.shapes.shape[-2:])
     values = at_points(discretization.matrices, nodal)
     load = span_load(

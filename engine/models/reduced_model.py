@@ -28,11 +28,20 @@ class ReducedModel:
     direction: IntArray
     statically_unstable: BoolArray
 
+    @property
+    def modal_masses(self) -> FloatArray:
+        """The diagonal M_ii of the mass: (..., m)."""
+        return diagonals(self.mass)
+
+    @property
+    def uncoupled_squares(self) -> FloatArray:
+        """Squared natural frequencies K_ii / M_ii of each co-ordinate by itself: (..., m) [rad^2/s^2]."""
+        return np.asarray(diagonals(self.stiffness) / self.modal_masses)
+
 
 def lowest_frequency(model: ReducedModel) -> FloatArray:
     """Return the root of the smallest |K_ii / M_ii| of each model: (members,) [rad/s]."""
-    square = np.diagonal(model.stiffness, axis1=-2, axis2=-1) / np.diagonal(model.mass, axis1=-2, axis2=-1)
-    return np.asarray(np.sqrt(np.abs(square).min(axis=-1)))
+    return np.asarray(np.sqrt(np.abs(model.uncoupled_squares).min(axis=-1)))
 
 
 def take(model: ReducedModel, index: Any) -> ReducedModel:
@@ -51,6 +60,11 @@ def take(model: ReducedModel, index: Any) -> ReducedModel:
 def damping_ratios(lines: Sequence[Line]) -> FloatArray:
     """Return zeta of the vertical, horizontal and torsional direction of each line, eq. (11): (lines, 3)."""
     return np.array([(d.vertical_ratio, d.horizontal_ratio, d.torsional_ratio) for d in (x.damping for x in lines)])
+
+
+def diagonals(matrices: FloatArray) -> FloatArray:
+    """Return the diagonals (..., n) of matrices (..., n, n)."""
+    return np.diagonal(matrices, axis1=-2, axis2=-1)
 
 
 def diagonal_matrices(values: FloatArray) -> FloatArray:

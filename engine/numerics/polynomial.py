@@ -60,7 +60,10 @@ def slopes(table: FloatArray) -> FloatArray:
 
 
 def _variables_of(size: int) -> int:
-    return next(n for n in range(1, 64) if len(monomials(n)) == size)
+    for variables in range(1, 64):
+        if len(monomials(variables)) == size:
+            return variables
+    raise ValueError(f"no number of variables has {size} monomials up to the third degree")
 
 
 @lru_cache

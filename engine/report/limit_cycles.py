@@ -154,7 +154,7 @@ def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Sc
 def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
     """Return the columns of numbers that only cycles have, NaN where one is not known."""
     cycles, confidence = findings.cycles, findings.confidence
-    mass = np.diagonal(findings.model.mass, axis1=-2, axis2=-1)[cycles.member]
+    mass = findings.model.modal_masses[cycles.member]
     return {
         **dict(zip(_AMPLITUDES, half_peak_to_peak(series).T, strict=True)),
         **dict(zip(_SHARES, motion_shares(mass, cycles.orbits.coefficients, findings.model.direction).T, strict=True)),
@@ -173,7 +173,7 @@ def _quasi_periodic_motions(
     known, model = findings.quasi_periodic, findings.model
     tori, member, line = known.tori, known.member, findings.line[known.member]
     frequency, _ = base_frequencies(model, member, tori)
-    energy = np.diagonal(model.mass, axis1=-2, axis2=-1)[member] * mean_square_velocity(tori)
+    energy = model.modal_masses[member] * mean_square_velocity(tori)
     loops = findings.loops[member, energy.argmax(axis=-1)]
     ranges, outcome = np.empty((2, 3, member.size)), []
     for i in range(member.size):
@@ -245,7 +245,7 @@ def _observed_at(discretization: Discretization, loops: int) -> FloatArray:
 
 def _dominant_loops(findings: ModelFindings) -> IntArray:
     """Return the number of loops of the coordinate of largest M_ii |q_i|^2 in each cycle."""
-    mass = np.diagonal(findings.model.mass, axis1=-2, axis2=-1)[findings.cycles.member]
+    mass = findings.model.modal_masses[findings.cycles.member]
     energy = mass * (findings.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
     return np.asarray(findings.loops[findings.cycles.member, energy.argmax(axis=-1)])
 

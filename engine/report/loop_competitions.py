@@ -106,7 +106,7 @@ def _leading(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArr
 
 def _energy_by_loops(joint: ReducedModel, line: IntArray, vector: ComplexArray, count: int) -> FloatArray:
     """Return sum M_ii |x_i|^2 of a disturbance (q, q'/w) by its number of loops: (cycles, loops)."""
-    mass = np.diagonal(joint.mass, axis1=-2, axis2=-1)[line]
+    mass = joint.modal_masses[line]
     m = mass.shape[-1]
     energy = mass * (np.abs(vector[:, :m]) ** 2 + np.abs(vector[:, m:]) ** 2)
     return np.asarray(energy.reshape(line.size, 3, count).sum(axis=1))

@@ -58,7 +58,7 @@ class NaturalFrequencies:
 def coupled_frequencies(model: ReducedModel) -> FloatArray:
     """Return the squared frequencies of (M, K), each given to the coordinate of largest M_ii |x_i|^2: (members, m)."""
     values, vectors = solve_symmetric(model.stiffness, model.mass)
-    share = np.diagonal(model.mass, axis1=-2, axis2=-1)[..., None] * vectors**2
+    share = model.modal_masses[..., None] * vectors**2
     return np.take_along_axis(values, assign(share), axis=-1)
 
 
@@ -104,7 +104,7 @@ def bifurcation_rows(findings: ModelFindings) -> list[list[BifurcationRow]]:
             loops=int(findings.loops[member, bifurcations.coordinate[i]]),
             branch=int(bifurcations.branch[i]),
             type=bifurcations.kind[i].value,
-            wind_speed_m_per_s=float(bifurcations.wind_speed[i]),
+            wind_speed_m_per_s=float(bifurcations.parameter[i]),
             frequency_hz=float(bifurcations.angular_frequency[i] / (2.0 * np.pi)),
             second_frequency_hz=finite_or_none(float(bifurcations.second_frequency[i] / (2.0 * np.pi))),
             uncertainty_m_per_s=float(bifurcations.uncertainty[i]),

@@ -23,7 +23,7 @@ from engine.result.motions import (
     Orbit,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
-from engine.result.tables import TABLES, Progress, Result, Tables
+from engine.result.tables import TABLES, Result, Tables
 
 __all__ = [
     "TABLES",
@@ -43,7 +43,6 @@ __all__ = [
     "ModelComparisonRow",
     "Orbit",
     "PlacedDeviceRow",
-    "Progress",
     "Result",
     "StaticState",
     "Table",

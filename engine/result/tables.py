@@ -63,11 +63,3 @@ class Result(Tables):
 
 
 TABLES: Mapping[str, Table] = tables_of(Tables)
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far an analysis is: fraction from 0 to 1 and the step at hand in words."""
-
-    fraction: float
-    step: str

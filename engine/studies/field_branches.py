@@ -91,8 +91,8 @@ class FieldCycles:
     """Cycles at values of a field and the bifurcations between them.
 
     member, value: (cycles,), indices; branch: (cycles,), number of the connected family within its member; orbits: of
-    the cycles; given: (cycles,), whether the cycle was there before following; bifurcations: with the value of the
-    field in place of the wind speed.
+    the cycles; given: (cycles,), whether the cycle was there before following; bifurcations: their
+    parameter is the field.
     """
 
     member: IntArray
@@ -185,13 +185,13 @@ def _hopf_points(branch_set: BranchSet, branch_numbers: IntArray) -> Bifurcation
     good = ended[[value is not None for value, _ in found]]
     rates = np.array([rate for value, rate in found if value is not None])
     orbits = branch_set.orbits
-    mass = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[problem.member[good]]
+    mass = problem.model.modal_masses[problem.member[good]]
     share = mass * (orbits.coefficients[branch_set.last[good], :, 1:] ** 2).sum(axis=-1)
     return Bifurcations(
         member=problem.member[good],
         branch=branch_numbers[good],
         kind=np.array([Kind.HOPF] * good.size, dtype=np.object_),
-        wind_speed=np.array([value for value, _ in found if value is not None]),
+        parameter=np.array([value for value, _ in found if value is not None]),
         angular_frequency=rates,
         second_frequency=np.full(good.size, np.nan),
         coordinate=share.argmax(axis=-1) if good.size else good,

@@ -171,10 +171,10 @@ def _bifurcation_rows(study: _Study, found: FieldCycles) -> list[list[FollowedBi
             wind_speed_m_per_s=float(np.tile(study.winds, len(study.analysis.loops))[b.member[i]]),
             branch=int(b.branch[i]),
             type=b.kind[i].value,
-            value=float(b.wind_speed[i]),
+            value=float(b.parameter[i]),
             frequency_hz=float(b.angular_frequency[i] / (2.0 * np.pi)),
             second_frequency_hz=finite_or_none(float(b.second_frequency[i] / (2.0 * np.pi))),
             uncertainty=float(b.uncertainty[i]),
         )
-        rows[int(np.abs(study.values - b.wind_speed[i]).argmin())].append(row)
+        rows[int(np.abs(study.values - b.parameter[i]).argmin())].append(row)
     return rows

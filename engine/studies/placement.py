@@ -11,8 +11,9 @@ from scipy.optimize import Bounds, OptimizeResult, differential_evolution
 from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
 from engine.outcome import Outcome
+from engine.progress import Progress, finished, translated
 from engine.report.device_effects import device_effects, largest_amplitude, lowest_onset
-from engine.result import PlacedDeviceRow, Progress, Result
+from engine.result import PlacedDeviceRow, Result
 from engine.spec import (
     AirflowSpoiler,
     Analysis,
@@ -70,7 +71,7 @@ def place(line: Line, analysis: Analysis, placement: Placement) -> Generator[Pro
         found = _evolved(candidates, placement, generation, found.population)
     fitted = candidates.line(found.x)
     steps = analyse_stack((line, fitted), replace(analysis, device_effect=DeviceEffect.NEGLECTED))
-    without, result = yield from _later(steps)
+    without, result = yield from translated(steps, _later)
     value = None if not math.isfinite(found.fun) else abs(float(found.fun))
     rows = _rows(fitted, len(line.devices), placement, _Search(value, candidates.evaluations, generation))
     return replace(result, device_effects=device_effects(without, result), placements=rows)
@@ -106,7 +107,7 @@ class _Candidates:
         keys = [tuple(np.round(column, ALIKE).tolist()) for column in unknowns.T]
         new = {key: column for key, column in zip(keys, unknowns.T, strict=True) if key not in self._known}
         if new:
-            results = _finished(analyse_stack([self.line(column) for column in new.values()], self._analysis))
+            results = finished(analyse_stack([self.line(column) for column in new.values()], self._analysis))
             self._known.update(zip(new, map(self._value, results), strict=True))
         return np.array([self._known[key] for key in keys])
 
@@ -177,21 +178,6 @@ def _rows(fitted: Line, before: int, placement: Placement, search: _Search) -> t
     return tuple(rows)
 
 
-def _later(steps: Generator[Progress, None, list[Result]]) -> Generator[Progress, None, list[Result]]:
-    """Pass on the progress of the analysis as that of what follows the search."""
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            results: list[Result] = end.value
-            return results
-        yield Progress(SEARCH_SHARE + (1.0 - SEARCH_SHARE) * step.fraction, step.step)
-
-
-def _finished(steps: Generator[Progress, None, list[Result]]) -> list[Result]:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            results: list[Result] = end.value
-            return results
+def _later(of_analysis: Progress) -> Progress:
+    """Count the progress of the analysis after that of the search."""
+    return Progress(SEARCH_SHARE + (1.0 - SEARCH_SHARE) * of_analysis.fraction, of_analysis.step)

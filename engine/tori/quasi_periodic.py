@@ -158,7 +158,7 @@ def check_by_integration(model: ReducedModel, motions: QuasiPeriodicMotions) -> 
         start = states(torus, np.zeros((1, 2)))[0, 0] * np.repeat([1.0, wind], m)
         balanced = np.ptp(states(torus, times[:, None] * torus.angular_frequency[0])[0, :, :m], axis=0)
         reached = np.ptp(last_period(alone, wind, start, times), axis=0)
-        main = int((balanced * np.sqrt(np.diagonal(alone.mass))).argmax())
+        main = int((balanced * np.sqrt(alone.modal_masses)).argmax())
         direct[i] = reached[main] / balanced[main] - 1.0
     return replace(motions, direct=direct)
 
@@ -196,7 +196,7 @@ def _modulated_cycles(model: ReducedModel, orbits: Orbits, multiplier: ComplexAr
     beat = orbits.angular_frequency * np.abs(np.angle(multiplier)) / (2.0 * np.pi)
     start = tori_from_cycles(orbits, beat, COARSE)
     direction = critical_directions(model, start)[:, :-3].reshape(start.coefficients.shape)
-    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)
+    weight = model.modal_masses
     size = np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight))[:, None, None]
     modulated = [replace(start, coefficients=start.coefficients + depth * size * direction) for depth in DEPTHS]
     return stacked(modulated)

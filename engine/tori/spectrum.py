@@ -14,16 +14,19 @@ STARTS = (4, 32)  # phases at which the periods begin that are compared
 
 def line_strengths(model: ReducedModel, member: IntArray, tori: Tori) -> FloatArray:
     """Return sum M_ii |q_i|^2 of every pair of harmonics: (tori, n)."""
-    mass = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    mass = model.modal_masses[member]
     return np.asarray(np.einsum("tm,tmn->tn", mass, np.abs(phasors(tori.coefficients)) ** 2))
 
 
 def base_lines(strengths: FloatArray, pairs: IntArray) -> IntArray:
-    """Return where among the pairs (n, 2) the strongest line stands, and the strongest that spans all with it: (2,)."""
+    """Return where among the pairs (n, 2) the strongest line stands, and the strongest that spans all with it: (2,).
+
+    A multiple of another line, such as 2 w, is passed over: it spans all lines with none.
+    """
     order = 1 + np.argsort(-strengths[1:])
-    first = pairs[order[0]]
-    area = np.abs(pairs[:, 0] * first[1] - pairs[:, 1] * first[0])
-    return np.array([order[0], next(i for i in order if area[i] == 1)])
+    first = order[np.gcd(*pairs[order].T) == 1][0]
+    area = np.abs(pairs[:, 0] * pairs[first, 1] - pairs[:, 1] * pairs[first, 0])
+    return np.array([first, order[area[order] == 1][0]])
 
 
 def base_frequencies(model: ReducedModel, member: IntArray, tori: Tori) -> tuple[FloatArray, FloatArray]:

@@ -13,6 +13,7 @@ from engine.cycles.harmonic_balance import Orbits, balance, resized, select
 from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.continuation import BranchPoints, Problem, StepControl, continue_branches, make_points
 from engine.numerics.newton import NewtonOptions
+from engine.progress import driven
 from engine.tori.spectrum import base_lines, line_strengths
 from engine.tori.two_frequency_balance import (
     Order,
@@ -67,7 +68,7 @@ class TorusProblem(Problem):
         return tori_of(z, self.model.mass.shape[-1], self.order)
 
     def _weight(self, branch: IntArray) -> FloatArray:
-        return np.asarray(np.diagonal(self.model.mass, axis1=-2, axis2=-1)[self.member[branch]])
+        return self.model.modal_masses[self.member[branch]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +110,7 @@ def starts_at_torus_points(
     TorusStarts
         Without those whose cycle is not met again.
     """
-    located = selected & np.isfinite(found.second_frequency) & (found.uncertainty < LOCATED * found.wind_speed)
+    located = selected & np.isfinite(found.second_frequency) & (found.uncertainty < LOCATED * found.parameter)
     points = np.flatnonzero(located & np.array([kind is Kind.TORUS for kind in found.kind], dtype=np.bool_))
     guesses = [_guessed_cycle(branch_sets, found, int(i)) for i in points]
     points = points[[guess is not None for guess in guesses]]
@@ -118,7 +119,7 @@ def starts_at_torus_points(
     start = Orbits(
         np.concatenate([resized(g, order[0]).coefficients for g in guessed] or [np.zeros((0, m, 2 * order[0] + 1))]),
         np.array([g.angular_frequency[0] for g in guessed]),
-        found.wind_speed[points],
+        found.parameter[points],
     )
     member = found.member[points]
     orbits, solution = balance(model, member, start, NEAR)
@@ -150,7 +151,7 @@ def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
     count, m, size = tori.coefficients.shape
     first = np.repeat(np.abs(harmonic_lattice(tori.order).pairs[:, 1]) == 1, 2)[1:]
     index = np.flatnonzero(np.tile(first, m))
-    scale = np.repeat(np.sqrt(np.diagonal(model.mass, axis1=-2, axis2=-1)), size, axis=-1)[:, index]
+    scale = np.repeat(np.sqrt(model.modal_masses), size, axis=-1)[:, index]
     matrix = linearized(model, tori)[1][:, index[:, None], index] / scale[:, None] / scale[:, :, None]
     direction = np.zeros((count, m * size + 3))
     # The eigenvectors of the square come at a fifth of the cost of the singular ones, exact enough for a start.
@@ -208,21 +209,18 @@ def follow_tori(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> 
         Sorted by branch, in the order in which they were met; the births are left out.
     """
     problem = TorusProblem(model, starts.member, starts.tori.order)
-    steps = _continuation(problem, starts, STEPS)
     last = make_points(problem, np.arange(starts.member.size), points_of(starts.tori), starts.direction)
     found, at_start = [last.select(np.zeros(0, dtype=np.intp))], np.ones(starts.member.size, dtype=np.bool_)
-    alive: BoolArray | None = None
-    while True:
-        try:
-            new = steps.send(alive)
-        except StopIteration:
-            break
+
+    def goes_on(new: BranchPoints) -> BoolArray:
         ended = _passed_cycle(problem, last.select(new.branch), new) & ~at_start[new.branch]
         rising = new.tangent[:, -1] > 0.0
-        alive = ~ended & np.where(rising, new.z[:, -1] < winds[-1], new.z[:, -1] > winds[0])
         found.append(new.select(~ended))
         at_start[new.branch] = False
         last.overwrite(new)
+        return np.asarray(~ended & np.where(rising, new.z[:, -1] < winds[-1], new.z[:, -1] > winds[0]))
+
+    driven(_continuation(problem, starts, STEPS), goes_on)
     every = BranchPoints(
         *(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent"))
     )
@@ -237,7 +235,7 @@ def _guessed_cycle(branch_sets: Sequence[BranchSet], found: Bifurcations, point:
         if here.size < 2:
             continue
         own = branch_set.points.select(here)
-        orbits = orbits_of(guessed_points(own, found.wind_speed[[point]])[2], branch_set.problem.model.mass.shape[-1])
+        orbits = orbits_of(guessed_points(own, found.parameter[[point]])[2], branch_set.problem.model.mass.shape[-1])
         gap = np.abs(orbits.angular_frequency / found.angular_frequency[point] - 1.0)
         if gap.min(initial=np.inf) < nearest:
             nearest, best = gap.min(), select(orbits, np.array([gap.argmin()]))
@@ -248,7 +246,7 @@ def _passed_cycle(problem: TorusProblem, before: BranchPoints, new: BranchPoints
     """Tell which branches passed through a cycle, where one of the two base lines turns over."""
     old, at_start = problem.read(before.z), problem.read(new.z)
     member = problem.member[new.branch]
-    mass = np.diagonal(problem.model.mass, axis1=-2, axis2=-1)[member]
+    mass = problem.model.modal_masses[member]
     ended = np.zeros(new.branch.size, dtype=np.bool_)
     for i, strengths in enumerate(line_strengths(problem.model, member, old)):
         lines = base_lines(strengths, harmonic_lattice(problem.order).pairs)

@@ -45,7 +45,7 @@ def torus_stability(model: ReducedModel, torus: Tori) -> TorusStability:
     maps = _period_maps(model, torus)
     if maps is None:
         return TorusStability(np.nan, np.nan, 0, Stability.UNKNOWN)
-    weight = np.sqrt(np.tile(np.diagonal(model.mass[0]), 2))
+    weight = np.sqrt(np.tile(model.modal_masses[0], 2))
     series = np.fft.rfft(weight[:, None] * maps / weight, axis=0) / SAMPLES
     turn = float(torus.angular_frequency[0, 1] / torus.angular_frequency[0, 0])
     long_map, done, result = np.eye(weight.size), 0, TorusStability(np.nan, np.nan, 0, Stability.UNKNOWN)

@@ -157,7 +157,7 @@ def balance(
     """
     m = model.mass.shape[-1]
     start_unknowns = points_of(start)[:, :-1]
-    weight = np.diagonal(model.mass, axis1=-2, axis2=-1)[member]
+    weight = model.modal_masses[member]
     phase = phase_rows(start, weight)
     scale = scales(start, weight)[:, :-1] / np.sqrt(start_unknowns.shape[-1])
 

@@ -54,7 +54,7 @@ def random_orbits(model: ReducedModel, harmonics: int, copies: int) -> Orbits:
     """Return large arbitrary motions, so that the cubic terms matter."""
     rng = np.random.default_rng(harmonics)
     m = model.mass.shape[-1]
-    scale = 0.3 / np.sqrt(np.diagonal(model.mass[0]))
+    scale = 0.3 / np.sqrt(model.modal_masses[0])
     coefficients = scale[:, None] * rng.normal(size=(copies, m, 2 * harmonics + 1))
     return Orbits(coefficients, rng.uniform(2.0, 6.0, copies), rng.uniform(3.0, 9.0, copies))
 

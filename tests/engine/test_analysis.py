@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from engine.analysis import analyse, analyse_stack
 from engine.outcome import InvalidSpec, Outcome, Stability
-from engine.result import LimitCycleRow, Progress, Result
+from engine.progress import Progress, driven
+from engine.result import LimitCycleRow, Result
 from engine.spec import (
     AerodynamicModel,
     Aerodynamics,
@@ -38,13 +39,9 @@ SHORT = Analysis(loops=(1, 2), wind_speeds=(5.0,))
 
 def stacked(lines: list[Line], analysis: Analysis) -> tuple[list[Progress], list[Result]]:
     """Analyse a stack and keep the progress."""
-    steps, progress = analyse_stack(lines, analysis), []
-    while True:
-        try:
-            progress.append(next(steps))
-        except StopIteration as stop:
-            results: list[Result] = stop.value
-            return progress, results
+    progress: list[Progress] = []
+    results = driven(analyse_stack(lines, analysis), progress.append)
+    return progress, results
 
 
 def rows_of(result: Result) -> list[tuple[Any, ...]]:
@@ -86,7 +83,7 @@ def test_stack_of_unequal_meshes_is_refused() -> None:
 
 def test_line_that_cannot_answer_is_refused_before_anything_is_computed() -> None:
     with pytest.raises(InvalidSpec, match="loops"):
-        next(analyse(source_line(2), Analysis(loops=(11,))))
+        next(analyse(source_line(2), Analysis(loops=(11,))), None)
 
 
 def test_every_wind_speed_has_an_equilibrium_row_in_each_model_and_loop() -> None:

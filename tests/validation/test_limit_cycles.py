@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from engine.analysis import analyse_stack
+from engine.progress import finished
 from engine.result import LimitCycleRow, Result
 from engine.spec import Analysis, Line, Model, Span
 from tests.builders import run, source_line, stable_cycles
@@ -86,13 +87,8 @@ def test_section_10_figure_7_number_of_subconductors_hardly_matters_at_one_loop(
 
 def stack_at_4(lines: list[Line]) -> dict[int, list[tuple[float, float, float]]]:
     """Return for one and two loops the amplitudes of every line at 4 m/s."""
-    steps = analyse_stack(lines, replace(HYBRID, wind_speeds=(4.0,)))
-    while True:
-        try:
-            next(steps)
-        except StopIteration as stop:
-            results: list[Result] = stop.value
-            return {k: [amplitudes(one_cycle(r, k, 4.0)) for r in results] for k in (1, 2)}
+    results = finished(analyse_stack(lines, replace(HYBRID, wind_speeds=(4.0,))))
+    return {k: [amplitudes(one_cycle(r, k, 4.0)) for r in results] for k in (1, 2)}
 
 
 @pytest.mark.parametrize("subconductors", [2, 3, 4])

@@ -43,7 +43,7 @@ def torsional_frequency(line: Line, loops: int) -> float:
     """Return the coupled frequency of the mode that is mostly torsional, from M and K of the hybrid model."""
     model = hybrid(line, loops)
     values, vectors = eigh(model.stiffness[0], model.mass[0])
-    share = np.diagonal(model.mass[0])[:, None] * vectors**2
+    share = model.modal_masses[0][:, None] * vectors**2
     return float(np.sqrt(values[share[2].argmax()]) / (2.0 * math.pi))
 
 

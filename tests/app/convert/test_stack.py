@@ -9,7 +9,8 @@ from app.convert import NumberedLine, PointResult, read_analysis, read_line, run
 from app.reference.source_lines import example
 from app.schemas.faults import BadInput
 from engine import spec
-from engine.result import Progress, Result
+from engine.progress import Progress
+from engine.result import Result
 from tests.app.lines import FULL_LINE, SHORT, changed, close
 
 TWIN = example("c11-twin")

@@ -16,7 +16,7 @@ from tests.engine.motions import LIGHT, analysed
 
 
 def of_kind(found: Bifurcations, kind: Kind) -> FloatArray:
-    return found.wind_speed[[k is kind for k in found.kind]]
+    return found.parameter[[k is kind for k in found.kind]]
 
 
 # The ranges in which AUTO finds torus points on the two-loop branches.
@@ -48,8 +48,8 @@ def test_every_bifurcation_is_located_to_a_millionth() -> None:
     cases = [((1, LIGHT, 2), 6), ((2, LIGHT, 2), 4), ((3, LIGHT, 2), 3), ((1, 0.01, 1), 6)]
     for case, number in cases:
         _, _, found = analysed(*case)
-        assert found.wind_speed.size == number
-        assert (found.uncertainty <= 1e-6 * found.wind_speed).all()
+        assert found.parameter.size == number
+        assert (found.uncertainty <= 1e-6 * found.parameter).all()
 
 
 def multipliers_by_integration(model: ReducedModel, orbit: Orbits) -> ComplexArray:
@@ -79,15 +79,15 @@ def test_torus_point_has_a_pair_on_the_circle_by_direct_integration() -> None:
     torus = int(np.flatnonzero([k is Kind.TORUS for k in found.kind])[0])
     branch_set = next(t for t in cycles.branch_sets if t.points.branch.size)
     near = int(
-        np.abs(branch_set.orbits.wind_speed - found.wind_speed[torus]).argmin()
+        np.abs(branch_set.orbits.wind_speed - found.parameter[torus]).argmin()
         if branch_set.problem.member.size == 1
         else np.hypot(
-            branch_set.orbits.wind_speed / found.wind_speed[torus] - 1.0,
+            branch_set.orbits.wind_speed / found.parameter[torus] - 1.0,
             100.0 * (branch_set.orbits.angular_frequency / found.angular_frequency[torus] - 1.0),
         ).argmin()
     )
     start = select(branch_set.orbits, np.array([near]))
-    guess = Orbits(start.coefficients, start.angular_frequency, found.wind_speed[[torus]])
+    guess = Orbits(start.coefficients, start.angular_frequency, found.parameter[[torus]])
     orbit, solution = balance(model, np.zeros(1, dtype=np.intp), resized(guess, 9))
     assert solution.converged.all()
     values = multipliers_by_integration(take(model, 0), orbit)
@@ -149,7 +149,7 @@ def test_torus_point_of_two_oscillators_is_exact() -> None:
     branch_set = follow_from_hopf_points(model, crossings, np.array([0]), 5, np.array([1.1]))
     found = bifurcations((branch_set,), np.zeros(1, dtype=np.intp), model, crossings)
     torus = [i for i, kind in enumerate(found.kind) if kind is Kind.TORUS]
-    assert found.wind_speed[torus] == pytest.approx([1.0], abs=1e-6)
+    assert found.parameter[torus] == pytest.approx([1.0], abs=1e-6)
     assert found.angular_frequency[torus] == pytest.approx([first], abs=1e-6)
     assert found.second_frequency[torus] == pytest.approx([second_frequency], abs=1e-6)
     assert (found.uncertainty[torus] < 1e-6).all()

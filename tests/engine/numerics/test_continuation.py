@@ -18,6 +18,7 @@ from engine.numerics.continuation import (
     tangents,
 )
 from engine.outcome import Outcome
+from engine.progress import driven
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,35 +72,31 @@ def test_points_lie_on_the_curves_and_go_round_all_of_them() -> None:
 
 
 def test_caller_ends_a_branch() -> None:
-    steps = continue_branches(CIRCLES, START, ALONG)
-    first = next(steps)
-    assert first.branch.tolist() == [0, 1]
-    assert steps.send(np.array([False, True])).branch.tolist() == [1]
-    with pytest.raises(StopIteration) as end:
-        steps.send(np.array([False]))
-    assert end.value.value.tolist() == [Outcome.CONVERGED, Outcome.CONVERGED]
+    alive = iter([np.array([False, True]), np.array([False])])
+    seen: list[list[int]] = []
+
+    def answer(points: BranchPoints) -> BoolArray | None:
+        seen.append(points.branch.tolist())
+        return next(alive, None)
+
+    outcome = driven(continue_branches(CIRCLES, START, ALONG), answer)
+    assert seen == [[0, 1], [1]]
+    assert outcome.tolist() == [Outcome.CONVERGED, Outcome.CONVERGED]
 
 
 def test_end_of_a_curve_is_an_outcome() -> None:
-    steps = continue_branches(Kink(), np.array([[1.0, -0.35]]), np.array([[0.0, 1.0]]))
-    points = []
-    alive: BoolArray | None = None
-    while True:
-        try:
-            points.append(steps.send(alive))
-        except StopIteration as end:
-            assert end.value.tolist() == [Outcome.NO_CONVERGENCE]
-            break
+    points: list[BranchPoints] = []
+    outcome = driven(continue_branches(Kink(), np.array([[1.0, -0.35]]), np.array([[0.0, 1.0]])), points.append)
+    assert outcome.tolist() == [Outcome.NO_CONVERGENCE]
     assert -1e-3 < points[-1].z[0, 1] <= 0.0
     assert points[-1].z[0, 0] == pytest.approx(1.0)
 
 
 def test_largest_number_of_points_is_an_outcome() -> None:
-    steps = continue_branches(CIRCLES, START, ALONG, StepControl(points=2))
-    next(steps), next(steps)
-    with pytest.raises(StopIteration) as end:
-        next(steps)
-    assert end.value.value.tolist() == [Outcome.LIMIT_REACHED, Outcome.LIMIT_REACHED]
+    points: list[BranchPoints] = []
+    outcome = driven(continue_branches(CIRCLES, START, ALONG, StepControl(points=2)), points.append)
+    assert [p.branch.tolist() for p in points] == [[0, 1], [0, 1]]
+    assert outcome.tolist() == [Outcome.LIMIT_REACHED, Outcome.LIMIT_REACHED]
 
 
 def test_folds_are_located() -> None:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from engine.outcome import InvalidSpec
-from engine.result import Progress, Result
+from engine.progress import Progress, driven
+from engine.result import Result
 from engine.spec import (
     Aerodynamics,
     AirflowSpoiler,
@@ -32,13 +33,9 @@ CALM = Aerodynamics((0.0, 0.0, 0.0), (0.9, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 def placed(line: Line, analysis: Analysis, placement: Placement) -> tuple[Result, list[Progress]]:
     """Return the result of a search, and its progress."""
-    steps, progress = place(line, analysis, placement), []
-    while True:
-        try:
-            progress.append(next(steps))
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result, progress
+    progress: list[Progress] = []
+    result = driven(place(line, analysis, placement), progress.append)
+    return result, progress
 
 
 def onset(line: Line, analysis: Analysis) -> float:
@@ -148,7 +145,7 @@ def test_what_does_not_fit_together_is_refused(
     line: Line, analysis: Analysis, placement: Placement, field: str
 ) -> None:
     with pytest.raises(InvalidSpec) as caught:
-        next(place(line, analysis, placement))
+        next(place(line, analysis, placement), None)
     assert [fault.field.removesuffix(".highest") for fault in caught.value.faults] == [field]
 
 

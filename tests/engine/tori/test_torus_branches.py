@@ -50,6 +50,14 @@ def test_branch_from_an_exact_torus_point() -> None:
         assert amplitude[[0, 1], lines] == pytest.approx(averaged(speed), rel=0.01)
 
 
+def test_a_multiple_of_another_line_is_no_base_line() -> None:
+    pairs = harmonic_lattice((3, 2)).pairs
+    strengths = np.zeros(len(pairs))
+    for strength, pair in enumerate([(1, 1), (1, 0), (2, 0)], start=1):
+        strengths[(pairs == pair).all(axis=-1)] = strength
+    assert pairs[base_lines(strengths, pairs)].tolist() == [[1, 0], [1, 1]]
+
+
 def test_branch_joins_both_torus_points_of_the_single_conductor() -> None:
     model, cycles, found = analysed(1, LIGHT, 2)
     births = starts_at_torus_points(model, cycles.branch_sets, found, found.may_end_stability, (3, 2))
