@@ -22,9 +22,10 @@ from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Fault, InvalidSpec
 from engine.progress import Progress
 from engine.report.device_effects import device_effects
+from engine.report.findings import ModelFindings
+from engine.report.frequencies import NaturalFrequencies, coupled_frequencies
 from engine.report.line_results import line_results
 from engine.report.loop_competitions import loop_competitions
-from engine.report.rows import ModelFindings, NaturalFrequencies, coupled_frequencies
 from engine.result import LoopCompetitionRow, Result
 from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, check_compatible
 from engine.tori.quasi_periodic import check_by_integration, quasi_periodic_motions

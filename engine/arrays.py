@@ -1,4 +1,4 @@
-"""Names for the array types of the engine."""
+"""Array types of the engine, and the few array operations that several packages share."""
 
 import math
 from typing import Any
@@ -15,17 +15,17 @@ AnyArray = NDArray[Any]
 
 
 def eigenvalues(matrices: FloatArray) -> ComplexArray:
-    """Return the eigenvalues (..., n) of finite real matrices (..., n, n), in no order."""
+    """Return the eigenvalues (..., n) of finite real matrices (..., n, n), in no particular order."""
     return np.asarray(np.linalg.eigvals(matrices), dtype=np.complex128)
 
 
 def lengths(vectors: FloatArray) -> FloatArray:
-    """Return the Euclidean lengths of vectors (..., n): (...); numpy's norm takes twice as long for small stacks."""
+    """Return the Euclidean norms of vectors (..., n): (...); numpy's norm takes twice as long for small stacks."""
     return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))
 
 
 def merge_axes(array: AnyArray, first: int, last: int = -1) -> AnyArray:
-    """Merge the axes from first to last, both negative, into one; stacks without members keep their shape."""
+    """Merge the axes from first to last (both negative) into one, of empty stacks too."""
     shape = array.shape
     stop = array.ndim + last + 1
     start = array.ndim + first

@@ -1,4 +1,4 @@
-"""How a computation ended, what may be said of a motion's stability, and the one error that misuse raises."""
+"""How a computation ended, what is known of a motion's stability, and the error that a broken rule raises."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -7,19 +7,19 @@ from enum import StrEnum
 class Outcome(StrEnum):
     """How one point of an analysis ended; every member carries its sentence."""
 
-    CONVERGED = ("converged", "The equations are met to the tolerance.")
-    NO_CONVERGENCE = ("no_convergence", "Newton's method did not meet the tolerance from any start.")
+    CONVERGED = ("converged", "The equations are satisfied to the tolerance.")
+    NO_CONVERGENCE = ("no_convergence", "Newton's method did not converge from any start.")
     STATICALLY_UNSTABLE = (
         "statically_unstable",
-        "The static state is unstable without wind: the ice moment exceeds the torsional stiffness.",
+        "The static state is unstable even without wind: the ice moment exceeds the torsional stiffness.",
     )
     OUTSIDE_FIT = ("outside_fit", "The angle of attack leaves the range to which the coefficients were fitted.")
-    LIMIT_REACHED = ("limit_reached", "The computation stopped at a limit that was set for it.")
+    LIMIT_REACHED = ("limit_reached", "The computation reached a set limit before it was complete.")
 
     sentence: str
 
     def __new__(cls, value: str, sentence: str) -> "Outcome":
-        """Make a member whose value is the word that results carry."""
+        """Return a member whose value is the word that results carry."""
         member = str.__new__(cls, value)
         member._value_ = value
         member.sentence = sentence
@@ -27,7 +27,7 @@ class Outcome(StrEnum):
 
 
 class Stability(StrEnum):
-    """What is known of a motion's stability; what was not decided is unknown, never stable."""
+    """What is known of a motion's stability; an undecided stability is unknown, never stable."""
 
     STABLE = "stable"
     UNSTABLE = "unstable"
@@ -43,26 +43,26 @@ class Fault:
     rule: str
 
     def __str__(self) -> str:
-        """Say field, rule and value in one sentence."""
+        """Return field, rule and value as one sentence."""
         return f"{self.field} {self.rule}, got {self.value!r}"
 
 
 class InvalidSpec(ValueError):
-    """Raised when a specification breaks one or more rules; `faults` holds all of them."""
+    """A specification breaks one or more rules; `faults` holds a fault for each."""
 
     def __init__(self, *faults: Fault) -> None:
-        """Take at least one fault."""
+        """Store the faults, at least one, and join their sentences."""
         self.faults = faults
         super().__init__("; ".join(str(fault) for fault in faults))
 
 
 def require(*faults: Fault | None) -> None:
-    """Raise `InvalidSpec` with every fault that is not None.
+    """Raise `InvalidSpec` with every fault that is not None, if there is any.
 
     Raises
     ------
     InvalidSpec
-        If there is at least one.
+        If at least one fault is not None.
     """
     found = [fault for fault in faults if fault is not None]
     if found:

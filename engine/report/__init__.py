@@ -1,1 +1,1 @@
-"""Result rows out of arrays, one module named after each table. Nothing is solved here."""
+"""Result rows written from arrays, one module named after each table. No motion is searched for here."""

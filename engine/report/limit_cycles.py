@@ -14,8 +14,9 @@ from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable
 from engine.models.discretization import Discretization, observation
 from engine.models.reduced_model import take
 from engine.outcome import Outcome, Stability
+from engine.report.cells import finite_or_none, lists_by_line
+from engine.report.findings import ModelFindings
 from engine.report.internal_resonances import divide_by_direction, motion_shares
-from engine.report.rows import ModelFindings, finite_or_none, lists_by_line
 from engine.result import LimitCycleRow
 from engine.tori.spectrum import amplitude_range, base_frequencies, largest_angle, mean_square_velocity
 

@@ -14,7 +14,7 @@ from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, o
 from engine.models.discretization import Discretization, observation
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome, Stability
-from engine.report.rows import ModelFindings
+from engine.report.findings import ModelFindings
 from engine.result import LoopCompetitionRow
 
 FINENESS = 2  # times the steps of the Floquet integration: multipliers near one decide

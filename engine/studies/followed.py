@@ -14,7 +14,7 @@ from engine.mechanics.static_profile import horizontal_position
 from engine.models.discretization import Discretization, discretize, observation
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import ReducedModel, take
-from engine.report.rows import finite_or_none
+from engine.report.cells import finite_or_none
 from engine.result import FollowedBifurcationRow, FollowedCycleRow, Result
 from engine.spec import Analysis, Line, Model
 from engine.studies.field_branches import FieldCycles, FieldProblem, follow_over_field
