@@ -1,1 +1,1 @@
-"""Limit cycles: first harmonic, harmonic balance, Floquet multipliers, branches, bifurcations, search."""
+"""Limit cycles: first harmonic, harmonic balance, Floquet multipliers, branches, bifurcations, search. No tori."""

@@ -1,8 +1,8 @@
-"""Points on branches of limit cycles where the kind or the number of motions changes. Theory sections 7.2 and 7.3.
+"""Bifurcations on branches of limit cycles. Theory sections 7.2 and 7.3.
 
-A pair of multipliers leaves the unit circle at a torus point (Neimark-Sacker), one multiplier passes -1 where the
-period doubles and 1 at a branch point; at a fold the branch turns back over its parameter. Each is a zero of a smooth
-function along the branch.
+At a torus point (Neimark-Sacker) a pair of Floquet multipliers crosses the unit circle; at a period doubling one
+multiplier passes -1, at a branch point 1; at a fold the branch reverses its direction in the parameter. Each is a zero
+of a smooth test function along the branch.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -20,16 +20,16 @@ from engine.models.critical_wind_speeds import Crossings, crossing_error
 from engine.models.reduced_model import ReducedModel
 from engine.numerics.continuation import BranchPoints, locate_zeros, make_points, project_onto_branches
 
-MORE_HARMONICS = 4  # than the branch was followed with
-STEP_FACTOR = 4  # of Floquet's steps
+MORE_HARMONICS = 4  # added for locating a bifurcation to those that the branch was followed with
+STEP_FACTOR = 4  # on the number of steps of the Floquet integration
 ACCURACY = 1e-8  # relative change of the wind speed in the last step
-ON_CIRCLE = 1e-5  # distance of the critical multiplier from where it should be
-SAME = 1e-6  # relative distance below which two points are one
-ORDERS = np.arange(4.0)  # multiples of the base frequency beside which the second one is looked for
+ON_CIRCLE = 1e-5  # largest distance of the critical multiplier from its theoretical place
+SAME = 1e-6  # relative distance below which two points are the same
+ORDERS = np.arange(4.0)  # multiples of the base frequency near which the second frequency is searched
 
 
 class Kind(StrEnum):
-    """Types of bifurcations with the names of the result."""
+    """Types of bifurcations, with the words that results carry."""
 
     HOPF = "hopf"
     FOLD = "fold"
@@ -86,22 +86,22 @@ FACTORS: dict[Kind, Factors] = {
 def bifurcations(
     branch_sets: Sequence[BranchSet], followed: IntArray, model: ReducedModel, crossings: Crossings
 ) -> Bifurcations:
-    """Locate every bifurcation on branches that were followed, and list the Hopf points of the static state.
+    """Locate every bifurcation on branches that were followed, and list the Hopf points where they begin or end.
 
     Parameters
     ----------
     branch_sets : sequence of BranchSet
     followed : (branches,)
-        Of all traces one after another: number of the family that each followed branch belongs to.
+        Number of the family of each followed branch, for all branch sets one after another.
     model : ReducedModel
         Leading axis (members,).
     crossings : Crossings
-        Of these models; those from which no branch was followed have no row.
+        Of these models; a Hopf point that no followed branch touches is not listed.
 
     Returns
     -------
     Bifurcations
-        Sorted by member, branch and parameter; points met on two passes over a branch are listed once.
+        Sorted by member, branch and parameter; a point that was passed twice is listed once.
     """
     branch = (
         np.split(followed, np.cumsum([branch_set.problem.member.size for branch_set in branch_sets])[:-1])
@@ -124,7 +124,7 @@ def bifurcations_on(branch_set: BranchSet, families: IntArray) -> Iterator[Bifur
         changes[kind] = _sign_changes(floquet_result, segment, kind)
     changes[Kind.BRANCH_POINT] &= ~changes[Kind.FOLD]
     growing = np.asarray((np.abs(floquet_result.multipliers[:, 1:]) > 1.0).any(axis=-1))
-    # Between points that lose their stability in several steps it may exist without being seen.
+    # A segment with several changes may hold stable cycles between them, although both of its ends are unstable.
     several = np.sum(list(changes.values()), axis=0) > 1
     may_end = np.asarray(several | ~(growing[segment] & growing[segment + 1]))
     for kind, here in changes.items():
@@ -133,7 +133,7 @@ def bifurcations_on(branch_set: BranchSet, families: IntArray) -> Iterator[Bifur
 
 
 def _segments(branch_set: BranchSet) -> IntArray:
-    """Return the first point of every pair of successive ones; rest, where a branch is born, is no cycle."""
+    """Return the left point of every segment between cycles; the equilibrium at a Hopf point is left out."""
     branch = branch_set.points.branch
     first = np.append(True, branch[1:] != branch[:-1])[: branch.size]
     at_equilibrium = first & np.isfinite(branch_set.hopf_wind_speed[branch])
@@ -141,7 +141,7 @@ def _segments(branch_set: BranchSet) -> IntArray:
 
 
 def _sign_changes(floquet_result: Floquet, segment: IntArray, kind: Kind) -> BoolArray:
-    """Tell in which segments the product of the factors changes its sign by more than the error of the multipliers."""
+    """Return in which segments the product of the factors changes sign by more than the multipliers' error."""
     factors = FACTORS[kind](floquet_result.multipliers[:, 1:])
     value = _product(factors)
     clear = np.abs(factors).min(axis=-1, initial=np.inf) > 3.0 * floquet_result.trivial_error
@@ -149,15 +149,15 @@ def _sign_changes(floquet_result: Floquet, segment: IntArray, kind: Kind) -> Boo
 
 
 def _product(factors: ComplexArray) -> FloatArray:
-    """Multiply the factors (..., n), large ones cut to size 1, so that the product does not overflow: (...)."""
-    with np.errstate(invalid="ignore"):  # multipliers that overflowed leave a product that is not a number
+    """Return the product of factors (..., n), each limited to modulus 1 so that it cannot overflow: (...)."""
+    with np.errstate(invalid="ignore"):  # multipliers that overflowed yield NaN
         return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
 
 
 def _locate_bifurcations(
     branch_set: BranchSet, families: IntArray, segment: IntArray, kind: Kind, may_end: BoolArray
 ) -> Bifurcations:
-    """Locate the zero in each of these segments with more harmonics; where that fails the segment is what is known.
+    """Locate the zero in each of these segments with more harmonics; where that fails, return the segment's middle.
 
     may_end: (segments,), whether the cycles of each may be stable at one end.
     """
@@ -171,11 +171,11 @@ def _locate_bifurcations(
     z = np.where(inside[:, None], zero.points.z, ends[0].z)
     orbits = problem.orbits(z, zero.points.branch)
     member = problem.member[zero.points.branch]
-    # Two real multipliers whose product is 1 are no torus point.
+    # Two real multipliers whose product is 1 do not make a torus point.
     real = (np.abs(critical.imag) < ON_CIRCLE) & inside & (kind is Kind.TORUS)
     width = np.abs(value[1] - value[0])
-    noise = width * error  # a multiplier moves by something of order 1 over a segment
-    # A zero that more harmonics move out of its segment is as far away as they move the segment's ends.
+    noise = width * error  # a multiplier changes by an amount of order 1 over a segment
+    # If refinement moves the zero outside its segment, take the shift of the segment's ends as its uncertainty.
     moved = np.max([np.abs(end.z[:, -1] - at) for end, at in zip(ends, value, strict=True)], axis=0, initial=0.0)
     moved = np.where(np.isfinite(moved), moved, value[1])
     result = Bifurcations(
@@ -193,7 +193,7 @@ def _locate_bifurcations(
 
 
 def _with_more_harmonics(problem: CycleProblem, points: BranchPoints) -> BranchPoints:
-    """Solve for points of branches with more harmonics."""
+    """Solve for the same points of branches with more harmonics."""
     m = problem.model.mass.shape[-1]
     z, tangent = (orbits_of(part, m) for part in (points.z, points.tangent))
     harmonics = z.coefficients.shape[-1] // 2 + MORE_HARMONICS
@@ -219,7 +219,7 @@ def _test_function(problem: CycleProblem, points: BranchPoints, kind: Kind) -> F
 
 
 def _critical_multiplier(multipliers: ComplexArray, kind: Kind) -> tuple[ComplexArray, FloatArray]:
-    """Return the multiplier of the smallest factor and that factor's size; at a fold it is the one nearest to 1."""
+    """Return the critical multiplier and its distance from where it should be (at a fold the one nearest 1, and 0)."""
     factors = np.abs(FACTORS.get(kind, _branch_point_factors)(multipliers))
     if factors.size == 0:
         return np.zeros(0, dtype=np.complex128), np.zeros(0)
@@ -233,7 +233,7 @@ def _critical_multiplier(multipliers: ComplexArray, kind: Kind) -> tuple[Complex
 def _second_frequency(
     model: ReducedModel, member: IntArray, orbits: Orbits, critical: ComplexArray, kind: Kind
 ) -> FloatArray:
-    """Return the second frequency at torus points: w (k +- theta / 2 pi), the one nearest to a natural frequency."""
+    """Return the second frequency at torus points: of w (k +- theta / 2 pi) the one nearest to a natural frequency."""
     none = np.full(member.size, np.nan)
     if kind is not Kind.TORUS or member.size == 0:
         return none
@@ -253,7 +253,7 @@ def _dominant(model: ReducedModel, member: IntArray, coefficients: FloatArray) -
 def _hopf_points(
     branch_sets: Sequence[BranchSet], branch: Sequence[IntArray], model: ReducedModel, crossings: Crossings
 ) -> Bifurcations:
-    """List the Hopf points at which a branch that was followed begins or ends."""
+    """Return the Hopf points at which followed branches begin or end."""
     hopf = np.flatnonzero(crossings.oscillation)
     number = np.full(hopf.size, -1, dtype=np.intp)
     for branch_set, families in zip(branch_sets, branch, strict=True):
@@ -292,7 +292,7 @@ def _select(points: Bifurcations, index: IntArray) -> Bifurcations:
 
 
 def distinct(parts: list[Bifurcations]) -> Bifurcations:
-    """Keep the best located of points that are one, sorted by member, branch and parameter."""
+    """Return each point once, as it is located best, sorted by member, branch and parameter."""
     found = _concatenated(parts)
     order = np.lexsort((found.parameter, found.branch, found.member))
     found = _select(found, order)
@@ -308,7 +308,7 @@ def distinct(parts: list[Bifurcations]) -> Bifurcations:
 
 
 def _same_point(found: Bifurcations, i: int, j: int) -> bool:
-    """Tell whether two points of one model and kind are one."""
+    """Return whether two points of the same model and type are the same bifurcation."""
     apart = abs(found.parameter[i] - found.parameter[j])
     near = abs(found.angular_frequency[i] / found.angular_frequency[j] - 1.0) < SAME
     return bool(near and apart <= SAME * found.parameter[i] + found.uncertainty[i] + found.uncertainty[j])

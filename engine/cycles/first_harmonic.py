@@ -1,8 +1,9 @@
 """Explicit first-harmonic limit cycles of the published closure. Theory section 7.1.
 
-The load depends on one scalar alpha' = alpha_0 + R cos(w t) and so acts as gains. With them the characteristic
-polynomial is affine in known polynomials, and an imaginary pair asks its even and its odd part to vanish together: the
-odd part is quadratic in w^2, which leaves one scalar equation in R, solved for all members side by side.
+The load depends on one scalar alpha' = alpha_0 + R cos(w t) and therefore acts through gains. With these gains the
+characteristic polynomial is an affine combination of known polynomials. It has an imaginary pair where its even and its
+odd part vanish together. The odd part is quadratic in w^2, which leaves one scalar equation in R; it is solved for all
+members side by side.
 """
 
 from collections.abc import Callable
@@ -17,8 +18,8 @@ from engine.models.critical_wind_speeds import at_wind, state_matrices
 from engine.models.reduced_model import ReducedModel, diagonals, take
 
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
-GRID = 40
-HALVINGS = 14
+GRID = 40  # amplitudes at which the scalar equation is evaluated
+HALVINGS = 14  # of each bracket
 ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
 
 
@@ -39,10 +40,10 @@ class FirstHarmonic:
 
 @dataclass(frozen=True, slots=True)
 class _ScalarEquation:
-    """The scalar problem of each member: gains act through U^2 B_j, alpha' is read by a form in q and q'.
+    """The scalar equation of each member. The gains act through U^2 B_j; alpha' = r q is a linear form in q and q'.
 
-    polynomials: (members, 4, 7), coefficients in s/scale of det Z and of r adj(Z) U^2 B_j; static: (members, 3),
-    alpha_0 per unit of each mean load; scale: (members,) [rad/s].
+    polynomials: (members, 4, 7), coefficients in powers of s/scale of det Z and of r adj(Z) U^2 B_j; static:
+    (members, 3), alpha_0 per unit of each mean load; scale: (members,) [rad/s].
     """
 
     polynomials: FloatArray
@@ -51,12 +52,12 @@ class _ScalarEquation:
 
 
 def explicit_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
-    """Find every first-harmonic cycle of each model.
+    """Return every first-harmonic cycle of each model.
 
     Parameters
     ----------
     model : ReducedModel
-        Three degrees of freedom under the published closure, leading axis (members,).
+        Of three degrees of freedom with the published closure, leading axis (members,).
     wind_speed : (members,)
         [m/s].
 
@@ -84,7 +85,7 @@ def explicit_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmoni
 
 
 def _scalar_equation(model: ReducedModel, wind_speed: FloatArray) -> _ScalarEquation:
-    """Interpolate the characteristic polynomials on a circle and solve the statics."""
+    """Interpolate the characteristic polynomials from values on a circle, and solve the statics."""
     square = wind_speed[:, None] ** 2
     vectors = square[..., None] * model.load.table[:, 0].swapaxes(-1, -2)
     frequency = np.sqrt(np.abs(diagonals(model.stiffness)))
@@ -111,14 +112,14 @@ def _dynamic_stiffness(model: ReducedModel, s: ComplexArray) -> ComplexArray:
 
 
 def _angle_rows(model: ReducedModel, wind_speed: FloatArray, s: ComplexArray) -> ComplexArray:
-    """Return the row r(s) with alpha' = r(s) q, eq. (A16): (members, points, 3)."""
+    """Return the rows r(s) of alpha' = r(s) q, eq. (A16): (members, points, 3)."""
     m = model.mass.shape[-1]
     form = model.load.forms[:, None, 0, 0]
     return np.asarray(form[..., :m] + form[..., m:] * (s / wind_speed[:, None])[..., None])
 
 
 def _mean_angle(static: FloatArray, angle: FloatArray) -> FloatArray:
-    """Solve the statics of alpha_0 under an oscillation of amplitude R, by Newton's method from zero."""
+    """Return the mean angle alpha_0 under an oscillation of amplitude R [rad], by Newton's method from zero."""
     g_1, g_2, g_3 = (static[..., j] for j in range(3))
     half = 0.5 * angle**2
     alpha = np.zeros_like(angle)
@@ -131,12 +132,12 @@ def _mean_angle(static: FloatArray, angle: FloatArray) -> FloatArray:
 
 
 def _gains(alpha: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return the factors of B_1, B_2, B_3 in the gain N: (..., 3)."""
+    """Return the factors of B_1, B_2, B_3 in the gain N of section 7.1: (..., 3)."""
     return np.stack([np.ones_like(alpha), 2.0 * alpha, 3.0 * alpha**2 + 0.75 * angle**2], axis=-1)
 
 
 def _even_part(equation: _ScalarEquation, member: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the even part of the polynomial at both roots w^2 of its odd part, and those roots: (..., 2) each."""
+    """Return the even part at both roots w^2 of the odd part, and these roots (NaN if not positive): (..., 2) each."""
     if compiled.AVAILABLE:
         return compiled.even_part(equation.polynomials, equation.static, member, angle)
     gains = _gains(_mean_angle(equation.static[member], angle), angle)
@@ -153,14 +154,14 @@ def _even_part(equation: _ScalarEquation, member: IntArray, angle: FloatArray) -
 
 
 def _even_part_at_root(equation: _ScalarEquation, member: IntArray, root: IntArray, angle: FloatArray) -> FloatArray:
-    """Return the even part at one of the two roots of the odd part: (brackets,)."""
+    """Return the even part at the root with index `root` (0 or 1) of the odd part: (brackets,)."""
     return np.asarray(_even_part(equation, member, angle)[0][np.arange(member.size), root])
 
 
 def _cut_to_real_roots(
     equation: _ScalarEquation, member: IntArray, root: IntArray, left: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Cut each cell to where the root of the odd part is real and positive: pairs of roots may be born inside."""
+    """Shrink each cell to where the root of the odd part is real and positive; a pair of roots may begin inside it."""
     known = [np.isfinite(_even_part_at_root(equation, member, root, end)) for end in (left, right)]
     low, high = _bisect(
         lambda middle: np.isfinite(_even_part_at_root(equation, member, root, middle)) == known[0],
@@ -173,7 +174,7 @@ def _cut_to_real_roots(
 def _bisect(
     like_left: Callable[[FloatArray], BoolArray], left: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Halve brackets; cells of the grid are a third of the angle wide, so that 14 times leave 2e-5 of it."""
+    """Bisect brackets; a grid cell is a third of the angle wide, so 14 halvings leave 2e-5 of the angle."""
     for _ in range(HALVINGS):
         middle = 0.5 * (left + right)
         same = like_left(middle)
@@ -202,10 +203,10 @@ def _cycles_at_roots(
 
 
 def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
-    """Guess a cycle along every unstable mode of any model from the energy of one period.
+    """Estimate a cycle along every unstable mode of any model by the balance of energy over one period.
 
-    Along q = R Re(v exp(i w t)) the wind's work less the damping's is p_1 R^2 + p_3 R^4 for a cubic load; the even
-    powers do no work. The guess is the R where it vanishes.
+    Along q = R Re(v exp(i w t)) the work of the wind minus that of the damping is p_1 R^2 + p_3 R^4 for a cubic load;
+    the quadratic terms do no work. The estimate is the R at which it vanishes.
 
     Parameters
     ----------
@@ -217,7 +218,7 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     Returns
     -------
     FirstHarmonic
-        With mean zero; angle is NaN.
+        With zero mean; `angle` is NaN.
     """
     matrices = at_wind(state_matrices(model), wind_speed)
     values = eigenvalues(matrices)
@@ -238,9 +239,10 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
 
 
 def _unstable_modes(matrices: FloatArray, values: ComplexArray) -> ComplexArray:
-    """Return the coordinates of unit length of the eigenvectors to eigenvalues (k,) of matrices (k, 2 m, 2 m): (k, m).
+    """Return the displacement part, of unit norm, of the eigenvectors to eigenvalues (k,): (k, m).
 
-    Of y' = A y with y = (q, q'), by two steps of inverse iteration beside each eigenvalue, exact enough for a guess.
+    The matrices (k, 2 m, 2 m) are A of y' = A y with y = (q, q'). Two steps of inverse iteration close to each
+    eigenvalue are accurate enough for a guess.
     """
     m = matrices.shape[-1] // 2
     beside = values[:, None, None] * (1.0 + 1e-9)
@@ -259,7 +261,7 @@ def _complex(values: AnyArray) -> ComplexArray:
 def _work(
     model: ReducedModel, wind_speed: FloatArray, frequency: FloatArray, shape: ComplexArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return p_1 and p_3, from the work at two amplitudes on samples that resolve the fourth harmonic."""
+    """Return p_1 and p_3 from the work at two amplitudes; ten samples resolve the fourth harmonic."""
     phase = np.exp(2j * np.pi * np.arange(10) / 10.0)[:, None]
     q = (shape[:, None] * phase).real
     velocity = (1j * frequency[:, None, None] * shape[:, None] * phase).real

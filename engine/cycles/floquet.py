@@ -1,4 +1,4 @@
-"""Floquet stability of periodic motions. Theory section 7.3."""
+"""Floquet multipliers and stability of periodic motions. Theory section 7.3."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,15 +12,15 @@ from engine.models.aerodynamic_load import force_gradient
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
 
-PHASE_PER_STEP = 0.9  # rad of the root of the trace, which bounds the fastest mode: the series is exact to 1e-6
+PHASE_PER_STEP = 0.9  # rad of sqrt(trace(M^-1 K)) t, which bounds the fastest mode: the series is exact to 1e-6
 FEWEST_STEPS = 16
-BLOCK_NUMBERS = 1_000_000  # in the matrices of all steps of one block of cycles
-MOST_STEPS = 2048  # a mode so much faster than the cycle is not followed: the stability is then unknown
+BLOCK_NUMBERS = 1_000_000  # largest number of entries in the matrices of one block of cycles
+MOST_STEPS = 2048  # beyond this number a mode is too fast for the cycle to be integrated; its stability is unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Floquet:
-    """Multipliers of a stack of orbits.
+    """Floquet multipliers and stability of a stack of orbits.
 
     multipliers: (cycles, 2 m) complex, the trivial one first, NaN where they were not computed; trivial_error:
     (cycles,), its distance from 1, which bounds what the others may be trusted to; stability: (cycles,) of Stability.
@@ -32,7 +32,7 @@ class Floquet:
 
 
 def floquet(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int = 1) -> Floquet:
-    """Integrate the linearized equations over one period and judge the multipliers.
+    """Return the Floquet multipliers and the stability of orbits, from the linearized equations over one period.
 
     Parameters
     ----------
@@ -62,16 +62,19 @@ def floquet(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int
 
 
 def stability_verdicts(largest: FloatArray, error: FloatArray) -> ObjectArray:
-    """Judge by the largest modulus of the other multipliers: what the error does not decide is unknown."""
+    """Return the stability that follows from the largest modulus of the nontrivial multipliers (cycles,).
+
+    error (cycles,) is the distance of the trivial multiplier from 1; UNKNOWN where it leaves the stability undecided.
+    """
     margin = np.maximum(3.0 * error, 1e-7)
     verdicts = np.array([Stability.UNKNOWN, Stability.STABLE, Stability.UNSTABLE], dtype=np.object_)
     return verdicts[1 * (largest < 1.0 - margin) + 2 * (largest > 1.0 + margin)]
 
 
 def monodromy(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int = 1) -> FloatArray:
-    """Return the monodromy matrix of (q, q'/w) over one period: (cycles, 2 m, 2 m), NaN where it cannot be followed.
+    """Return the monodromy matrix of (q, q'/w): (cycles, 2 m, 2 m), NaN where a period needs too many steps.
 
-    Parameters as of `floquet`.
+    The parameters are those of `floquet`.
     """
     size = 2 * model.mass.shape[-1]
     inverse = np.asarray(np.linalg.inv(model.mass), dtype=np.float64)
@@ -91,7 +94,7 @@ def monodromy(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: i
 def _compiled_products(
     model: ReducedModel, member: IntArray, orbits: Orbits, inverse: FloatArray, steps: IntArray
 ) -> FloatArray:
-    """Return the products of all steps over one period, NaN where there are none."""
+    """Return the monodromy matrices by the compiled kernel, NaN where the number of steps is 0."""
     harmonics = orbits.coefficients.shape[-1] // 2
     counts = np.unique(np.append(steps, 0))
     bases = [_gauss_basis(count, harmonics) for count in counts.tolist()]
@@ -102,9 +105,9 @@ def _compiled_products(
 
 
 def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> FloatArray:
-    """Integrate by Magnus' method of fourth order, two Gauss points a step: the constant part is exact.
+    """Return the monodromy matrices by Magnus' fourth-order method with two Gauss points per step.
 
-    The number of steps is a power of two.
+    The constant part of the equations is integrated exactly. The number of steps is a power of two.
     """
     width = 2.0 * np.pi / steps
     with np.errstate(over="ignore", invalid="ignore"):
@@ -116,7 +119,7 @@ def _product_over_period(model: ReducedModel, orbits: Orbits, steps: int) -> Flo
 
 
 def step_maps(first: FloatArray, second: FloatArray, width: float) -> FloatArray:
-    """Return the maps over steps of this width from the generators at their two Gauss points, all (..., n, n)."""
+    """Return the maps over steps of a given width [rad] from the state matrices at both Gauss points: (..., n, n)."""
     commutator = second @ first - first @ second
     return _exponential(0.5 * width * (first + second) + (np.sqrt(3.0) / 12.0 * width**2) * commutator)
 
@@ -135,7 +138,7 @@ def _gauss_basis(steps: int, harmonics: int) -> tuple[FloatArray, FloatArray]:
 
 
 def steps_needed(square: FloatArray, angular_frequency: FloatArray) -> IntArray:
-    """Return the number of steps a period, a power of two, that resolves the fastest mode of M^-1 K: (cycles,)."""
+    """Return the number of steps per period, a power of two, that resolves the fastest mode of M^-1 K: (cycles,)."""
     trace = np.trace(square, axis1=-2, axis2=-1)
     needed = 2.0 * np.pi / PHASE_PER_STEP * np.sqrt(np.abs(trace)) / angular_frequency
     return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, FEWEST_STEPS, 2 * MOST_STEPS))), dtype=np.intp)
@@ -144,7 +147,10 @@ def steps_needed(square: FloatArray, angular_frequency: FloatArray) -> IntArray:
 def state_matrix(
     model: ReducedModel, state: FloatArray, angular_frequency: FloatArray, wind_speed: FloatArray
 ) -> FloatArray:
-    """Return A of y' = A y, y = (q, dq/dtau), about states (cycles, samples, 2 m): (cycles, samples, 2 m, 2 m)."""
+    """Return A of the linearized equations y' = A y, y = (q, dq/dtau): (cycles, samples, 2 m, 2 m).
+
+    They are linearized about states (q, q'/U) of shape (cycles, samples, 2 m).
+    """
     m = model.mass.shape[-1]
     gradient = force_gradient(model.load, state)
     omega, speed = angular_frequency[:, None, None, None], wind_speed[:, None, None, None]
@@ -159,7 +165,7 @@ def state_matrix(
 
 
 def _exponential(matrix: FloatArray) -> FloatArray:
-    """Sum the series of the exponential to degree 8 with four products; the steps keep its argument small."""
+    """Return the matrix exponential by its series to degree 8 in four products; the argument is small."""
     identity = np.eye(matrix.shape[-1])
     square = matrix @ matrix
     cube, fourth = square @ matrix, square @ square
@@ -168,7 +174,7 @@ def _exponential(matrix: FloatArray) -> FloatArray:
 
 
 def ordered_product(factors: FloatArray) -> FloatArray:
-    """Multiply (cycles, steps, n, n) in time order, later factors on the left, pairwise; steps is a power of two."""
+    """Return the product of factors (cycles, steps, n, n), later ones on the left; steps is a power of two."""
     while factors.shape[1] > 1:
         factors = factors[:, 1::2] @ factors[:, ::2]
     return factors[:, 0]

@@ -1,7 +1,7 @@
 """Harmonic balance of the reduced models: periodic solutions with H harmonics. Theory section 7.2.
 
-Coefficients of each coordinate stand in the order mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The load is a
-cubic polynomial of (q, q'/U), so 4 H + 2 samples in time give its first H harmonics without aliasing.
+The coefficients of each coordinate are ordered mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The load is a cubic
+polynomial of (q, q'/U), so 4 H + 2 samples in time yield its first H harmonics without aliasing.
 """
 
 from dataclasses import dataclass
@@ -32,8 +32,9 @@ class Orbits:
 class Basis:
     """Fourier basis on 4 H + 2 samples of one period.
 
-    values, slopes: (samples, 2 H + 1), the basis and its derivative by tau; projection: (2 H + 1, samples), least
-    squares from samples to coefficients; derivative: (2 H + 1, 2 H + 1), coefficients of the derivative by tau.
+    values, slopes: (samples, 2 H + 1), the basis functions and their derivatives by tau; projection:
+    (2 H + 1, samples), from samples to coefficients; derivative: (2 H + 1, 2 H + 1), from coefficients to those of the
+    derivative by tau.
     """
 
     values: FloatArray
@@ -44,7 +45,7 @@ class Basis:
 
 @lru_cache
 def basis(harmonics: int) -> Basis:
-    """Make the Fourier basis of H harmonics."""
+    """Return the Fourier basis of H harmonics."""
     samples = 4 * harmonics + 2
     tau = 2.0 * np.pi * np.arange(samples) / samples
     values = fourier(tau, harmonics)
@@ -58,7 +59,7 @@ def basis(harmonics: int) -> Basis:
 
 
 def fourier(tau: FloatArray, harmonics: int) -> FloatArray:
-    """Evaluate 1, cos tau, sin tau, ..., cos H tau, sin H tau: tau.shape + (2 H + 1,)."""
+    """Return 1, cos tau, sin tau, ..., cos H tau, sin H tau at phases tau: tau.shape + (2 H + 1,)."""
     angle = tau[..., None] * np.arange(1, harmonics + 1)
     waves = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(*tau.shape, 2 * harmonics)
     return np.concatenate([np.ones((*tau.shape, 1)), waves], axis=-1)
@@ -76,7 +77,7 @@ def states(orbits: Orbits, tau: FloatArray) -> FloatArray:
 
 
 def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
-    """Return the harmonics of M q'' + C q' + K q - U^2 f: (cycles, m, 2 H + 1), generalized force."""
+    """Return the residual, the harmonics of M q'' + C q' + K q - U^2 f: (cycles, m, 2 H + 1) [N or N m]."""
     fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
     load = force(model.load, _sampled(orbits, fourier_basis))
     square = orbits.wind_speed[:, None, None] ** 2
@@ -86,8 +87,8 @@ def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
 def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     """Differentiate the residual by the coefficients and by w: (cycles, m (2 H + 1), m (2 H + 1) + 1).
 
-    Each block of two coordinates is linear in M_ij, C_ij, K_ij and the samples of the load's gradient, so one product
-    with a constant matrix makes all blocks.
+    The block of a pair of coordinates is linear in M_ij, C_ij, K_ij and the samples of the load's gradient, so all
+    blocks come from one product with a constant matrix.
     """
     fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
     cycles, m, size = orbits.coefficients.shape
@@ -108,7 +109,7 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
 
 
 def wind_slopes(model: ReducedModel, orbits: Orbits) -> FloatArray:
-    """Differentiate the residual by the wind speed, the coordinates held: (cycles, m, 2 H + 1)."""
+    """Differentiate the residual by the wind speed at constant coefficients: (cycles, m, 2 H + 1)."""
     fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
     m = model.mass.shape[-1]
     state = _sampled(orbits, fourier_basis)
@@ -122,7 +123,7 @@ def wind_slopes(model: ReducedModel, orbits: Orbits) -> FloatArray:
 def balance(
     model: ReducedModel, member: IntArray, start: Orbits, options: NewtonOptions | None = None
 ) -> tuple[Orbits, Solution]:
-    """Solve the harmonic balance from many starts at once.
+    """Solve the harmonic balance from many starts side by side.
 
     Parameters
     ----------
@@ -131,7 +132,7 @@ def balance(
     member : (cycles,)
         The model of each start.
     start : Orbits
-        The phase of each solution is that of its start: <q - q_start, dq_start/dtau> = 0 in the mass.
+        Initial guesses; <q - q_start, dq_start/dtau> = 0, weighted with the mass, fixes the phase of each solution.
     options : NewtonOptions, optional
 
     Returns
@@ -139,7 +140,7 @@ def balance(
     Orbits
         The solutions, also where Newton's method did not converge.
     Solution
-        How it went; a start that fell to the equilibrium counts as not converged.
+        Outcome and iterations; a start that falls to the equilibrium does not converge.
     """
     _, m, size = start.coefficients.shape
     weight = np.sqrt(model.modal_masses)[member]
@@ -168,12 +169,12 @@ def balance(
 
 
 def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[FloatArray, FloatArray]:
-    """Return residuals and all their slopes at once, for members (cycles,) of a stack of models.
+    """Return residuals and all their derivatives, for members (cycles,) of a stack of models.
 
     Returns
     -------
     (cycles, n), (cycles, n, n + 2)
-        With n = m (2 H + 1); slopes by the coefficients, by w and by the wind speed.
+        n = m (2 H + 1); derivatives by the coefficients, by w and by the wind speed.
     """
     if compiled.AVAILABLE:
         return compiled.balance_slopes(
@@ -185,19 +186,19 @@ def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[F
 
 
 def total_size(model: ReducedModel, member: IntArray, coefficients: FloatArray) -> FloatArray:
-    """Return the root of sum M_ii |q_i|^2 over coefficients (cycles, m, 2 H + 1), the mean among them: (cycles,)."""
+    """Return the root of sum M_ii |q_i|^2 over coefficients (cycles, m, 2 H + 1), mean included: (cycles,)."""
     weight = model.modal_masses[member]
     return np.asarray(np.sqrt(np.einsum("kmc,km->k", coefficients**2, weight)))
 
 
 def oscillation_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return the root of sum M_ii |q_i|^2 over the oscillating harmonics: (cycles,)."""
+    """Return the root of sum M_ii |q_i|^2 over all harmonics but the mean: (cycles,)."""
     weight = model.modal_masses[member]
     return np.asarray(np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight)))
 
 
 def first_harmonic_angle(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return the largest amplitude along the span of the angle of attack in the first harmonic: (k,) [rad]."""
+    """Return the largest first-harmonic amplitude of the angle of attack along the span: (k,) [rad]."""
     forms = model.load.angle[member]
     m = orbits.coefficients.shape[1]
     cosine, sine = orbits.coefficients[:, :, 1], orbits.coefficients[:, :, 2]
@@ -209,7 +210,7 @@ def first_harmonic_angle(model: ReducedModel, member: IntArray, orbits: Orbits) 
 
 
 def resized(orbits: Orbits, harmonics: int) -> Orbits:
-    """Cut or pad the coefficients to a number of harmonics."""
+    """Truncate the coefficients to a number of harmonics, or pad them with zeros."""
     size = 2 * harmonics + 1
     kept = orbits.coefficients[..., :size]
     padded = np.zeros((*kept.shape[:-1], size))
@@ -218,14 +219,14 @@ def resized(orbits: Orbits, harmonics: int) -> Orbits:
 
 
 def select(orbits: Orbits, index: IntArray) -> Orbits:
-    """Pick or repeat orbits of a stack."""
+    """Select or repeat orbits of a stack."""
     return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
 
 
 def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
     """Return half of the peak-to-peak of Fourier series (..., 2 H + 1): (...).
 
-    The extremes on a grid of 16 samples a harmonic are refined by the parabola through three samples.
+    The extremes on a grid of 16 samples per harmonic are refined by a parabola through three samples.
     """
     harmonics = coefficients.shape[-1] // 2
     samples = 16 * harmonics + 16
@@ -246,7 +247,7 @@ def _peak(values: FloatArray) -> FloatArray:
 
 @lru_cache
 def _block_basis(harmonics: int) -> FloatArray:
-    """Return the blocks of the Jacobian per unit of w^2 M, w C, K and of each sample of the gradient, flattened."""
+    """Return the flattened Jacobian blocks per unit of w^2 M, w C, K and of each sample of the gradient."""
     fourier_basis = basis(harmonics)
     linear = np.stack(
         [fourier_basis.derivative @ fourier_basis.derivative, fourier_basis.derivative, np.eye(2 * harmonics + 1)]

@@ -1,7 +1,7 @@
-"""All limit cycles that can be reached at the requested wind speeds. Theory sections 7.1 to 7.3.
+"""Search for all limit cycles at the wind speeds asked for. Theory sections 7.1 to 7.3.
 
-Branches are followed from every Hopf point; whatever starts lead to besides is followed both ways until nothing new
-appears. Cycles on one branch, or on branches that meet, form a family.
+Branches are followed from every Hopf point. Every further cycle that a start leads to is followed in both directions
+until no new cycle appears. Cycles on the same branch, or on branches that share a cycle, form a family.
 """
 
 from dataclasses import dataclass
@@ -25,12 +25,10 @@ from engine.models.critical_wind_speeds import Crossings
 from engine.models.reduced_model import ReducedModel, lowest_frequency, take
 from engine.result import FoundBy
 
-LARGEST_TAIL = (
-    1e-4  # share of the last harmonics, or relative error of the multipliers, above which more effort is taken
-)
-SMALLEST = 1e-6  # of the start's size: a smaller solution is the equilibrium
+LARGEST_TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which a cycle is refined
+SMALLEST = 1e-6  # size relative to the start's, below which a solution is the equilibrium
 MOST_HARMONICS = 12
-STEP_FACTOR = 4  # times the steps of the Floquet integration for cycles that need more harmonics
+STEP_FACTOR = 4  # on the number of steps of the Floquet integration, for cycles that need more harmonics
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +36,10 @@ class Cycles:
     """Limit cycles of a stack of models.
 
     member, wind: (cycles,), indices of model and wind speed; branch: (cycles,), number of the connected family within
-    its member, by the lowest Hopf point that it comes from, families without one after those; dropped: (members,),
-    solutions left out because more harmonics did not resolve them either; traces: the branches that were followed;
-    followed: (branches,) of all traces one after another, the family of each; found_by, harmonics: (cycles,), how each
-    was found and the number of harmonics that it took.
+    its member, numbered as `KnownCycles.families` does; dropped: (members,), number of solutions left out because more
+    harmonics did not resolve them either; branch_sets: the branches that were followed; followed: (branches,), family
+    of each branch, for all branch sets one after another; found_by, harmonics: (cycles,), the search that found each
+    cycle and the number of harmonics that it was solved with.
     """
 
     member: IntArray
@@ -57,14 +55,14 @@ class Cycles:
 
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Guess cycles of every unstable mode at every wind speed by the balance of energy."""
+    """Return starts along every unstable mode at every wind speed [m/s], by the balance of energy over one period."""
     member, wind = _grid_points(model, wind_speeds)
     guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
 def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Take the explicit cycles of the published closure as guesses, for members that are statically stable."""
+    """Return the explicit cycles of the published closure as starts, for members that are statically stable."""
     member, wind = _grid_points(published, wind_speeds)
     guess = explicit_cycles(take(published, member), wind_speeds[wind])
     return _starts(guess, member, wind, wind_speeds, harmonics)
@@ -78,22 +76,23 @@ def find_cycles(
     harmonics: int,
     integrated: Starts | None = None,
 ) -> Cycles:
-    """Find every cycle at the wind speeds that lies on a branch from a Hopf point or is reached from a start.
+    """Find the cycles at the wind speeds that lie on a branch from a Hopf point or that a start leads to.
 
-    The balance of energy of every unstable mode is tried as well; starts that point to a known cycle are left out.
+    Starts along every unstable mode, by the balance of energy, are tried as well. Starts that are likely to lead to a
+    known cycle are left out.
 
     Parameters
     ----------
     model : ReducedModel
         Leading axis (members,).
     crossings : Crossings
-        All that were asked for; branches begin at their Hopf points.
+        Of these models up to the limit asked for; branches start at the Hopf points among them.
     wind_speeds : (winds,)
         In rising order [m/s].
     starts : Starts
     harmonics : int
     integrated : Starts, optional
-        Where direct integration arrived; all of them are tried.
+        Cycles read from direct integration; all of them are tried.
 
     Returns
     -------
@@ -121,7 +120,7 @@ def find_cycles(
 def _branches_from_hopf_points(
     model: ReducedModel, crossings: Crossings, winds: FloatArray, harmonics: int
 ) -> list[BranchSet]:
-    """Follow the branches of all onsets, then of the Hopf points at which none of those ended."""
+    """Follow the branches from all onsets, then from the Hopf points at which none of these ended."""
     onset = np.flatnonzero(crossings.oscillation & crossings.onset)
     first = follow_from_hopf_points(model, crossings, onset, harmonics, winds)
     restabilizations = np.flatnonzero(crossings.oscillation & ~crossings.onset)
@@ -133,7 +132,7 @@ def _branches_from_hopf_points(
 
 
 def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray, found_by: FoundBy) -> IntArray:
-    """Solve for the cycles at the wind speeds that followed branches pass; return the numbers of these branches."""
+    """Solve for the cycles where followed branches cross the wind speeds; return the numbers of these branches."""
     followed = known.add_branches(branch_set.problem.member, branch_set.hopf_wind_speed)
     branch, wind, orbits = guessed_cycles(branch_set, winds)
     starts, good = solve_starts(branch_set.problem.model, Starts(branch_set.problem.member[branch], wind, orbits))
@@ -154,14 +153,14 @@ def _starts(
     wind_speeds: FloatArray,
     harmonics: int,
 ) -> Starts:
-    """Turn guesses at points of the grid into orbits with more harmonics."""
+    """Convert first-harmonic cycles at points of the grid to starts with H harmonics."""
     first = np.stack([guess.mean, guess.amplitude.real, -guess.amplitude.imag], axis=-1)
     orbits = Orbits(first, guess.angular_frequency, wind_speeds[wind[guess.member]])
     return Starts(member[guess.member], wind[guess.member], resized(orbits, harmonics))
 
 
 def solve_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:
-    """Balance all starts at members of a stack of models and tell which ended on a cycle."""
+    """Solve the balance from all starts; return the solutions and which of them are cycles (starts,)."""
     orbits, solution = balance(model, starts.member, starts.orbits)
     before = oscillation_size(model, starts.member, starts.orbits)
     size = oscillation_size(model, starts.member, orbits)
@@ -171,7 +170,7 @@ def solve_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray
 
 
 def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[BranchSet, ...]) -> Cycles:
-    """Judge the stability of all cycles and sort them."""
+    """Return all cycles with their stability, sorted by member, wind speed and branch."""
     if not len(known):
         return _no_cycles(model, branch_sets, known.families()[1])
     every_cycle = np.arange(len(known))
@@ -200,12 +199,12 @@ def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[B
 def resolved_stability(
     model: ReducedModel, member: IntArray, orbits: Orbits
 ) -> tuple[Orbits, Floquet, BoolArray, IntArray]:
-    """Judge the stability of cycles (k,), with more harmonics and finer steps where those taken are too few.
+    """Compute the stability of cycles (k,), with more harmonics and finer steps where the first ones are too coarse.
 
     Returns
     -------
     Orbits, Floquet, (k,), (k,)
-        Which of them are resolved, and the number of harmonics that each took.
+        The cycles, their stability, which of them are resolved, and the number of harmonics of each.
     """
     floquet_result = floquet(model, member, orbits)
     largest = np.abs(floquet_result.multipliers).max(axis=-1, initial=1.0)
@@ -221,7 +220,7 @@ def resolved_stability(
 
 
 def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return the share of the last two harmonics in the size of each cycle, 0 where fewer than three were asked for."""
+    """Return the share of the last two harmonics in the size of each cycle; 0 for fewer than three harmonics."""
     if orbits.coefficients.shape[-1] // 2 < 3:
         return np.zeros(member.size)
     last = Orbits(orbits.coefficients[..., -5:], orbits.angular_frequency, orbits.wind_speed)
@@ -231,7 +230,7 @@ def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
 def _refined(
     model: ReducedModel, member: IntArray, orbits: Orbits, floquet_result: Floquet, coarse: IntArray
 ) -> tuple[Orbits, Floquet, BoolArray]:
-    """Balance some cycles again with more harmonics, judge them anew, and tell which of them that resolved."""
+    """Solve coarse cycles again with more harmonics; return all cycles, their stability and which are now resolved."""
     harmonics = max(MOST_HARMONICS, orbits.coefficients.shape[-1] // 2)
     finer, solution = balance(model, member[coarse], resized(select(orbits, coarse), harmonics))
     finer_result = floquet(model, member[coarse], finer, STEP_FACTOR)

@@ -1,1 +1,1 @@
-"""Newton's method, continuation and polynomials: mathematics that knows nothing of lines."""
+"""Newton's method, continuation and polynomials: mathematics without any knowledge of lines."""

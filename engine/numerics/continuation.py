@@ -1,7 +1,8 @@
-"""Pseudo-arclength continuation of stacks of branches, and points on them where a test function vanishes.
+"""Pseudo-arclength continuation of stacks of branches, and location of zeros of a test function on them.
 
-It knows no physics: a problem gives residuals and their slopes by the unknowns and by one parameter, the last entry of
-each point. Branches run side by side, each with a step of its own. Theory section 7.2.
+Nothing here depends on physics: a problem provides residuals and their derivatives by the unknowns and by one
+parameter, which is the last entry of each point. Branches run side by side, each with its own step length. Theory
+section 7.2.
 """
 
 from collections.abc import Callable, Generator
@@ -21,33 +22,33 @@ ALL_UNKNOWNS = slice(None)
 
 
 class Problem(Protocol):
-    """Equations of a stack of branches: n of them in n unknowns and a parameter, which is the last of n + 1 entries."""
+    """Equations of a stack of branches: n equations in n unknowns and a parameter, the last of n + 1 entries."""
 
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals (k, n) and slopes (k, n, n + 1) at points (k, n + 1) of branches (k,).
+        """Return residuals (k, n) and derivatives (k, n, n + 1) at points (k, n + 1) of branches (k,).
 
-        anchor (k, n + 1) is a point nearby, for conditions that fix a phase relative to it.
+        anchor (k, n + 1) is a nearby point, for conditions that fix a phase relative to it.
         """
         ...
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
-        """Return the size by which each entry of the points is measured: (k, n + 1)."""
+        """Return the scale of each entry of the points, for norms of steps: (k, n + 1)."""
         ...
 
     def correct(
         self, start: "NewtonStart", branch: IntArray, condition: tuple[FloatArray, FloatArray], options: NewtonOptions
     ) -> tuple[Solution, FloatArray]:
-        """Solve together with the condition row . z = value, of shapes (k, n + 1) and (k,), by Newton's method.
+        """Solve the equations with the condition row . z = value, of shapes (k, n + 1) and (k,), by Newton's method.
 
-        Return the solution, and the direction (k, n + 1) in which row . z alone grows before the last step.
-        A problem that has no faster way keeps this one.
+        Return the solution and the direction (k, n + 1) in which only row . z grows, at the point before the last step.
+        A problem with a faster solver overrides this method.
         """
         return correct_by_newton(self, start, branch, condition, options)
 
 
 @dataclass(frozen=True, slots=True)
 class NewtonStart:
-    """Where Newton's method begins: guess, anchor of the phase, and scale of the step, all (k, n + 1)."""
+    """Where Newton's method starts: guess, anchor of the phase and scale of the step, each (k, n + 1)."""
 
     guess: FloatArray
     anchor: FloatArray
@@ -61,7 +62,7 @@ def correct_by_newton(
     condition: tuple[FloatArray, FloatArray],
     options: NewtonOptions,
 ) -> tuple[Solution, FloatArray]:
-    """Solve a problem and one linear condition more by Newton's method on its slopes; see `Problem.correct`."""
+    """Solve a problem with one additional linear condition by Newton's method; see `Problem.correct`."""
     row, value = condition
     matrices = np.full((*row.shape, row.shape[-1]), np.nan)
 
@@ -77,7 +78,11 @@ def correct_by_newton(
 
 @dataclass(frozen=True, slots=True)
 class BranchPoints:
-    """Points on branches: branch (k,); z, the problem's scale there, and the unit tangent in it, (k, n + 1) each."""
+    """Points on branches.
+
+    branch: (k,), index of each point's branch; z: (k, n + 1), the points; scale: (k, n + 1), the problem's scale there;
+    tangent: (k, n + 1), of unit norm in that scale.
+    """
 
     branch: IntArray
     z: FloatArray
@@ -85,17 +90,17 @@ class BranchPoints:
     tangent: FloatArray
 
     def select(self, index: IntArray | BoolArray) -> "BranchPoints":
-        """Pick points of the stack."""
+        """Select points of the stack."""
         return BranchPoints(self.branch[index], self.z[index], self.scale[index], self.tangent[index])
 
     def overwrite(self, other: "BranchPoints") -> None:
-        """Overwrite the points of the branches that the others lie on; here branch i has row i."""
+        """Overwrite the points of the other points' branches; in this stack branch i has row i."""
         self.z[other.branch], self.scale[other.branch] = other.z, other.scale
         self.tangent[other.branch] = other.tangent
 
 
 def make_points(problem: Problem, branch: IntArray, z: FloatArray, direction: FloatArray) -> BranchPoints:
-    """Make points (k, n + 1) of branches (k,) with tangents along given directions."""
+    """Return points z (k, n + 1) of branches (k,) with unit tangents along directions (k, n + 1)."""
     scale = problem.scale(z, branch)
     return BranchPoints(branch, z, scale, direction / lengths(direction / scale)[:, None])
 
@@ -105,11 +110,11 @@ TestFunction = Callable[[BranchPoints], FloatArray]
 
 @dataclass(frozen=True, slots=True)
 class StepControl:
-    """Lengths of steps in the problem's scale, and when a branch is given up.
+    """Step lengths in the problem's scale, and the limits at which a branch is abandoned.
 
-    A step grows where Newton's method needs fewer than `iterations` and shrinks where it needs more; it is halved where
-    the method fails, the direction turns by more than the angle whose cosine is `straightness`, or the prediction
-    missed by more than the share `miss` of the step.
+    A step grows if Newton's method needs fewer than `iterations` iterations and shrinks if it needs more. It is halved
+    if the method fails, if the cosine between successive tangents falls below `straightness`, or if the prediction
+    misses the solution by more than the fraction `miss` of the step. `points` is the largest number of points.
     """
 
     first: float = 0.05
@@ -122,9 +127,9 @@ class StepControl:
 
 
 def tangents(problem: Problem, z: FloatArray, branch: IntArray, along: FloatArray) -> FloatArray:
-    """Return the unit tangents at points of branches on the side of `along`, all (k, n + 1).
+    """Return the unit tangents (k, n + 1) at points z of branches (k,), directed towards `along` (k, n + 1).
 
-    NaN where the branch has no single direction.
+    NaN where the tangent is not unique.
     """
     scale = problem.scale(z, branch)
     _, slopes = problem.system(z, z, branch)
@@ -135,7 +140,7 @@ def tangents(problem: Problem, z: FloatArray, branch: IntArray, along: FloatArra
 def continue_branches(
     problem: Problem, start: FloatArray, direction: FloatArray, steps: StepControl | None = None
 ) -> Generator[BranchPoints, BoolArray | None, ObjectArray]:
-    """Follow branches from a point each, side by side, also through folds.
+    """Follow branches side by side from one point each, through folds as well.
 
     Parameters
     ----------
@@ -143,20 +148,20 @@ def continue_branches(
     start : (branches, n + 1)
         A point on each branch.
     direction : (branches, n + 1)
-        Tangent along which each is left, of any length.
+        Direction in which each branch is followed, of any length.
     steps : StepControl, optional
 
     Yields
     ------
     BranchPoints
-        The next point of every branch whose step was accepted. Send back which of them go on, (k,); all do if nothing
-        is sent.
+        The next point of every branch whose step was accepted. The caller may send back which of them continue, a
+        boolean array (k,); without it all do.
 
     Returns
     -------
     (branches,) of Outcome
-        CONVERGED where the caller ended the branch, LIMIT_REACHED after the largest number of points, NO_CONVERGENCE
-        where the smallest step failed.
+        CONVERGED if the caller ended the branch, LIMIT_REACHED at the largest number of points, NO_CONVERGENCE if the
+        smallest step failed.
     """
     steps = steps or StepControl()
     active = np.arange(start.shape[0])
@@ -167,7 +172,9 @@ def continue_branches(
     while active.size:
         here = last.select(active)
         guess = _predict(before.select(active), here, length[active])
-        anchor = np.where(np.isnan(before.z[active]), guess, here.z)  # a start may have no phase of its own
+        anchor = np.where(
+            np.isnan(before.z[active]), guess, here.z
+        )  # a starting point may have no phase, as an equilibrium has none
         new, solution = _solve_at_length(problem, here, length[active], guess, anchor, CONTINUATION_OPTIONS)
         good = solution.converged & _stays_on_branch(here, new, guess, steps)
         growth = 2.0 ** ((steps.iterations - solution.iterations) / steps.iterations)
@@ -190,9 +197,9 @@ def continue_branches(
 def interpolate(
     left: BranchPoints, right: BranchPoints, share: FloatArray, unknowns: slice = ALL_UNKNOWNS
 ) -> FloatArray:
-    """Return Hermite's cubic through successive points of branches at shares (k, ...) of the way: (k, ..., n + 1).
+    """Interpolate between successive points of branches by Hermite's cubic: (k, ..., n + 1).
 
-    Or some of the unknowns alone.
+    share (k, ...) is 0 at the left and 1 at the right point; a slice of the unknowns restricts the last axis.
     """
     length = lengths((right.z - left.z) / left.scale)
     after = (length / lengths(right.tangent / left.scale))[:, None] * right.tangent
@@ -205,7 +212,7 @@ def interpolate(
 
 
 def _predict(before: BranchPoints, here: BranchPoints, length: FloatArray) -> FloatArray:
-    """Extrapolate Hermite's cubic through the last two points, or the tangent where there is only one."""
+    """Extrapolate Hermite's cubic through the last two points, or the tangent if there is only one point."""
     step = lengths((here.z - before.z) / before.scale)
     along = lengths(here.tangent / before.scale)
     cubic = interpolate(before, here, 1.0 + length * along / step)
@@ -213,7 +220,7 @@ def _predict(before: BranchPoints, here: BranchPoints, length: FloatArray) -> Fl
 
 
 def _stays_on_branch(here: BranchPoints, new: BranchPoints, guess: FloatArray, steps: StepControl) -> BoolArray:
-    """Tell where a point found lies near its guess and in the direction of the branch: else it may be on another."""
+    """Return which new points lie near their guess and along the branch; others may lie on another branch."""
     new_tangent = new.tangent / here.scale
     cosine = np.einsum("ki,ki->k", new_tangent, here.tangent / here.scale) / lengths(new_tangent)
     far, missed = (lengths((new.z - z) / here.scale) for z in (here.z, guess))
@@ -228,13 +235,13 @@ def _solve_at_length(
     anchor: FloatArray,
     options: NewtonOptions,
 ) -> tuple[BranchPoints, Solution]:
-    """Solve for the points at a given length along the tangents of the base points; NaN where that failed."""
+    """Solve for the points at given lengths (k,) along the tangents of the base points; NaN where the solver failed."""
     row = base.tangent / base.scale**2
     value = np.einsum("ki,ki->k", row, base.z) + length
     start = NewtonStart(guess, anchor, base.scale / np.sqrt(row.shape[-1]))
     solution, direction = problem.correct(start, base.branch, (row, value), options)
     good = np.flatnonzero(solution.converged)
-    # The direction is that of the point to within the last step.
+    # The direction belongs to the point before the last step, which is close enough.
     found = make_points(problem, base.branch[good], solution.x[good], direction[good])
     if good.size == base.branch.size:
         return found, solution
@@ -244,20 +251,20 @@ def _solve_at_length(
 
 
 def _branch_direction(matrix: FloatArray) -> FloatArray:
-    """Solve for the direction in which the last row of a matrix alone grows."""
+    """Return the direction (k, n + 1) whose product with matrices (k, n + 1, n + 1) is (0, ..., 0, 1)."""
     right = np.zeros(matrix.shape[:-1])
     right[:, -1] = 1.0
     return solve_systems(matrix, right)
 
 
 def project_onto_branches(problem: Problem, points: BranchPoints) -> BranchPoints:
-    """Solve for the points of the branches next to these, normal to their tangents; NaN where that failed."""
+    """Solve for the branch points in the planes normal to the tangents of these points; NaN where the solver failed."""
     return _solve_at_length(problem, points, np.zeros(points.branch.size), points.z, points.z, LOCATION_OPTIONS)[0]
 
 
 @dataclass(frozen=True, slots=True)
 class LocatedZeros:
-    """Zeros of a test function: the points, and how far the parameter moved in the last step towards each, (k,)."""
+    """Zeros of a test function: the points, and the change of the parameter in the last step towards each, (k,)."""
 
     points: BranchPoints
     uncertainty: FloatArray
@@ -266,13 +273,13 @@ class LocatedZeros:
 def locate_zeros(
     problem: Problem, left: BranchPoints, right: BranchPoints, test: TestFunction, accuracy: float
 ) -> LocatedZeros:
-    """Find where a test function vanishes between two successive points of branches, by the Illinois method.
+    """Locate zeros of a test function between successive points of branches by the Illinois method.
 
     Parameters
     ----------
     problem : Problem
     left, right : BranchPoints
-        Of the same branches; the test function has opposite signs there.
+        Points of the same branches at which the test function has opposite signs.
     test : callable
         Takes BranchPoints, returns (k,).
     accuracy : float
@@ -281,7 +288,7 @@ def locate_zeros(
     Returns
     -------
     LocatedZeros
-        The uncertainty is infinite where the search left the branch.
+        With infinite uncertainty where the search left the branch.
     """
     whole = np.einsum("ki,ki->k", left.tangent / left.scale, (right.z - left.z) / left.scale)
     end, other = whole.copy(), np.zeros_like(whole)
@@ -298,7 +305,7 @@ def locate_zeros(
         moved[active] = np.abs(point.z[:, -1] - found.z[active, -1])
         found.z[active], found.scale[active], found.tangent[active] = point.z, point.scale, point.tangent
         flips = f * f_b < 0.0
-        # The end that stays has its value halved, so that it moves in the next step.
+        # Halve the value of an end that is kept twice, so that it moves in the next step (Illinois).
         other[active], other_value[active] = np.where(flips, b, a), np.where(flips, f_b, 0.5 * f_a)
         end[active], value[active] = middle, f
         active = active[np.isfinite(f) & (moved[active] > accuracy * np.abs(point.z[:, -1]))]

@@ -1,4 +1,4 @@
-"""Newton's method on stacks of independent systems. Non-convergence is a value, not an exception."""
+"""Newton's method on stacks of independent systems of equations; no convergence is an outcome, not an exception."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from engine.outcome import Outcome
 
 System = Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]
 
-BLOCK_NUMBERS = 2_000_000  # in the Jacobians of one block
+BLOCK_NUMBERS = 2_000_000  # largest number of entries in the Jacobians of one block
 
 
 @dataclass(frozen=True, slots=True)
 class NewtonOptions:
-    """Tolerance of the scaled step, largest scaled step allowed, and largest number of iterations.
+    """Tolerance of the scaled step, largest scaled step, and largest number of iterations.
 
     Convergence is quadratic: after a step of 1e-6 the error is of the order of its square.
     """
@@ -27,7 +27,7 @@ class NewtonOptions:
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """What Newton's method found for each member of a stack.
+    """Result of Newton's method for each member of a stack.
 
     x: (members, unknowns); outcome: (members,) of Outcome; step: (members,), scaled size of the last step;
     iterations: (members,).
@@ -40,22 +40,22 @@ class Solution:
 
     @property
     def converged(self) -> BoolArray:
-        """Members that met the tolerance, (members,)."""
+        """Which members met the tolerance, (members,)."""
         return np.asarray(self.outcome == Outcome.CONVERGED, dtype=np.bool_)
 
 
 def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOptions | None = None) -> Solution:
-    """Solve many systems of equations side by side.
+    """Solve many systems of nonlinear equations side by side.
 
     Parameters
     ----------
     system : callable
-        Takes x (active, unknowns) and the indices (active,) of the members that they belong to; returns residuals
-        (active, equations) and Jacobians (active, equations, unknowns), equations = unknowns.
+        Takes x (active, unknowns) and the indices (active,) of the members they belong to; returns residuals
+        (active, unknowns) and Jacobians (active, unknowns, unknowns).
     x : (members, unknowns)
-        Starts.
+        Initial guesses; members that are not finite are not solved.
     scale : (members, unknowns)
-        Size by which each unknown is measured; a step counts as the root mean square of step / scale. A step above
+        Scale of each unknown; the size of a step is the root mean square of step / scale. A step larger than
         `largest_step` is shortened to it.
     options : NewtonOptions, optional
 
@@ -83,14 +83,14 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOpti
 
 
 def solution_from_steps(x: FloatArray, step: FloatArray, iterations: IntArray, options: NewtonOptions) -> Solution:
-    """Judge the last steps."""
+    """Return the solution whose outcome follows from the size (members,) of the last steps."""
     outcome = filled(step.size, Outcome.NO_CONVERGENCE)
     outcome[step <= options.tolerance] = Outcome.CONVERGED
     return Solution(x, outcome, step, iterations)
 
 
 def _newton_steps(system: System, x: FloatArray, active: IntArray) -> FloatArray:
-    """Solve for the steps of the active members, block by block, so that memory stays flat however many there are."""
+    """Return the Newton steps of the active members, computed in blocks so that memory stays bounded."""
     size = max(1, BLOCK_NUMBERS // x.shape[1] ** 2)
     blocks = [active[first : first + size] for first in range(0, active.size, size)]
     return np.concatenate([_newton_step(*system(x[block], block)) for block in blocks])
@@ -101,7 +101,7 @@ def _newton_step(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
 
 
 def solve_systems(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve linear systems (..., n, n) side by side: (..., n), NaN for those that are singular."""
+    """Solve linear systems with matrices (..., n, n) and right sides (..., n): (..., n), NaN where singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], dtype=np.float64)
     except np.linalg.LinAlgError:

@@ -1,7 +1,7 @@
 """Cubic polynomials without constant term in a few variables, as tables of coefficients over monomials.
 
-The monomials of n variables stand in the order x_0 ... x_(n-1), then the products of two (i <= j), then of three
-(i <= j <= k). A table is an array whose last axis runs over them, so polynomials stack freely.
+The monomials of n variables are ordered x_0 ... x_(n-1), then products of two (i <= j), then of three (i <= j <= k). A
+table is an array whose last axis runs over the monomials; its other axes are arbitrary.
 """
 
 from functools import lru_cache
@@ -17,7 +17,7 @@ DEGREE = 3
 
 @lru_cache
 def monomials(variables: int) -> tuple[tuple[int, ...], ...]:
-    """List the monomials of degree 1 to 3 as sorted tuples of the variables that they multiply."""
+    """Return the monomials of degree 1 to 3, each as the sorted tuple of its factors."""
     return tuple(m for degree in (1, 2, 3) for m in combinations_with_replacement(range(variables), degree))
 
 
@@ -38,7 +38,7 @@ def powers(x: FloatArray, degree: int = DEGREE) -> FloatArray:
 def _products(
     variables: int,
 ) -> tuple[tuple[IntArray, IntArray], ...]:
-    """Say for degrees 2 and 3 which monomial of one degree less and which variable multiply to each monomial."""
+    """Return the indices of the lower monomial and the variable whose product is each monomial of degrees 2 and 3."""
     pairs = []
     for degree in (2, 3):
         below = list(combinations_with_replacement(range(variables), degree - 1))
@@ -51,7 +51,7 @@ def _products(
 def slopes(table: FloatArray) -> FloatArray:
     """Differentiate a table (..., monomials) by each variable: (..., variables, 1 + monomials of degree 1 and 2).
 
-    The first column of the last axis is the constant; the rest stands in the order of `monomials`.
+    The first entry of the last axis is the constant; the others are in the order of `monomials`.
     """
     variables = _variables_of(table.shape[-1])
     derivative = _derivative_map(variables)
@@ -81,7 +81,7 @@ def _derivative_map(variables: int) -> FloatArray:
 
 
 def substitute(table: FloatArray, forms: FloatArray) -> FloatArray:
-    """Put linear forms into the variables of polynomials and sum over points.
+    """Substitute linear forms for the variables of polynomials and sum over points.
 
     Parameters
     ----------
