@@ -1,4 +1,4 @@
-"""What goes out without any job: rows of the conductor catalogue, and the table of input fields."""
+"""What goes out without any job: the conductor catalogue, the fields of a request, and the tables of a result."""
 
 from typing import Any, Literal
 
@@ -54,3 +54,28 @@ class FieldList(Answer):
     """Every field of a request, in the order of the document."""
 
     fields: list[FieldRow] = told("The fields", [example_of(FieldRow)])
+
+
+class ColumnRow(Answer):
+    """One column of a result table; any value may be null where nothing is known."""
+
+    name: str = told("Name in JSON, CSV and Parquet", "vertical_m")
+    kind: Literal["number", "integer", "truth", "text"] = told("What its values are", "number")
+    unit: str | None = told("Unit; null if it is no number", "m")
+    description: str = told("What it holds", "Vertical amplitude")
+    example: Any = told("A usual value", 0.1568)
+
+
+class TableRow(Answer):
+    """One table of a result."""
+
+    name: str = told("Name in the result document", "limit_cycles")
+    address: str = told("Name in addresses, `/results/limit-cycles`", "limit-cycles")
+    title: str = told("What it holds", "Motions at every wind speed")
+    columns: list[ColumnRow] = told("Its columns in order", [example_of(ColumnRow)])
+
+
+class TableList(Answer):
+    """Every table of a result, in the order of the document."""
+
+    tables: list[TableRow] = told("The tables", [example_of(TableRow)])

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from types import NoneType
 from typing import Any, Literal, get_args
 
@@ -37,6 +37,26 @@ def columns_of(table: str, names: Iterable[str]) -> list[Column]:
     own = {} if table == "summary" else _declared(convert.TABLES[table].row)
     known = {**_SUMMARY, **own}
     return [known[name] for name in names]
+
+
+def all_tables() -> list[dict[str, Any]]:
+    """Describe every table of a result: name, address, title, and its columns, each with a usual value."""
+    return [
+        {
+            "name": name,
+            "address": address,
+            "title": convert.TABLES[name].title,
+            "columns": [
+                {**asdict(column), "example": example}
+                for column, example in zip(
+                    columns_of(name, convert.columns(name)),
+                    convert.example_row(convert.TABLES[name].row).values(),
+                    strict=True,
+                )
+            ],
+        }
+        for address, name in convert.TABLES_BY_ADDRESS.items()
+    ]
 
 
 def axis_columns(axes: Sequence[Mapping[str, Any]]) -> list[Column]:

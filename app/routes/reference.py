@@ -1,11 +1,12 @@
-"""What helps to write a request: the catalogue of conductors and the table of input fields."""
+"""What helps to write a request and to read a result: conductors, input fields, and result tables."""
 
 from typing import Annotated
 
 from fastapi import APIRouter, Query
 from fastapi.responses import JSONResponse
 
-from app.answers.reference import ConductorList, FieldList
+from app.answers.reference import ConductorList, FieldList, TableList
+from app.export.columns import all_tables
 from app.http.problems import ProblemKind
 from app.reference import conductors
 from app.routes import documentation, reference_documentation
@@ -40,3 +41,13 @@ def list_conductors(
 def list_fields() -> JSONResponse:
     """List every field of a request with unit, bounds, default and description, made from the schemas themselves."""
     return JSONResponse({"fields": field_table.input_fields()})
+
+
+@router.get(
+    "/tables",
+    response_model=TableList,
+    responses={200: documentation.body("The tables", ("application/json", reference_documentation.TABLES))},
+)
+def list_tables() -> JSONResponse:
+    """List every table of a result with the unit and description of each column, made from their declarations."""
+    return JSONResponse({"tables": all_tables()})

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from app.answers.reference import ConductorRow, FieldRow
+from app.answers.reference import ConductorRow, FieldRow, TableRow
 from app.schemas.fields import example_of
 
 _MEASURED = (
@@ -52,3 +52,4 @@ CONDUCTORS: dict[str, Any] = {"conductors": [example_of(ConductorRow)]}
 FIELDS: dict[str, Any] = {
     "fields": [example_of(FieldRow) | {"fewest_items": None, "most_items": None, "choices": None}],
 }
+TABLES: dict[str, Any] = {"tables": [example_of(TableRow)]}

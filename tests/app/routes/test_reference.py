@@ -1,6 +1,7 @@
 import httpx
 
-from app.answers.reference import ConductorList, FieldList
+from app import convert
+from app.answers.reference import ConductorList, FieldList, TableList
 from app.schemas.field_table import input_fields
 
 
@@ -17,3 +18,13 @@ def test_fields_are_the_table_of_the_schemas(shared_client: httpx.Client) -> Non
     answer = shared_client.get("/v1/fields")
     FieldList.model_validate_json(answer.content)
     assert answer.json()["fields"] == list(input_fields())
+
+
+def test_tables_are_listed_with_every_column(shared_client: httpx.Client) -> None:
+    found = TableList.model_validate_json(shared_client.get("/v1/tables").content).tables
+    assert {table.name: [column.name for column in table.columns] for table in found} == {
+        name: convert.columns(name) for name in convert.TABLES
+    }
+    (cycles,) = (table for table in found if table.address == "limit-cycles")
+    (vertical,) = (column for column in cycles.columns if column.name == "vertical_m")
+    assert (vertical.kind, vertical.unit, vertical.description) == ("number", "m", "Vertical amplitude")
