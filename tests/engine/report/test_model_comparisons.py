@@ -1,45 +1,29 @@
 """The hybrid model's cycles beside the finite element model's, from rows written by hand and from the source's line."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from engine.outcome import Outcome, Stability
 from engine.report.model_comparisons import model_comparisons
-from engine.result import LimitCycleRow
+from engine.result import LimitCycleRow, columns_of
 from engine.spec import Analysis, Model
 from tests.builders import only, run, source_line
 
-HYBRID = LimitCycleRow(
-    model=Model.HYBRID,
-    loops=1,
-    wind_speed_m_per_s=4.0,
-    branch=0,
-    kind="periodic",
-    stability=Stability.STABLE,
-    frequency_hz=0.5,
-    second_frequency_hz=None,
-    observed_at_m=60.0,
-    vertical_m=0.3,
-    horizontal_m=0.4,
-    torsional_rad=0.1,
-    vertical_min_m=None,
-    horizontal_min_m=None,
-    torsional_min_rad=None,
-    vertical_ratio=None,
-    horizontal_ratio=None,
-    reduced_wind_speed=None,
-    vertical_share=None,
-    horizontal_share=None,
-    torsional_share=None,
-    found_by="hopf_branch",
-    harmonics=5,
-    residual=None,
-    truncation=None,
-    detuning_sensitivity=None,
-    direct_difference=None,
-    outcome=Outcome.CONVERGED,
-)
+_SAID: dict[str, Any] = {
+    "model": Model.HYBRID,
+    "loops": 1,
+    "wind_speed_m_per_s": 4.0,
+    "branch": 0,
+    "kind": "periodic",
+    "stability": Stability.STABLE,
+    "vertical_m": 0.3,
+    "horizontal_m": 0.4,
+    "torsional_rad": 0.1,
+    "outcome": Outcome.CONVERGED,
+}
+HYBRID = LimitCycleRow(**{**dict.fromkeys(columns_of(LimitCycleRow)), **_SAID})
 OTHER = replace(HYBRID, model=Model.FINITE_ELEMENT, branch=3, vertical_m=0.6, horizontal_m=0.8)
 
 
