@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
-from engine.cycles.harmonic_balance import half_peak_to_peak, select, states
+from engine.arrays import FloatArray, IntArray, eigenvalues
+from engine.cycles.harmonic_balance import half_peak_to_peak, states
 from engine.mechanics.static_profile import horizontal_position
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
 from engine.models.discretization import Discretization, observation
-from engine.models.reduced_model import take
 from engine.outcome import Outcome, Stability
 from engine.report.cells import finite_or_none, lists_by_line
 from engine.report.findings import ModelFindings
@@ -25,6 +24,7 @@ _UNSTABLE, _NOT_FOUND = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
 _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
 _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
+_ANGLE = "largest_angle_of_attack_rad"
 _FREQUENCIES = ("frequency_hz", "second_frequency_hz")
 _VERDICTS = (Stability.UNKNOWN, Stability.UNSTABLE, Stability.STABLE)
 _NAMES = tuple(field.name for field in fields(LimitCycleRow))
@@ -139,7 +139,8 @@ def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Sc
         here = loops == k
         observed_shapes = observation(discretization, shapes[here], int(k))
         series[here] = observed_shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
-    outside = _outside_fit(findings, discretization.sections.fitted_range[line])
+    angles = _largest_angles(findings)
+    outside = angles > discretization.sections.fitted_range[line]
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
         "stability": cycles.floquet.stability.tolist(),
@@ -149,7 +150,8 @@ def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Sc
         "outcome": [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()],
     }
     keys = _RowKeys(line, loops, cycles.orbits.wind_speed)
-    return _rows(findings, scales, keys, _measures(findings, series), labels, series)
+    measures = _measures(findings, series) | {_ANGLE: angles}
+    return _rows(findings, scales, keys, measures, labels, series)
 
 
 def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
@@ -176,17 +178,19 @@ def _quasi_periodic_motions(
     frequency, _ = base_frequencies(model, member, tori)
     energy = model.modal_masses[member] * mean_square_velocity(tori)
     loops = findings.loops[member, energy.argmax(axis=-1)]
-    ranges, outcome = np.empty((2, 3, member.size)), []
+    ranges, angles, outcome = np.empty((2, 3, member.size)), np.empty(member.size), []
     for i in range(member.size):
         one = tori.select(np.array([i]))
         series = observation(discretization, model.shapes[member[i]], int(loops[i])).T @ one.coefficients[0]
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
-        beyond = largest_angle(model, int(member[i]), one) > discretization.sections.fitted_range[line[i]]
+        angles[i] = largest_angle(model, int(member[i]), one)
+        beyond = angles[i] > discretization.sections.fitted_range[line[i]]
         outcome.append(Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED)
     measures = {
         **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
         **dict(zip(_SHARES, divide_by_direction(energy, model.direction).T, strict=True)),
         **dict(zip(_FREQUENCIES, frequency.T / (2.0 * np.pi), strict=True)),
+        _ANGLE: angles,
         "residual": known.residual,
         "truncation": known.truncation,
         "direct_difference": known.direct,
@@ -251,14 +255,9 @@ def _dominant_loops(findings: ModelFindings) -> IntArray:
     return np.asarray(findings.loops[findings.cycles.member, energy.argmax(axis=-1)])
 
 
-def _outside_fit(findings: ModelFindings, fitted_range: FloatArray) -> BoolArray:
-    """Tell where the largest |alpha| along the span and over the period exceeds the fitted range (cycles,) [rad]."""
+def _largest_angles(findings: ModelFindings) -> FloatArray:
+    """Return the largest |alpha| of each cycle along the span and over the period (cycles,) [rad]."""
     cycles = findings.cycles
-    result = np.zeros(cycles.member.size, dtype=np.bool_)
-    known = np.flatnonzero(np.isfinite(fitted_range))
-    if known.size:
-        orbits = select(cycles.orbits, known)
-        state = states(orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
-        angle = take(findings.model, cycles.member[known]).load.angle
-        result[known] = np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2)) > fitted_range[known]
-    return result
+    state = states(cycles.orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
+    angle = findings.model.load.angle[cycles.member]
+    return np.asarray(np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2), initial=0.0))

@@ -55,6 +55,10 @@ class LimitCycleRow:
     torsional_share: Annotated[
         float | None, Column("Torsional share of the mean kinetic energy; null at rest", 0.0039, unit="1")
     ]
+    largest_angle_of_attack_rad: Annotated[
+        float | None,
+        Column("Largest size of the angle of attack along the span and in time; null at rest", 0.1194, unit="rad"),
+    ]
     found_by: Annotated[
         FoundBy | None,
         Column(

@@ -161,6 +161,26 @@ def test_cycles_beyond_the_fit_say_so() -> None:
     assert any("fitted" in warning for warning in run(narrow, SHORT).warnings)
 
 
+def test_a_cycle_leaves_the_fit_where_its_largest_angle_of_attack_does() -> None:
+    line = source_line(2)
+    angles = [row.largest_angle_of_attack_rad for row in run(line, SHORT).limit_cycles]
+    known = [angle for angle in angles if angle is not None]
+    middle = (min(known) + max(known)) / 2.0
+    fitted = replace(line, ice=replace(line.ice, aerodynamics=replace(ICE_AT_40, fitted_range=middle)))
+    rows = run(fitted, SHORT).limit_cycles
+    assert [row.largest_angle_of_attack_rad for row in rows] == angles
+    assert {row.outcome for row in rows if row.largest_angle_of_attack_rad is not None} == {
+        Outcome.CONVERGED,
+        Outcome.OUTSIDE_FIT,
+    }
+    for row in rows:
+        if row.kind == "equilibrium":
+            assert row.largest_angle_of_attack_rad is None
+        else:
+            assert row.largest_angle_of_attack_rad is not None
+            assert (row.outcome is Outcome.OUTSIDE_FIT) == (row.largest_angle_of_attack_rad > middle)
+
+
 def test_heavy_devices_and_uneven_ice_carry_a_warning() -> None:
     line = source_line(1)
     span_mass = 2.379 * 125.88
