@@ -1,4 +1,4 @@
-"""The order of the steps, and nothing else: lines and an analysis in, progress and results out."""
+"""The order of the steps of an analysis, and nothing else: lines and an analysis in, progress and results out."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
@@ -42,7 +42,7 @@ class _Discretized:
 
 @dataclass(frozen=True, slots=True)
 class _ModelStack:
-    """A stack of models before its motions are sought; the fields are those of ModelFindings."""
+    """A stack of models before its motions are searched; fields as in ModelFindings."""
 
     name: Model
     model: ReducedModel
@@ -70,19 +70,19 @@ def analyse(line: Line, analysis: Analysis) -> Generator[Progress, None, Result]
     Raises
     ------
     InvalidSpec
-        If the analysis cannot be asked of this line.
+        If the line cannot answer the analysis, see `engine.spec.check_compatible`.
     """
     results = yield from analyse_stack((line,), analysis)
     return results[0]
 
 
 def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
-    """Analyse lines with equal numbers of elements side by side; as `analyse`, with one result a line.
+    """Analyse lines with equal numbers of elements side by side; as `analyse`, with one result per line.
 
     Raises
     ------
     InvalidSpec
-        If the analysis cannot be asked of a line, or the lines differ in their number of elements.
+        If a line cannot answer the analysis, or the lines differ in their number of elements.
     """
     for line in lines:
         check_compatible(line, analysis)
@@ -156,7 +156,7 @@ def _analyse_hybrid(prepared: _Discretized, analysis: Analysis) -> ModelFindings
 def _analyse_finite_element(
     prepared: _Discretized, modes: FullModes, hybrid: ModelFindings, analysis: Analysis
 ) -> Generator[Progress, None, ModelFindings]:
-    """Analyse the finite element model of every line, started from the cycles of the hybrid one as well."""
+    """Analyse the finite element model of every line, also starting from the cycles of the hybrid model."""
     yield Progress(0.4, "critical wind speeds of the finite element model")
     model = finite_element_model(prepared.discretization, modes, prepared.shapes, analysis)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
@@ -170,7 +170,7 @@ def _analyse_finite_element(
 
 
 def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: Analysis) -> ModelFindings:
-    """Find all motions of a stack of models at the wind speeds, and hold them against direct integration if asked."""
+    """Find all motions of a stack of models at the wind speeds, and check them by direct integration if asked for."""
     model, direct = stack.model, analysis.check is Check.DIRECT
     integrated_starts = direct_starts(model, winds, analysis.harmonics) if direct else None
     cycles = find_cycles(model, stack.crossings, winds, starts, analysis.harmonics, integrated_starts)
@@ -191,7 +191,7 @@ def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: A
 
 
 def _competitions(prepared: _Discretized, hybrid: ModelFindings, analysis: Analysis) -> list[list[LoopCompetitionRow]]:
-    """Hold the stable cycles of the hybrid model against one another's loops, if that is asked for."""
+    """Check whether the stable cycles of the hybrid model survive motions of other loops, if asked for."""
     if analysis.loop_competition is LoopCompetition.NEGLECTED:
         return [[] for _ in prepared.discretization.lines]
     joint = joint_model(prepared.discretization, prepared.shapes, analysis.loops, analysis)
@@ -207,7 +207,7 @@ def _full_frequencies(modes: FullModes) -> NaturalFrequencies:
 def _cycles_in_full_modes(
     discretization: Discretization, modes: FullModes, hybrid: ModelFindings, model: ReducedModel, harmonics: int
 ) -> Starts:
-    """Express the hybrid cycles in the modes of the finite element model, by projection in the mass."""
+    """Project the hybrid cycles onto the modes of the finite element model, weighted with the mass."""
     cycles: Cycles = hybrid.cycles
     usable = ~model.statically_unstable[hybrid.line[cycles.member]]
     member = cycles.member[usable]

@@ -1,1 +1,1 @@
-"""What tests limit cycles from outside the harmonic balance: direct integration, measures of confidence."""
+"""Checks of limit cycles by other means than the harmonic balance: direct integration, measures of confidence."""

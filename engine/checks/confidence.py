@@ -1,7 +1,4 @@
-"""How far each cycle may be trusted: the rest of its equations, what one harmonic more changes, and how soft it is.
-
-Theory sections 7.3 to 7.5.
-"""
+"""Measures of confidence in each cycle: residual, truncation, sensitivity to detuning. Theory sections 7.3 to 7.5."""
 
 from dataclasses import dataclass, replace
 
@@ -15,20 +12,21 @@ from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.spec import Check
 
-DETUNING = 1e-3  # share by which the horizontal frequencies are raised
-ONE_STEP = NewtonOptions(iterations=1)  # the change with one harmonic more is small: a step of Newton's method tells it
+DETUNING = 1e-3  # relative increase of the horizontal frequencies
+ONE_STEP = NewtonOptions(iterations=1)  # one more harmonic changes little, so one Newton step is enough
 HORIZONTAL = 1
-COARSE = NewtonOptions(tolerance=1e-3)  # convergence is quadratic: the change is exact to 1e-6 of the amplitude
+COARSE = NewtonOptions(tolerance=1e-3)  # convergence is quadratic: the error is 1e-6 of the amplitude
 PERIODS = 50  # of direct integration from a cycle
 
 
 @dataclass(frozen=True, slots=True)
 class Confidence:
-    """Measures of trust in a stack of cycles; every array is (cycles,).
+    """Measures of confidence in a stack of cycles; every array is (cycles,).
 
-    residual: largest rest of the equations over the largest elastic force; truncation: relative change of the largest
-    amplitude with one harmonic more; detuning: its relative change if the horizontal frequencies rise by 0.1 %; direct:
-    its relative change in 50 periods of direct integration, NaN where that was not asked for or the cycle is unstable.
+    residual: largest residual of the equations relative to the largest elastic force; truncation: relative change of
+    the largest amplitude with one more harmonic; detuning: its relative change if the horizontal frequencies rise by
+    0.1 %; direct: its relative change in 50 periods of direct integration, NaN if that was not asked for or the cycle
+    is unstable.
     """
 
     residual: FloatArray
@@ -38,7 +36,7 @@ class Confidence:
 
 
 def confidence(model: ReducedModel, cycles: Cycles, check: Check) -> Confidence:
-    """Measure the trust in the cycles of a stack of models.
+    """Compute the measures of confidence in the cycles of a stack of models.
 
     Parameters
     ----------
@@ -46,7 +44,7 @@ def confidence(model: ReducedModel, cycles: Cycles, check: Check) -> Confidence:
         Leading axis (members,).
     cycles : Cycles
     check : Check
-        Whether stable cycles are integrated directly.
+        Whether stable cycles are integrated directly as well.
 
     Returns
     -------
@@ -67,14 +65,14 @@ def confidence(model: ReducedModel, cycles: Cycles, check: Check) -> Confidence:
 
 
 def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return residual, truncation and detuning of cycles with equally many harmonics: (3, cycles).
+    """Return residual, truncation and detuning of cycles with the same number of harmonics: (3, cycles).
 
-    Changes are those of the amplitude that weighs most in M_ii |q_i|^2.
+    Truncation and detuning refer to the amplitude of largest M_ii |q_i|^2.
     """
     residual, _ = linearized(model, member, orbits)
     elastic = np.abs(model.stiffness[member] @ orbits.coefficients).max(axis=(1, 2))
     with_one_more, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
-    # Within 0.1 % a close resonance bends: a linear step would not do.
+    # Near a resonance even 0.1 % of detuning is nonlinear, so a single linear step would not be enough.
     detuned, solution = balance(_detuned(model), member, orbits, COARSE)
     before, by_harmonic, by_frequency = (half_peak_to_peak(o.coefficients) for o in (orbits, with_one_more, detuned))
     main = (before * np.sqrt(model.modal_masses)[member]).argmax(axis=-1)
@@ -86,14 +84,14 @@ def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArr
 
 
 def integration_drift(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Integrate the equations from each cycle and return the relative change of its largest amplitude: (cycles,)."""
+    """Return the relative change of each cycle's largest amplitude under direct integration: (cycles,)."""
     return np.array(
         [_amplitude_drift(take(model, int(i)), select(orbits, np.array([at]))) for at, i in enumerate(member)]
     )
 
 
 def _amplitude_drift(model: ReducedModel, orbit: Orbits) -> float:
-    from engine.checks.time_integration import amplitude_after_periods  # noqa: PLC0415 - only who asks for it waits for scipy's integrators
+    from engine.checks.time_integration import amplitude_after_periods  # noqa: PLC0415 - import scipy's integrators only when asked for
 
     own = half_peak_to_peak(orbit.coefficients)[0]
     main = int((own * np.sqrt(model.modal_masses)).argmax())

@@ -1,7 +1,7 @@
-"""Guesses of cycles by direct integration, for those that no branch and no formula leads to. Theory section 7.5.
+"""Starts from direct integration, for cycles that neither branches nor formulas lead to. Theory section 7.5.
 
-Each model is integrated from a few large starts at a few wind speeds until its motion has settled or for two thousand
-periods: Newton's method needs to begin near a cycle, not on it.
+Each model is integrated from a few large starts at a few wind speeds until its motion has settled, or for two thousand
+periods at most: Newton's method only needs a start near a cycle.
 """
 
 import numpy as np
@@ -20,13 +20,13 @@ from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome
 
 WINDS = 3  # the lowest, the highest and one between them
-LEVELS = (0.3, 0.8, 1.5)  # of the largest start: rad of torsion, or of the turn of the wind by vertical motion
-HORIZONTAL = 2.0  # times the vertical amplitude: horizontal motion alone does not turn the wind
-PERIODS = 2000  # of the slowest natural one, after which a motion is taken as it is
-STEPS = 8  # in the shortest natural period: the linear part is exact, and a guess need not be
-SAMPLED = 8  # slowest periods from which a cycle is read
-LARGEST_RATIO = 30.0  # of natural frequencies: stiffer models are integrated for fewer slow periods, work is bounded
-TOGETHER = 512  # starts side by side, which bounds the memory
+LEVELS = (0.3, 0.8, 1.5)  # rad of torsion, or of the change of wind direction by vertical motion
+HORIZONTAL = 2.0  # times the vertical amplitude: horizontal motion alone does not change the wind direction
+PERIODS = 2000  # of the lowest natural frequency, after which a motion is used as it is
+STEPS = 8  # in the shortest natural period: the linear part is exact, and a start need not be accurate
+SAMPLED = 8  # longest natural periods to which a Fourier series is fitted
+LARGEST_RATIO = 30.0  # of natural frequencies: stiffer models are integrated for fewer long periods, to bound the work
+TOGETHER = 512  # starts integrated side by side, to bound the memory
 
 
 def spread_starts(
@@ -36,7 +36,7 @@ def spread_starts(
     levels: tuple[float, ...],
     generator: np.random.Generator,
 ) -> FloatArray:
-    """Draw starts of several energies, directions and phases.
+    """Draw random starts of several sizes, directions and phases.
 
     Parameters
     ----------
@@ -44,14 +44,14 @@ def spread_starts(
         Leading axis (members,).
     member, wind_speed : (cases,)
     levels : tuple of float
-        Sizes over the largest: rad of torsion, or of the turn of the wind by vertical motion.
+        Sizes: rad of torsion, or of the change of wind direction by vertical motion.
     generator : numpy.random.Generator
-        Of the phases, and of how the mixed starts divide between the coordinates.
+        Source of the phases and of the division of mixed starts between the coordinates.
 
     Returns
     -------
     (cases, levels (m + 1), 2 m)
-        q and q': for each level one start a coordinate, and one of all.
+        q and q': for each level one start per coordinate and one in which all move.
     """
     m = model.mass.shape[-1]
     largest, rate = _largest_amplitudes(model, member, wind_speed)
@@ -59,13 +59,13 @@ def spread_starts(
     shares = np.tile(shares, (member.size, 1, 1))
     shares[:, m :: m + 1] = np.sqrt(generator.dirichlet(np.ones(m), (member.size, len(levels))))
     phase = generator.uniform(0.0, 2.0 * np.pi, shares.shape)
-    # No start lies on an axis: what its coordinate leaves out is there by a thousandth.
+    # Give every coordinate at least a thousandth, so that no start lies in an invariant subspace.
     amplitude = np.repeat(levels, m + 1)[:, None] * np.maximum(shares, 1e-3) * largest[:, None]
     return np.concatenate([amplitude * np.cos(phase), -rate[:, None] * amplitude * np.sin(phase)], axis=-1)
 
 
 def _largest_amplitudes(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the amplitude of a start of level 1 and the natural rate [rad/s] of each coordinate: (cases, m) each."""
+    """Return each coordinate's amplitude in a start of level 1 and natural frequency [rad/s]: (cases, m) each."""
     rate = np.sqrt(model.uncoupled_squares[member])
     form = np.abs(model.load.angle[member]).max(axis=1)
     vertical, horizontal, torsional = (np.flatnonzero(model.direction == d) for d in range(3))
@@ -77,7 +77,7 @@ def _largest_amplitudes(model: ReducedModel, member: IntArray, wind_speed: Float
 
 
 def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Guess cycles by where direct integration from large starts arrives at a few wind speeds.
+    """Return starts of cycles read from the motions that large starts settle on at a few wind speeds.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
     Returns
     -------
     Starts
-        Of the motions that neither came to rest nor diverged; several may point to one cycle, and none need be exact.
+        Of the motions that neither came to rest nor diverged. They are approximate, and several may lead to one cycle.
     """
     usable = np.flatnonzero(~model.statically_unstable)
     chosen = np.unique(np.linspace(0, wind_speeds.size - 1, WINDS).round().astype(np.intp))[: wind_speeds.size]
@@ -109,7 +109,7 @@ def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
 def _settled_cycles(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, harmonics: int
 ) -> tuple[IntArray, Orbits]:
-    """Integrate starts and read a cycle from each that still moves: their indices, and the cycles."""
+    """Integrate starts; return the indices of those that keep moving and the cycles fitted to them."""
     slowest, fastest = natural_frequency_range(model, member)
     ratio = np.minimum(fastest / slowest, LARGEST_RATIO)
     blocks = np.ceil(PERIODS * ratio / BLOCK_PERIODS).astype(np.intp)
@@ -118,7 +118,7 @@ def _settled_cycles(
     equations = lawson_equations(model, member[kept], wind_speed[kept], STEPS)
     state, history = runs.state[kept].T, []
     weight = np.sqrt(model.modal_masses)[member[kept]]
-    with np.errstate(over="ignore", invalid="ignore"):  # a motion may leave all bounds here, too: nothing recurs then
+    with np.errstate(over="ignore", invalid="ignore"):  # a motion may diverge here as well; no cycle is fitted then
         for _ in range(int(np.ceil(SAMPLED * STEPS * ratio[kept].max(initial=0.0)))):
             state = lawson_step(equations, state)
             history.append(state[: model.mass.shape[-1]])
@@ -134,9 +134,9 @@ def _settled_cycles(
 def _fitted_cycle(
     series: FloatArray, weight: FloatArray, step: float, harmonics: int
 ) -> tuple[FloatArray, float] | None:
-    """Fit a Fourier series to samples (m, samples): its coefficients and angular frequency, None if nothing recurs.
+    """Fit a Fourier series to samples (m, samples); return coefficients and angular frequency, None if aperiodic.
 
-    The frequency is that at which the coordinate that moves most crosses its mean upwards.
+    The frequency is that of the upward crossings of the mean by the coordinate that moves most.
     """
     swing = series - series.mean(axis=-1, keepdims=True)
     main = swing[int((weight * swing.std(axis=-1)).argmax())]

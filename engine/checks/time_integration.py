@@ -1,4 +1,4 @@
-"""Direct integration of the reduced equations, as the check a user can ask for. Theory section 7.5."""
+"""Direct integration of the reduced equations, a check that a user can ask for. Theory section 7.5."""
 
 from dataclasses import dataclass
 
@@ -12,17 +12,17 @@ from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome
 
 SAMPLES = 64  # a cycle
-PERIOD_SAMPLES = 192  # of the one period that is measured: they leave 1e-4 of the amplitude
-BLOCK = 50  # cycles between two looks at the amplitude
+PERIOD_SAMPLES = 192  # of the one period that is measured; the error is 1e-4 of the amplitude
+BLOCK = 50  # cycles between two comparisons of the amplitude
 
 
 @dataclass(frozen=True, slots=True)
 class IntegratedMotion:
-    """Where direct integration ended.
+    """The motion that direct integration ended on.
 
-    extremes: (m, 2), smallest and largest of each coordinate over the last block; state: (2 m,), (q, q') at the end;
-    cycles: number integrated; outcome: LIMIT_REACHED if the amplitude still moved; history: (samples, m), the last
-    block.
+    extremes: (m, 2), smallest and largest value of each coordinate over the last block; state: (2 m,), (q, q') at the
+    end; cycles: number of cycles integrated; outcome: LIMIT_REACHED if the amplitude was still changing; history:
+    (samples, m), the coordinates over the last block.
     """
 
     extremes: FloatArray
@@ -40,20 +40,20 @@ class IntegratedMotion:
 def integrate(
     model: ReducedModel, wind_speed: float, start: FloatArray, *, change: float = 1e-4, longest: int = 20_000
 ) -> IntegratedMotion:
-    """Integrate until the amplitude of every coordinate moves less than a fraction over a block of 50 cycles.
+    """Integrate until no coordinate's amplitude changes by more than a fraction over a block of 50 cycles.
 
     Parameters
     ----------
     model : ReducedModel
-        A single one, without leading axes.
+        A single model, without leading axes.
     wind_speed : float
         [m/s].
     start : (2 m,)
         q and q'.
     change : float
-        Fraction of the largest amplitude of a coordinate in two successive blocks.
+        Largest relative change of an amplitude between two successive blocks.
     longest : int
-        Number of cycles after which the integration stops.
+        Number of cycles after which the integration stops in any case.
 
     Returns
     -------
@@ -77,14 +77,14 @@ def integrate(
 
 
 def amplitude_after_periods(model: ReducedModel, orbit: Orbits, periods: int) -> FloatArray:
-    """Integrate from a cycle for some of its periods and measure the last one.
+    """Integrate from a cycle for a number of its periods and return the amplitudes over the last one.
 
     Parameters
     ----------
     model : ReducedModel
-        A single one, without leading axes.
+        A single model, without leading axes.
     orbit : Orbits
-        Of one cycle.
+        A single cycle.
     periods : int
 
     Returns
@@ -99,12 +99,12 @@ def amplitude_after_periods(model: ReducedModel, orbit: Orbits, periods: int) ->
 
 
 def last_times(period: float, periods: int) -> FloatArray:
-    """Return the times of samples of the last one of some periods [s]."""
+    """Return the times of the samples of the last of a number of periods [s]."""
     return np.asarray(period * (periods - 1.0 + np.arange(PERIOD_SAMPLES + 1) / PERIOD_SAMPLES))
 
 
 def last_period(model: ReducedModel, wind_speed: float, start: FloatArray, times: FloatArray) -> FloatArray:
-    """Integrate from (q, q') at time 0 and return q at some later times: (times, m)."""
+    """Integrate from (q, q') at time 0 and return q at the given later times: (times, m)."""
     return _advance(model, wind_speed, start, np.append(0.0, times))[1:, : model.mass.shape[-1]]
 
 

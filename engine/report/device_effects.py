@@ -1,4 +1,4 @@
-"""What devices change: critical wind speed and amplitude without and with them."""
+"""The table of device effects: critical wind speeds and amplitudes without and with devices."""
 
 import math
 from collections.abc import Iterator
@@ -9,12 +9,12 @@ from engine.spec import Model
 
 
 def device_effects(without: Result, with_devices: Result) -> tuple[DeviceEffectRow, ...]:
-    """Set the results of one line without and with devices beside each other.
+    """Compare the results of one line without and with devices.
 
     Returns
     -------
     tuple of DeviceEffectRow
-        A row for each model, number of loops and wind speed; one without wind speed where none was asked for.
+        A row for each model, number of loops and wind speed; one row without wind speed if none was asked for.
     """
     return tuple(_rows(without, with_devices))
 

@@ -1,4 +1,4 @@
-"""Internal resonance: how near frequencies are to small whole ratios, and how motions divide between directions.
+"""The table of internal resonances, and the division of motions between the directions.
 
 The source: "an internal resonance occurs when the ratio of at least two of the natural frequencies is close to a ratio
 of two positive integers" (paper section 5.1).
@@ -13,15 +13,15 @@ import numpy as np
 from engine.arrays import FloatArray, IntArray
 from engine.result import FrequencyRow, InternalResonanceRow
 
-LARGEST_INTEGER = 3  # a cubic load excites no ratio of a higher order by itself
+LARGEST_INTEGER = 3  # a cubic load by itself excites no ratio of higher order
 _INTEGERS = range(1, LARGEST_INTEGER + 1)
 _RATIOS = sorted(((p, q) for p in _INTEGERS for q in _INTEGERS if gcd(p, q) == 1), key=lambda pair: pair[0] / pair[1])
-# Between neighbours the geometric mean divides: there both differ equally, relatively.
+# The limit between neighbouring ratios is their geometric mean, which differs from both by the same factor.
 _LIMITS = [sqrt(p * r / (q * s)) for (p, q), (r, s) in pairwise(_RATIOS)]
 
 
 def internal_resonance_rows(frequencies: Sequence[FrequencyRow]) -> tuple[InternalResonanceRow, ...]:
-    """Write the ratios of the three frequencies of each model and number of loops, as far as they exist.
+    """Return the ratios of the three frequencies of each model and number of loops, as far as they exist.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ def nearest_ratio(ratio: float) -> tuple[int, int]:
 
 
 def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArray) -> FloatArray:
-    """Divide the mean kinetic energy of cycles between the directions.
+    """Return the shares of the directions in the mean kinetic energy of cycles.
 
     Parameters
     ----------
     mass : (cycles, m)
-        Diagonal of the mass matrix: what eccentric ice couples belongs to no direction and is left out.
+        Diagonal of the mass matrix: coupling by eccentric ice belongs to no direction and is left out.
     coefficients : (cycles, m, 2 H + 1)
         Fourier series of the coordinates: mean, cos 1, sin 1, ...
     direction : (m,)
@@ -79,6 +79,6 @@ def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArra
 
 
 def divide_by_direction(energy: FloatArray, direction: IntArray) -> FloatArray:
-    """Divide the energy of the coordinates (motions, m) between the directions: (motions, 3), adding up to 1."""
+    """Return the shares of the directions in the energy of coordinates (motions, m): (motions, 3), adding up to 1."""
     by_direction = energy @ np.eye(3)[direction]
     return np.asarray(by_direction / by_direction.sum(axis=-1, keepdims=True))

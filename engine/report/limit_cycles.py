@@ -1,4 +1,4 @@
-"""Rows of the motions at each wind speed: the equilibrium and every cycle. Theory section 8."""
+"""The table of limit cycles: equilibrium, cycles and quasi-periodic motions at each wind speed. Theory section 8."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -41,7 +41,7 @@ class Motion:
 def limit_cycle_rows(
     discretization: Discretization, findings: ModelFindings, loops: tuple[int, ...], lowest: FloatArray
 ) -> list[list[Motion]]:
-    """Write the equilibrium and every cycle at each wind speed; a list a line.
+    """Return a row for the equilibrium, every cycle and every torus at each wind speed, one list per line.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def limit_cycle_rows(
 
 @dataclass(frozen=True, slots=True)
 class _Scales:
-    """Static sag [m] and f L_x [m/s] of each line, and the observed positions [m] by number of loops."""
+    """Static sag [m] and f L_x [m/s] of each line, and its position of observation [m] by number of loops."""
 
     sag: FloatArray
     speed: FloatArray
@@ -80,7 +80,7 @@ class _Scales:
 
 @dataclass(frozen=True, slots=True)
 class _RowKeys:
-    """What identifies rows: index of the line, loops and wind speed [m/s] of each, all (k,)."""
+    """Index of the line, number of loops and wind speed [m/s] of each row: (k,) each."""
 
     line: IntArray
     loops: IntArray
@@ -88,7 +88,7 @@ class _RowKeys:
 
 
 def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales) -> Iterator[tuple[int, Motion]]:
-    """Yield the rows of the static state, and of wind speeds where it oscillates away but no cycle was found."""
+    """Yield rows of the static state, and of wind speeds where it is unstable to oscillation but no cycle was found."""
     members, winds = findings.line.size, findings.winds.size
     values = eigenvalues(at_wind(state_matrices(findings.model), np.broadcast_to(findings.winds, (members, winds))))
     size = np.abs(values).max(axis=-1, initial=0.0)
@@ -108,7 +108,7 @@ def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales
     yield from _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
     oscillating = ((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1) & ~static[:, None]
     oscillating[findings.cycles.member, findings.cycles.wind] = False
-    # A row of the first coordinate's loops stands for all that oscillates there.
+    # One row, with the loops of the first coordinate, stands for all unstable modes of a member.
     oscillating &= np.isin(findings.loops[:, :1], loops)
     yield from _without_motion(findings, scales, np.argwhere(oscillating), "periodic")
 
@@ -116,7 +116,7 @@ def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales
 def _without_motion(
     findings: ModelFindings, scales: _Scales, missing: IntArray, kind: str
 ) -> Iterator[tuple[int, Motion]]:
-    """Yield a row for each member and wind, (k, 2), where a motion is likely but none was found."""
+    """Yield a row for each member and wind speed index (k, 2) where a motion must exist but none was found."""
     member, wind = missing.reshape(-1, 2).T
     keys = _RowKeys(findings.line[member], findings.loops[member, 0], findings.winds[wind])
     labels: dict[str, Iterable[Any]] = {
@@ -128,7 +128,7 @@ def _without_motion(
 
 
 def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Scales) -> Iterator[tuple[int, Motion]]:
-    """Yield the rows of all cycles with their series where they are observed."""
+    """Yield the rows of all cycles with their Fourier series at the point of observation."""
     cycles = findings.cycles
     if cycles.member.size == 0:
         return iter(())
@@ -155,7 +155,7 @@ def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Sc
 
 
 def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
-    """Return the columns of numbers that only cycles have, NaN where one is not known."""
+    """Return the columns of numbers that only cycles have, NaN where a number is not known."""
     cycles, confidence = findings.cycles, findings.confidence
     mass = findings.model.modal_masses[cycles.member]
     return {
@@ -172,7 +172,7 @@ def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArr
 def _quasi_periodic_motions(
     discretization: Discretization, findings: ModelFindings, scales: _Scales
 ) -> Iterator[tuple[int, Motion]]:
-    """Yield the rows of all quasi-periodic motions, and of wind speeds where one is likely but none was found."""
+    """Yield rows of all quasi-periodic motions, and of wind speeds where one must exist but none was found."""
     known, model = findings.quasi_periodic, findings.model
     tori, member, line = known.tori, known.member, findings.line[known.member]
     frequency, _ = base_frequencies(model, member, tori)
@@ -215,9 +215,9 @@ def _rows(
     labels: Mapping[str, Iterable[Any]],
     series: Iterable[FloatArray | None] = repeat(None),
 ) -> Iterator[tuple[int, Motion]]:
-    """Write rows from columns, with the line of each; a column that is not given, and what is not finite, is None.
+    """Yield rows written from columns, with the line of each. Missing columns and numbers that are not finite are None.
 
-    measures: columns of numbers, those of the amplitudes among them; told: all others.
+    measures: columns of numbers, which include the amplitudes; told: all others.
     """
     sag, speed = scales.sag[keys.line], scales.speed[keys.line]
     observed = {k: at.tolist() for k, at in scales.observed.items()}
@@ -238,7 +238,7 @@ def _rows(
 
 
 def _numbers(column: FloatArray) -> list[Any]:
-    """Return numbers, None where one is not finite."""
+    """Return the numbers of a column, None in place of those that are not finite."""
     values: list[Any] = column.tolist()
     return values if np.isfinite(column).all() else [finite_or_none(value) for value in values]
 
@@ -249,7 +249,7 @@ def _observed_at(discretization: Discretization, loops: int) -> FloatArray:
 
 
 def _dominant_loops(findings: ModelFindings) -> IntArray:
-    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 in each cycle."""
+    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 in each cycle: (cycles,)."""
     mass = findings.model.modal_masses[findings.cycles.member]
     energy = mass * (findings.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
     return np.asarray(findings.loops[findings.cycles.member, energy.argmax(axis=-1)])

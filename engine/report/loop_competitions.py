@@ -1,7 +1,7 @@
-"""Which cycle survives where several numbers of loops are unstable at once. Theory section 7.3.
+"""The table of loop competitions: which cycles survive motions of other numbers of loops. Theory section 7.3.
 
-A cycle of one number of loops that is stable alone is balanced again in the model in which the others may move too; its
-Floquet multipliers there tell whether they grow out of small disturbances.
+A cycle of one number of loops that is stable by itself is solved again in the model in which the other loops may move
+as well. Its Floquet multipliers there show whether small disturbances of the other loops grow.
 """
 
 from collections.abc import Sequence
@@ -17,22 +17,22 @@ from engine.outcome import Outcome, Stability
 from engine.report.findings import ModelFindings
 from engine.result import LoopCompetitionRow
 
-FINENESS = 2  # times the steps of the Floquet integration: multipliers near one decide
-SAME_SIZE = 2.0  # ratio of sizes beyond which the balance has left the cycle for another motion
+STEP_FACTOR = 2  # on the number of steps of the Floquet integration, since multipliers near 1 decide
+SAME_SIZE = 2.0  # ratio of sizes beyond which the solution is another motion than the cycle
 
 
 def loop_competitions(
     discretization: Discretization, joint: ReducedModel, hybrid: ModelFindings, loops: Sequence[int]
 ) -> list[list[LoopCompetitionRow]]:
-    """Hold every stable cycle of the hybrid model against the other loops; a list a line.
+    """Return a row for every stable cycle of the hybrid model among the other loops, one list per line.
 
     Parameters
     ----------
     discretization : Discretization
     joint : ReducedModel
-        Of these loops together, leading axis (lines,).
+        The model in which these loops move together, leading axis (lines,).
     hybrid : ModelFindings
-        Of these loops one by one.
+        Of the hybrid model, each number of loops by itself.
     loops : sequence of int
 
     Returns
@@ -52,7 +52,7 @@ def loop_competitions(
     orbits, solution = balance(joint, line, start)
     ratio = oscillation_size(joint, line, orbits) / oscillation_size(joint, line, start)
     same_cycle = solution.converged & (ratio < SAME_SIZE) & (ratio > 1.0 / SAME_SIZE)
-    multiplier, vector, error = _leading(monodromy(joint, line, orbits, FINENESS))
+    multiplier, vector, error = _leading(monodromy(joint, line, orbits, STEP_FACTOR))
     verdict = stability_verdicts(np.abs(multiplier), error)
     energy = _energy_by_loops(joint, line, vector, len(loops))
     for i, cycle in enumerate(stable_alone.tolist()):
@@ -78,7 +78,7 @@ def loop_competitions(
 
 
 def _embedded(orbits: Orbits, selected: IntArray, column: IntArray, count: int) -> Orbits:
-    """Put cycles of one number of loops into the coordinates of all, the others at rest."""
+    """Express cycles of one number of loops in the coordinates of all, the others at rest."""
     own = orbits.coefficients[selected]
     coefficients = np.zeros((selected.size, 3, count, own.shape[-1]))
     coefficients[np.arange(selected.size), :, column] = own
@@ -87,7 +87,7 @@ def _embedded(orbits: Orbits, selected: IntArray, column: IntArray, count: int) 
 
 
 def _leading(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Return the largest multiplier beside the trivial one, its vector, and the error of the trivial one."""
+    """Return the largest nontrivial multiplier, its eigenvector, and the error of the trivial multiplier."""
     cycles, size, _ = matrices.shape
     multiplier = np.full(cycles, np.nan, dtype=np.complex128)
     vector = np.zeros((cycles, size), dtype=np.complex128)

@@ -1,4 +1,4 @@
-"""Cycles of the hybrid model beside those of the finite element model, as the source's Figure 3. Theory section 7.4."""
+"""The table of model comparisons: hybrid and finite element cycles, as in the source's Figure 3. Theory section 7.4."""
 
 import math
 from collections.abc import Sequence
@@ -9,9 +9,10 @@ from engine.spec import Model
 
 
 def model_comparisons(cycles: Sequence[LimitCycleRow]) -> tuple[ModelComparisonRow, ...]:
-    """Set every stable cycle of the hybrid model beside the finite element model's; nothing unless both were asked for.
+    """Compare every stable hybrid cycle with the finite element model's; no rows if only one model was asked for.
 
-    Of several cycles with as many loops at the same wind speed, stable or not, the one of nearest amplitudes is taken.
+    Of several cycles with as many loops at the same wind speed, stable or not, the one with the nearest amplitudes is
+    used.
     """
     moving = [row for row in cycles if row.kind == "periodic" and row.vertical_m is not None]
     if not any(row.model is Model.FINITE_ELEMENT for row in cycles):

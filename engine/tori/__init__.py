@@ -1,1 +1,1 @@
-"""Quasi-periodic motions: two-frequency balance, stability, branches, search. Not the periodic ones."""
+"""Quasi-periodic motions: two-frequency balance, stability, branches, search. No periodic motions."""

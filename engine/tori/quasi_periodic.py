@@ -1,7 +1,8 @@
-"""Quasi-periodic motions at the wind speeds asked for: where they are looked for, found and judged. Theory section 7.3.
+"""Search for quasi-periodic motions at the wind speeds asked for, with their stability. Theory section 7.3.
 
-They are born at torus points of cycles and followed over the wind speed. Where that leaves a wind speed without
-anything stable, the unstable cycles there are tried as well, modulated by the disturbance that grows on them.
+Tori bifurcate from cycles at torus points and are followed over the wind speed from there. At a wind speed where no
+stable motion is known after that, the unstable cycles are tried as well, modulated by the disturbance that grows on
+them.
 """
 
 from dataclasses import dataclass, replace
@@ -41,12 +42,12 @@ from engine.tori.two_frequency_balance import (
     tori_of,
 )
 
-COARSE: Order = (3, 2)  # multiples of both frequencies with which branches are followed
-FINE: Order = (5, 4)  # with which tori are solved for at the wind speeds
-FINEST: Order = (7, 8)  # where the harmonics of the fine order do not fall off
-TAIL = 1e-3  # share of the last harmonics above which more are taken
-SAME = 1e-3  # relative distance below which two tori are one
-REAL = 1e-3  # angle of a multiplier from the real axis below which it turns nothing [rad]
+COARSE: Order = (3, 2)  # largest multiples of w and W with which branches are followed
+FINE: Order = (5, 4)  # with which tori are solved at the wind speeds
+FINEST: Order = (7, 8)  # where the harmonics do not decay within the fine order
+TAIL = 1e-3  # share of the last harmonics above which a finer order is used
+SAME = 1e-3  # relative difference below which two tori are the same
+REAL = 1e-3  # rad from the real axis, below which a multiplier does not modulate
 TRIAL = NewtonOptions(tolerance=1e-3, iterations=12)  # of starts that may lead nowhere
 ONE_STEP = NewtonOptions(iterations=1)  # the change with one harmonic more is small
 PARTS = ("coefficients", "angular_frequency", "wind_speed")
@@ -58,12 +59,12 @@ DEPTHS = (0.1, 0.3, 0.6, 1.0)  # of modulation that are tried, over the size of 
 class QuasiPeriodicMotions:
     """Quasi-periodic motions of a stack of models.
 
-    member, wind: (tori,), indices of model and wind speed; branch: (tori,), family of the cycles that they come from;
-    stability: (tori,) of Stability; found_by: of each; residual: (tori,), largest rest of the equations over the
-    largest elastic force; truncation: (tori,), relative change of the size with one harmonic more of both frequencies;
-    direct: (tori,), relative change of the largest amplitude in 50 periods of direct integration, NaN where that was
-    not asked for or the torus is not stable; missing: (k, 2), member and wind where nothing stable is known, although a
-    complex pair grows on some cycle.
+    member, wind: (tori,), indices of model and wind speed; branch: (tori,), family of the cycles that they bifurcate
+    from; stability: (tori,) of Stability; found_by: the search that found each; residual: (tori,), largest residual of
+    the equations relative to the largest elastic force; truncation: (tori,), relative change of the size with one more
+    harmonic of both frequencies; direct: (tori,), relative change of the largest amplitude in 50 periods of direct
+    integration, NaN if that was not asked for or the torus is not stable; missing: (k, 2), member and wind speed index
+    where no stable motion is known although a complex pair grows on some cycle.
     """
 
     member: IntArray
@@ -78,7 +79,7 @@ class QuasiPeriodicMotions:
     missing: IntArray
 
     def select(self, index: IntArray) -> "QuasiPeriodicMotions":
-        """Pick some of the motions."""
+        """Select some of the motions."""
         return QuasiPeriodicMotions(
             self.member[index],
             self.wind[index],
@@ -96,7 +97,7 @@ class QuasiPeriodicMotions:
 def quasi_periodic_motions(
     model: ReducedModel, cycles: Cycles, bifurcations: Bifurcations, winds: FloatArray, search: TorusSearch
 ) -> QuasiPeriodicMotions:
-    """Find the quasi-periodic motions at the wind speeds; models without a sign of any cost nothing.
+    """Find the quasi-periodic motions at the wind speeds; a model without torus points or growing pairs costs nothing.
 
     Parameters
     ----------
@@ -108,8 +109,8 @@ def quasi_periodic_motions(
     winds : (winds,)
         In rising order [m/s].
     search : TorusSearch
-        Which torus points are followed: those that give birth to stable tori, and those of models with wind speeds
-        where nothing stable is known, or every one.
+        Which torus points are followed: those from which stable tori start and those of models with a wind speed at
+        which no stable motion is known, or every one.
 
     Returns
     -------
@@ -131,7 +132,7 @@ def quasi_periodic_motions(
 def _torus_starts(
     model: ReducedModel, cycles: Cycles, bifurcations: Bifurcations, winds: FloatArray, search: TorusSearch
 ) -> TorusStarts:
-    """Take the torus points from which branches are followed."""
+    """Return the torus points from which branches are followed."""
     every = np.ones(bifurcations.member.size, dtype=np.bool_)
     if search is TorusSearch.EVERY:
         return starts_at_torus_points(model, cycles.branch_sets, bifurcations, every, COARSE)
@@ -147,8 +148,8 @@ def _torus_starts(
 
 
 def check_by_integration(model: ReducedModel, motions: QuasiPeriodicMotions) -> QuasiPeriodicMotions:
-    """Integrate the equations from each stable torus, too, and put down how far its amplitude moves."""
-    from engine.checks.time_integration import last_period, last_times  # noqa: PLC0415 - only who asks for it waits for scipy's
+    """Integrate the equations from each stable torus and record the relative change of its largest amplitude."""
+    from engine.checks.time_integration import last_period, last_times  # noqa: PLC0415 - import scipy's integrators only when asked for
 
     direct = np.full(motions.member.size, np.nan)
     for i in np.flatnonzero(motions.stability == Stability.STABLE).tolist():
@@ -164,14 +165,14 @@ def check_by_integration(model: ReducedModel, motions: QuasiPeriodicMotions) -> 
 
 
 def _from_torus_points(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> QuasiPeriodicMotions:
-    """Follow tori from torus points and solve for them where they pass the wind speeds."""
+    """Follow tori from torus points and solve for them where they cross the wind speeds."""
     branch, wind, z = guessed_points(follow_tori(model, starts, winds), winds)
     guess = resized(tori_of(z, model.mass.shape[-1], COARSE), FINE)
     return _balanced_tori(model, (starts.member[branch], wind, starts.family[branch]), guess, "torus_point")
 
 
 def _from_unstable_cycles(model: ReducedModel, cycles: Cycles, locations: set[tuple[int, int]]) -> QuasiPeriodicMotions:
-    """Modulate the unstable cycles at some places by the disturbance that grows, to several depths."""
+    """Solve for tori from unstable cycles at some places, modulated to several depths by what grows on them."""
     here = [i for i in _with_growing_pair(cycles) if (int(cycles.member[i]), int(cycles.wind[i])) in locations]
     index = np.array(here, dtype=np.intp)
     start = _modulated_cycles(
@@ -189,7 +190,7 @@ def _from_unstable_cycles(model: ReducedModel, cycles: Cycles, locations: set[tu
 
 
 def _modulated_cycles(model: ReducedModel, orbits: Orbits, multiplier: ComplexArray) -> Tori:
-    """Guess tori from cycles and the multipliers of what grows on them, one for each depth of modulation.
+    """Return guesses of tori from cycles and their growing multipliers, one for each depth of modulation.
 
     The model has the leading axis (cycles,).
     """
@@ -205,7 +206,7 @@ def _modulated_cycles(model: ReducedModel, orbits: Orbits, multiplier: ComplexAr
 def _balanced_tori(
     model: ReducedModel, locations: tuple[IntArray, IntArray, IntArray], guess: Tori, found_by: FoundBy
 ) -> QuasiPeriodicMotions:
-    """Balance guesses at members, winds and branches, and judge the different tori that come of it."""
+    """Solve the balance from guesses at members, winds and branches; return the distinct tori with their stability."""
     member, wind, branch = locations
     tori, solution = balance(model, member, guess)
     good = np.flatnonzero(solution.converged)
@@ -235,7 +236,7 @@ def _balanced_tori(
 
 
 def _residual_and_truncation(model: ReducedModel, member: IntArray, tori: Tori) -> tuple[FloatArray, FloatArray]:
-    """Return residual and truncation."""
+    """Return residual and truncation of tori: (tori,) each."""
     elastic = np.abs(model.stiffness[member] @ tori.coefficients).max(axis=(1, 2), initial=0.0)
     residual = np.abs(linearized(take(model, member), tori)[0]).max(axis=-1, initial=0.0)
     longer, _ = balance(model, member, resized(tori, (tori.order[0] + 1, tori.order[1] + 1)), ONE_STEP)
@@ -246,7 +247,7 @@ def _residual_and_truncation(model: ReducedModel, member: IntArray, tori: Tori) 
 def _without_stable_motion(
     model: ReducedModel, cycles: Cycles, motions: QuasiPeriodicMotions, winds: FloatArray
 ) -> set[tuple[int, int]]:
-    """Return member and wind where nothing stable is known and a pair of multipliers grows on some cycle."""
+    """Return member and wind where no stable motion is known and a pair of multipliers grows on some cycle."""
     locations = set(zip(cycles.member.tolist(), cycles.wind.tolist(), strict=True))
     for found_motions in (cycles, motions):
         stable = (
@@ -264,14 +265,14 @@ def _without_stable_motion(
 
 
 def _leading_multipliers(cycles: Cycles) -> ComplexArray:
-    """Return the multiplier of largest modulus of each cycle beside the trivial one."""
+    """Return the multiplier of largest modulus of each cycle, the trivial one excepted: (cycles,)."""
     others = cycles.floquet.multipliers[:, 1:]
     largest = np.abs(np.nan_to_num(others)).argmax(axis=-1)
     return np.asarray(others[np.arange(len(others)), largest])
 
 
 def _with_growing_pair(cycles: Cycles) -> IntArray:
-    """Return the unstable cycles on which a complex pair grows fastest."""
+    """Return the indices of the unstable cycles on which a complex pair grows fastest."""
     if cycles.member.size == 0:
         return np.zeros(0, dtype=np.intp)
     unstable = np.asarray(cycles.floquet.stability == Stability.UNSTABLE)
@@ -279,7 +280,7 @@ def _with_growing_pair(cycles: Cycles) -> IntArray:
 
 
 def _first_of_duplicates(model: ReducedModel, member: IntArray, wind: IntArray, tori: Tori) -> IntArray:
-    """Return the first of solutions at one place whose base lines agree in frequency and strength."""
+    """Return the indices of the distinct solutions, the first of those whose base lines agree at one place."""
     base_lines = np.concatenate(base_frequencies(model, member, tori), axis=-1)
     kept: list[int] = []
     for i, place in enumerate(zip(member.tolist(), wind.tolist(), strict=True)):
@@ -290,7 +291,7 @@ def _first_of_duplicates(model: ReducedModel, member: IntArray, wind: IntArray, 
 
 
 def _concatenated(parts: list[QuasiPeriodicMotions]) -> QuasiPeriodicMotions:
-    """Put motions of several searches together, with the larger order."""
+    """Concatenate the motions of several searches, with the larger order."""
     order = max(part.tori.order for part in parts)
     padded = [resized(part.tori, order) for part in parts]
     names = ("member", "wind", "branch", "stability", "residual", "truncation", "direct")

@@ -1,4 +1,4 @@
-"""What is read off a quasi-periodic motion: its spectral lines, how they fall off, and its amplitudes. Section 7.3."""
+"""Spectral lines, their decay, and amplitudes of quasi-periodic motions. Theory section 7.3."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.models.reduced_model import ReducedModel
 from engine.tori.two_frequency_balance import Tori, fourier_basis, harmonic_lattice, phasors, states
 
-WEAKEST = 1e-4  # amplitude of the second line over that of the first below which a torus is a cycle
-SLOWEST = 1e-5  # frequency over the other one below which it is none
-GRID = 96  # samples over each phase, and over one period: they leave 5e-4 of the amplitude
-STARTS = (4, 32)  # phases at which the periods begin that are compared
+WEAKEST = 1e-4  # amplitude of the second line relative to the first, below which a torus is a cycle
+SLOWEST = 1e-5  # ratio of the frequencies, below which there is only one
+GRID = 96  # samples over each phase and over one period; the error is 5e-4 of the amplitude
+STARTS = (4, 32)  # numbers of phases theta_1 and theta_2 at which the compared periods begin
 
 
 def line_strengths(model: ReducedModel, member: IntArray, tori: Tori) -> FloatArray:
@@ -39,7 +39,7 @@ def base_frequencies(model: ReducedModel, member: IntArray, tori: Tori) -> tuple
 
 
 def is_torus(model: ReducedModel, member: IntArray, tori: Tori) -> BoolArray:
-    """Tell which solutions move with two frequencies: (tori,)."""
+    """Return which solutions move with two frequencies: (tori,)."""
     frequencies, strengths = base_frequencies(model, member, tori)
     slow = SLOWEST * tori.angular_frequency.max(axis=-1)
     distinct = (frequencies > slow[:, None]).all(axis=-1) & (np.abs(tori.angular_frequency) > slow[:, None]).all(
@@ -49,7 +49,7 @@ def is_torus(model: ReducedModel, member: IntArray, tori: Tori) -> BoolArray:
 
 
 def tail(model: ReducedModel, member: IntArray, tori: Tori) -> FloatArray:
-    """Return the share of the last harmonics of either frequency in the size of each torus: (tori,)."""
+    """Return the share of the highest harmonics of either frequency in the size of each torus: (tori,)."""
     pairs = np.abs(harmonic_lattice(tori.order).pairs)
     last = (pairs == tori.order).any(axis=-1)
     strengths = line_strengths(model, member, tori)[:, 1:]
@@ -57,14 +57,14 @@ def tail(model: ReducedModel, member: IntArray, tori: Tori) -> FloatArray:
 
 
 def amplitude_range(series: FloatArray, torus: Tori, slow: float) -> tuple[FloatArray, FloatArray]:
-    """Return half of the peak-to-peak over all time, and the smallest over one period of a frequency.
+    """Return half of the peak-to-peak over all time, and the smallest half of it over one period of a frequency.
 
     Parameters
     ----------
     series : (outputs, 2 n - 1)
-        Coefficients of what is observed.
+        Coefficients of the observed quantities.
     torus : Tori
-        One, with their order and its frequencies.
+        A single torus, which gives order and frequencies.
     slow : float
         The frequency whose periods are compared [rad/s].
 

@@ -1,4 +1,4 @@
-"""Branches of quasi-periodic motions over the wind speed, born at torus points of cycles. Theory section 7.3."""
+"""Branches of quasi-periodic motions over the wind speed, from torus points of cycles on. Theory section 7.3."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
@@ -28,16 +28,16 @@ from engine.tori.two_frequency_balance import (
 
 STEPS = StepControl(first=0.05, points=100)
 FIRST_STEPS = StepControl(first=0.01, points=2)
-SMALLEST_SHARE = 0.2  # of the whole size, by which a coordinate that hardly moves is measured
-LOCATED = 1e-4  # relative uncertainty of a torus point that is one for certain
+SMALLEST_SHARE = 0.2  # of the torus' size: smallest scale of a coordinate that hardly moves
+LOCATED = 1e-4  # largest relative uncertainty of a torus point from which a branch is followed
 NEAR = NewtonOptions(tolerance=1e-3)  # convergence is quadratic
-BESIDE = 1e-3  # share of the wind speed beside a torus point at which its cycle is judged
-SAME_FREQUENCY = 1e-3  # relative difference up to which a point of a branch is the torus point
+BESIDE = 1e-3  # relative distance in wind speed from a torus point at which its cycle's stability is examined
+SAME_FREQUENCY = 1e-3  # relative difference of frequency up to which a point of a branch is the torus point
 
 
 @dataclass(frozen=True, slots=True)
 class TorusProblem(Problem):
-    """Balance of tori with the wind speed as parameter, for `engine.numerics.continuation`.
+    """Two-frequency balance with the wind speed as parameter, in the form of `engine.numerics.continuation.Problem`.
 
     model: leading axis (members,); member: (branches,).
     """
@@ -47,7 +47,7 @@ class TorusProblem(Problem):
     order: Order
 
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return the balance and both phase conditions <q - q_anchor, dq_anchor/dtheta> = 0 with their slopes."""
+        """Return residuals and slopes of the balance and both phase conditions <q - q_anchor, dq_anchor/dtheta> = 0."""
         member = self.member[branch]
         rows = phase_rows(self.read(anchor), self._weight(branch))
         residual, slopes = linearized(take(self.model, member), self.read(z))
@@ -56,7 +56,7 @@ class TorusProblem(Problem):
         return np.concatenate([residual, drift], axis=-1), np.concatenate([slopes, rows], axis=1)
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
-        """Measure each coordinate by its own size, or by a share of the whole, frequencies and wind by themselves."""
+        """Return the scales of points: each coordinate's size or a share of the torus', frequencies and wind speed."""
         weight = np.sqrt(self._weight(branch))
         coefficients = self.read(z).coefficients
         own = weight * np.linalg.norm(coefficients, axis=-1)
@@ -64,7 +64,7 @@ class TorusProblem(Problem):
         return np.concatenate([np.repeat(size, coefficients.shape[-1], axis=-1), np.abs(z[:, -3:])], axis=-1)
 
     def read(self, z: FloatArray) -> Tori:
-        """Read points as tori."""
+        """Convert points (k, N + 3) to tori."""
         return tori_of(z, self.model.mass.shape[-1], self.order)
 
     def _weight(self, branch: IntArray) -> FloatArray:
@@ -73,10 +73,10 @@ class TorusProblem(Problem):
 
 @dataclass(frozen=True, slots=True)
 class TorusStarts:
-    """Tori without modulation from which branches are followed.
+    """Torus points, as tori without modulation, from which branches are followed.
 
-    member, family: (k,), the model, and the number of the family of cycles; tori: (k,); direction: (k, N + 3), the
-    disturbance that begins to grow there, of unit length in the mass.
+    member, family: (k,), index of the model and number of the family of cycles; tori: of these k points; direction:
+    (k, N + 3), the disturbance that starts to grow there, of unit norm weighted with the mass.
     """
 
     member: IntArray
@@ -85,14 +85,14 @@ class TorusStarts:
     direction: FloatArray
 
     def select(self, index: IntArray) -> "TorusStarts":
-        """Pick some of them."""
+        """Select some of them."""
         return TorusStarts(self.member[index], self.family[index], self.tori.select(index), self.direction[index])
 
 
 def starts_at_torus_points(
     model: ReducedModel, branch_sets: Sequence[BranchSet], found: Bifurcations, selected: BoolArray, order: Order
 ) -> TorusStarts:
-    """Take the cycles at torus points, with the disturbance of the second frequency.
+    """Return the cycles at torus points with the critical disturbance of the second frequency.
 
     Parameters
     ----------
@@ -102,13 +102,13 @@ def starts_at_torus_points(
         Of the branches on which the torus points lie.
     found : Bifurcations
     selected : (bifurcations,)
-        Which of them are taken; those that are no torus points are left out anyway.
+        Which bifurcations are used; others than torus points are ignored.
     order : Order
 
     Returns
     -------
     TorusStarts
-        Without those whose cycle is not met again.
+        Without those whose cycle could not be found again.
     """
     located = selected & np.isfinite(found.second_frequency) & (found.uncertainty < LOCATED * found.parameter)
     points = np.flatnonzero(located & np.array([kind is Kind.TORUS for kind in found.kind], dtype=np.bool_))
@@ -133,7 +133,7 @@ def starts_at_torus_points(
 
 
 def tori_from_cycles(orbits: Orbits, beat: FloatArray, order: Order) -> Tori:
-    """Write cycles as tori that are not modulated yet, with W = beat (cycles,) [rad/s]."""
+    """Convert cycles to tori without modulation, with W = beat (cycles,) [rad/s]."""
     pairs = harmonic_lattice(order).pairs
     coefficients = np.zeros((*orbits.coefficients.shape[:2], 2 * len(pairs) - 1))
     own = resized(orbits, order[0]).coefficients
@@ -144,7 +144,7 @@ def tori_from_cycles(orbits: Orbits, beat: FloatArray, order: Order) -> Tori:
 
 
 def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
-    """Return the harmonics of order one in W that change the balance of tori without modulation least: (tori, N + 3).
+    """Return the harmonics of order one in W that change the balance of unmodulated tori least: (tori, N + 3).
 
     The model has the leading axis (tori,).
     """
@@ -154,21 +154,21 @@ def critical_directions(model: ReducedModel, tori: Tori) -> FloatArray:
     scale = np.repeat(np.sqrt(model.modal_masses), size, axis=-1)[:, index]
     matrix = linearized(model, tori)[1][:, index[:, None], index] / scale[:, None] / scale[:, :, None]
     direction = np.zeros((count, m * size + 3))
-    # The eigenvectors of the square come at a fifth of the cost of the singular ones, exact enough for a start.
+    # Eigenvectors of A^T A cost a fifth of the singular vectors of A and are accurate enough for a start.
     direction[:, index] = np.linalg.eigh(matrix.swapaxes(-1, -2) @ matrix)[1][..., 0] / scale
     return direction
 
 
 def starting_stable_tori(model: ReducedModel, starts: TorusStarts) -> IntArray:
-    """Return which of the births leave stable tori: those on the side where the cycle has lost its stability.
+    """Return the indices of the torus points from which stable tori start (supercritical ones).
 
-    There the torus takes over what the cycle loses, provided that nothing grows on the cycle on the other side.
+    They lie on the side where the cycle is unstable, provided that the cycle is stable on the other side.
     """
     problem = TorusProblem(model, starts.member, starts.tori.order)
     steps = _continuation(problem, starts, FIRST_STEPS)
     speed, side = np.full((2, starts.member.size), np.nan)
     for new in steps:
-        # Against the first point of the branch: with the harmonics left out the torus point itself moves.
+        # Relative to the first point of the branch, because truncation of the harmonics shifts the torus point itself.
         side[new.branch] = np.sign(new.z[:, -1] - speed[new.branch])
         speed[new.branch] = new.z[:, -1]
     guessed = np.flatnonzero(np.isfinite(side))
@@ -185,14 +185,14 @@ def starting_stable_tori(model: ReducedModel, starts: TorusStarts) -> IntArray:
 def _continuation(
     problem: TorusProblem, starts: TorusStarts, steps: StepControl
 ) -> Generator[BranchPoints, BoolArray | None, ObjectArray]:
-    """Leave the cycles in the direction that grows, by shares of their size."""
+    """Continue from the torus points in their critical directions, with steps relative to the cycles' sizes."""
     start = points_of(starts.tori)
     size = np.linalg.norm(start / problem.scale(start, np.arange(starts.member.size)), axis=-1, keepdims=True)
     return continue_branches(problem, start, starts.direction * size, steps)
 
 
 def cycles_from_tori(tori: Tori) -> Orbits:
-    """Return the harmonics of w alone."""
+    """Return the cycles that the harmonics of w alone make."""
     pairs = harmonic_lattice(tori.order).pairs
     place = np.flatnonzero((pairs[:, 1] == 0) & (pairs[:, 0] > 0))
     both = np.stack([2 * place - 1, 2 * place], axis=-1).ravel()
@@ -201,12 +201,12 @@ def cycles_from_tori(tori: Tori) -> Orbits:
 
 
 def follow_tori(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> BranchPoints:
-    """Follow the branches of tori inside the range of the wind speeds (winds,), until they end in another cycle.
+    """Follow branches of tori within the range of the wind speeds (winds,), until they end at another cycle.
 
     Returns
     -------
     BranchPoints
-        Sorted by branch, in the order in which they were met; the births are left out.
+        Sorted by branch, in the order in which they were computed, without the starting points.
     """
     problem = TorusProblem(model, starts.member, starts.tori.order)
     last = make_points(problem, np.arange(starts.member.size), points_of(starts.tori), starts.direction)
@@ -228,7 +228,7 @@ def follow_tori(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> 
 
 
 def _guessed_cycle(branch_sets: Sequence[BranchSet], found: Bifurcations, point: int) -> Orbits | None:
-    """Guess the cycle at a torus point from the branches of its model that pass its wind speed."""
+    """Interpolate the cycle at a torus point from the branches of its model; None if none of them passes it."""
     nearest, best = SAME_FREQUENCY, None
     for branch_set in branch_sets:
         here = np.flatnonzero(branch_set.member == found.member[point])
@@ -243,7 +243,7 @@ def _guessed_cycle(branch_sets: Sequence[BranchSet], found: Bifurcations, point:
 
 
 def _passed_cycle(problem: TorusProblem, before: BranchPoints, new: BranchPoints) -> BoolArray:
-    """Tell which branches passed through a cycle, where one of the two base lines turns over."""
+    """Return which branches passed through a cycle, where one of the two base lines changes its sign."""
     old, at_start = problem.read(before.z), problem.read(new.z)
     member = problem.member[new.branch]
     mass = problem.model.modal_masses[member]

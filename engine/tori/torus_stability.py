@@ -1,9 +1,9 @@
-"""Stability of quasi-periodic motions from what the linearized equations do over long times. Theory section 7.3.
+"""Stability of quasi-periodic motions from the linearized equations over long times. Theory section 7.3.
 
-Over one period of w the disturbances of a torus are mapped by a matrix that depends on the phase theta_2 alone. It is
-computed at some phases and interpolated in between, so that the map over thousands of periods is a product of small
-matrices. After a number of periods in which theta_2 comes back, too, the torus is where it was, and the map is judged
-like that of a cycle: without the two directions along the torus, which the motion keeps.
+Over one period of w, disturbances of a torus are mapped by a matrix that depends on the phase theta_2 alone. This
+matrix is computed at some phases and interpolated between them, so the map over thousands of periods is a product of
+small matrices. After a number of periods in which theta_2 also returns, the torus is back at its starting point. The
+map then decides stability as for a cycle, restricted to the space across the two neutral directions along the torus.
 """
 
 from collections.abc import Iterator
@@ -17,18 +17,18 @@ from engine.models.reduced_model import ReducedModel
 from engine.outcome import Stability
 from engine.tori.two_frequency_balance import Tori, derivative, fourier_basis, harmonic_lattice, states
 
-SAMPLES = 64  # phases theta_2 at which the map over one period is computed
-PERIODS = 50_000  # after which the search for a decision ends
-BLOCK = 4096  # periods whose maps are held at a time
-MARGIN = 3.0  # times the errors of the map
+SAMPLES = 64  # phases theta_2 at which the period map is computed
+PERIODS = 50_000  # after which the stability is left unknown
+BLOCK = 4096  # periods whose maps are in memory at a time
+MARGIN = 3.0  # on the error of the map, for a decision
 
 
 @dataclass(frozen=True, slots=True)
 class TorusStability:
-    """Disturbances across a torus after a number of periods.
+    """Growth of disturbances across a torus after a number of periods.
 
-    largest: modulus of the largest multiplier, NaN if nothing could be computed; error: what it may be trusted to;
-    periods: of w; stability: UNKNOWN where the error leaves it open.
+    largest: modulus of the largest multiplier, NaN if it could not be computed; error: of that modulus; periods: number
+    of periods of w; stability: UNKNOWN where the error does not allow a decision.
     """
 
     largest: float
@@ -38,9 +38,9 @@ class TorusStability:
 
 
 def torus_stability(model: ReducedModel, torus: Tori) -> TorusStability:
-    """Judge one torus of one model, both with a leading axis of length 1.
+    """Return the stability of one torus of one model, both with a leading axis of length 1.
 
-    It goes from return to better return until the largest multiplier is told from 1.
+    Ever better returns of theta_2 are tried until the largest multiplier differs from 1 by more than its error.
     """
     maps = _period_maps(model, torus)
     if maps is None:
@@ -63,7 +63,7 @@ def torus_stability(model: ReducedModel, torus: Tori) -> TorusStability:
 
 
 def _period_maps(model: ReducedModel, torus: Tori) -> FloatArray | None:
-    """Return the maps of (q, dq/dtau) over one period from theta_1 = 0 and even theta_2: (samples, 2 m, 2 m)."""
+    """Return the maps of (q, dq/dtau) over one period from theta_1 = 0, theta_2 evenly spaced: (samples, 2 m, 2 m)."""
     m = model.mass.shape[-1]
     fast = torus.angular_frequency[:, 0]
     steps = int(steps_needed(np.linalg.inv(model.mass) @ model.stiffness, fast)[0])
@@ -80,7 +80,7 @@ def _period_maps(model: ReducedModel, torus: Tori) -> FloatArray | None:
 
 
 def _return_periods(turn: float) -> Iterator[int]:
-    """Yield numbers of periods after which theta_2 returns ever better: denominators of the continued fraction."""
+    """Yield numbers of periods after which theta_2 returns ever closer: denominators of the continued fraction."""
     before, here, remainder = 0, 1, abs(turn) % 1.0
     while remainder > 1e-9:
         whole, remainder = divmod(1.0 / remainder, 1.0)
@@ -91,7 +91,7 @@ def _return_periods(turn: float) -> Iterator[int]:
 
 
 def _product(series: ComplexArray, turn: float, first: int, stop: int) -> FloatArray:
-    """Multiply the interpolated maps of the periods from first to stop."""
+    """Return the product of the interpolated maps of the periods from first to stop."""
     phase = 2.0 * np.pi * turn * np.arange(first, stop)
     order = np.arange(len(series))
     weight = np.where((order == 0) | (order == SAMPLES // 2), 1.0, 2.0)
@@ -104,7 +104,7 @@ def _product(series: ComplexArray, turn: float, first: int, stop: int) -> FloatA
 
 
 def _verdict_across(torus: Tori, weight: FloatArray, long_map: FloatArray, periods: int) -> TorusStability:
-    """Judge the map in the space across the torus, where disturbances along it count for nothing."""
+    """Return the stability that the map has in the space across the torus, its neutral directions removed."""
     turn = torus.angular_frequency[0, 1] / torus.angular_frequency[0, 0]
     start, end = (weight[:, None] * _tangents(torus, 2.0 * np.pi * turn * n) for n in (0, periods))
     length = np.linalg.norm(start, axis=0)
