@@ -14,7 +14,7 @@ from app.coalescing.shared_watch import SharedWatch
 from app.convert import ENGINE_VERSION
 from app.http import problems
 from app.http.head_as_get import HeadAsGet
-from app.http.request_log import Access
+from app.http.request_log import RequestLog
 from app.http.security_headers import SecurityHeaders
 from app.jobs import submissions
 from app.jobs.dispatch import Dispatcher, Sender, celery_application
@@ -64,7 +64,7 @@ class Service(FastAPI):
 
     def build_middleware_stack(self) -> ASGIApp:
         """Return the application inside of what must hold even for the answer to a defect."""
-        return Access(SecurityHeaders(super().build_middleware_stack()), self.state.requests.observe)
+        return RequestLog(SecurityHeaders(super().build_middleware_stack()), self.state.requests.observe)
 
 
 def create_app(settings: Settings | None = None) -> Service:

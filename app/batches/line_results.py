@@ -9,7 +9,7 @@ from sqlalchemy import Row, and_, select
 from sqlalchemy.orm import Session
 
 from app import convert
-from app.storage.stored_results import PEAKS, STATIC, tables_of, unpacked
+from app.storage.stored_results import RANKING_FIGURES, STATIC, tables_of, unpacked
 from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
 
 _LINES_A_FETCH = 200
@@ -21,7 +21,7 @@ _HARTOG = ("den_hartog_coefficient", "den_hartog_unstable")
 def columns(table: str) -> list[str]:
     """Return the names of a table's columns in order."""
     if table == "summary":
-        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *PEAKS, "engine_version"]
+        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *RANKING_FIGURES, "engine_version"]
     return [*_LABELS, *convert.columns(table)]
 
 
@@ -57,7 +57,15 @@ def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterato
 def _lines(session: Session, batch_id: UUID, *, unpacking: bool) -> Iterator[Row[Any]]:
     """Yield the lines with the state of their chunk and their point, some in memory at a time."""
     of_line = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number)
-    names = (*STATIC, *_HARTOG, *PEAKS, "warnings", "engine_version", "failure", *(("tables",) if unpacking else ()))
+    names = (
+        *STATIC,
+        *_HARTOG,
+        *RANKING_FIGURES,
+        "warnings",
+        "engine_version",
+        "failure",
+        *(("tables",) if unpacking else ()),
+    )
     statement = (
         select(BatchItem.number, BatchItem.reference, BatchItem.asset_id, BatchItem.chunk_id, BatchItem.faults)
         .add_columns(Job.status, Job.failure_kind, Job.failure_detail, PointRow.point)
@@ -80,7 +88,7 @@ def _summary(item: Row[Any]) -> dict[str, Any]:
         **_labels(item),
         "status": state["status"],
         "failure": state["failure"]["detail"] if state["failure"] else None,
-        **{name: getattr(item, name) for name in (*STATIC, *_HARTOG, *PEAKS, "engine_version")},
+        **{name: getattr(item, name) for name in (*STATIC, *_HARTOG, *RANKING_FIGURES, "engine_version")},
     }
 
 

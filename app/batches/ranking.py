@@ -10,7 +10,7 @@ from sqlalchemy import Row, and_, select, tuple_
 from sqlalchemy.orm import Session
 
 from app.http import paging
-from app.storage.stored_results import PEAKS
+from app.storage.stored_results import RANKING_FIGURES
 from app.tables import BatchItem, PointRow
 
 _PLACE = struct.Struct(">dqq")
@@ -18,7 +18,7 @@ _PLACE = struct.Struct(">dqq")
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """The figure that decides, one of `PEAKS`, and whether the largest comes first."""
+    """The figure that decides, one of `RANKING_FIGURES`, and whether the largest comes first."""
 
     figure: str
     descending: bool
@@ -34,7 +34,7 @@ class Place:
 
 
 def page(session: Session, batch_id: UUID, order: Order, after: Place | None, limit: int) -> Sequence[Row[Any]]:
-    """Return number, reference, asset_id and `PEAKS` of the lines that follow a place and have the figure."""
+    """Return number, reference, asset_id and `RANKING_FIGURES` of the lines that follow a place and have the figure."""
     figure = getattr(PointRow, order.figure)
     key = tuple_(figure, PointRow.point)
     of_line = (
@@ -43,7 +43,9 @@ def page(session: Session, batch_id: UUID, order: Order, after: Place | None, li
         BatchItem.chunk_id == PointRow.job_id,
     )
     statement = (
-        select(BatchItem.number, BatchItem.reference, BatchItem.asset_id, *(getattr(PointRow, p) for p in PEAKS))
+        select(
+            BatchItem.number, BatchItem.reference, BatchItem.asset_id, *(getattr(PointRow, p) for p in RANKING_FIGURES)
+        )
         .select_from(PointRow)
         .join(BatchItem, and_(*of_line))
         .where(PointRow.batch_id == batch_id, figure.is_not(None))

@@ -29,7 +29,7 @@ def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
     from app.operation import service_status as service
 
     with operator_told():
-        found = service.look(read_settings(data_dir))
+        found = service.read_status(read_settings(data_dir))
     if json:
         from dataclasses import asdict
 

@@ -18,7 +18,7 @@ Observe = Callable[[str, str, int, float], None]
 _logger = logging.getLogger(__name__)
 
 
-class Access:
+class RequestLog:
     """ASGI middleware around all others, so that the answers to defects carry the id, too."""
 
     def __init__(self, app: ASGIApp, observe: Observe) -> None:

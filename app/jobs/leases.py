@@ -20,7 +20,7 @@ from app.jobs.job_records import record
 from app.runtime.correlation import Ids
 from app.runtime.settings import Settings
 from app.storage import counters, stored_results
-from app.storage.counters import Name
+from app.storage.counters import CounterName
 from app.storage.database import database_moment, database_time
 from app.tables import FailureKind, Job, JobEventKind, JobStatus
 
@@ -132,7 +132,7 @@ def release_expired(session: Session, settings: Settings, owner: str | None = No
     for job in released:
         _release(session, job, settings, now)
     if released:
-        counters.add(session, Name.LEASES, "returned" if owner else "expired", count=len(released))
+        counters.add(session, CounterName.LEASES, "returned" if owner else "expired", count=len(released))
     return len(released)
 
 

@@ -19,7 +19,7 @@ from app.convert import NumberedLine, PointResult
 from app.jobs import job_records
 from app.jobs.job_records import Draft
 from app.storage import counters
-from app.storage.stored_results import PEAKS, STATIC, unpacked
+from app.storage.stored_results import RANKING_FIGURES, STATIC, unpacked
 from app.tables import Job, JobEventKind, JobStatus, PointRow
 
 _LINE_ALONE = {"line", "analysis"}
@@ -154,7 +154,7 @@ def _as_result(row: PointRow, number: int) -> PointResult:
         axes={"number": number},
         static={name: getattr(row, name) for name in STATIC},
         den_hartog={"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable},
-        peaks={name: getattr(row, name) for name in PEAKS},
+        peaks={name: getattr(row, name) for name in RANKING_FIGURES},
         tables_json=unpacked(row.tables),
         orbits_json=unpacked(row.orbits),
         warnings=row.warnings,

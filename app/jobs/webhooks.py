@@ -19,9 +19,9 @@ from standardwebhooks import Webhook
 from uuid_utils.compat import uuid7
 
 from app.jobs import batch_progress
-from app.runtime.settings import Settings, cursor_key
+from app.runtime.settings import Settings, signing_key
 from app.storage import counters
-from app.storage.counters import Name
+from app.storage.counters import CounterName
 from app.storage.database import database_time
 from app.tables import ENDED, Batch, DeliveryState, Job, WebhookDelivery
 
@@ -112,14 +112,14 @@ class Share:
 
 
 def secret(settings: Settings, owner: str) -> str:
-    """Return the secret of an owner's webhooks, which follows from the operator's secret (`cursor_secret`).
+    """Return the secret of an owner's webhooks, which follows from the operator's secret (`signing_secret`).
 
     Raises
     ------
     OSError
         If the operator's secret can be neither read nor made.
     """
-    key = hmac.digest(cursor_key(settings), b"webhooks\0" + owner.encode(), hashlib.sha256)
+    key = hmac.digest(signing_key(settings), b"webhooks\0" + owner.encode(), hashlib.sha256)
     return "whsec_" + base64.b64encode(key).decode()
 
 
@@ -217,7 +217,7 @@ def _oldest_due(session: Session, now: datetime, share: Share) -> Sequence[Webho
 
 def note(session: Session, settings: Settings, message: Message, attempt: Attempt) -> None:
     """Write what came of an attempt into the log, say when the next one is due, if there is one, and count it."""
-    counters.add(session, Name.WEBHOOKS, attempt.outcome.value)
+    counters.add(session, CounterName.WEBHOOKS, attempt.outcome.value)
     delivery = session.get(WebhookDelivery, message.id, with_for_update=True)
     if delivery is None:  # removed with its job
         return
@@ -228,7 +228,7 @@ def note(session: Session, settings: Settings, message: Message, attempt: Attemp
         delivery.state = DeliveryState.DELIVERED.value
     elif attempt.status_code == _GONE or message.attempt >= settings.webhook_attempts:
         delivery.state = DeliveryState.FAILED.value
-        counters.add(session, Name.WEBHOOKS, GIVEN_UP)
+        counters.add(session, CounterName.WEBHOOKS, GIVEN_UP)
     else:
         pause = settings.webhook_retry_seconds * _GROWTH ** (message.attempt - 1)
         delivery.next_attempt_at = now + timedelta(seconds=pause)

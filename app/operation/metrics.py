@@ -21,7 +21,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs.webhooks import GIVEN_UP, Outcome
 from app.storage import counters
-from app.storage.counters import Name
+from app.storage.counters import CounterName
 from app.storage.database import database_time
 from app.tables import DeliveryState, Job, JobStatus, WebhookDelivery
 
@@ -29,7 +29,7 @@ Totals = Mapping[tuple[str, str], tuple[int, float]]
 
 _METHODS = frozenset({"DELETE", "GET", "HEAD", "OPTIONS", "PATCH", "POST", "PUT"})
 _BUCKETS = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
-_KINDS = {Name.JOBS: "job", Name.CHUNKS: "chunk"}
+_KINDS = {CounterName.JOBS: "job", CounterName.CHUNKS: "chunk"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ def _counted(totals: Totals) -> Iterator[Metric]:
     spent: dict[str, float] = dict.fromkeys(_KINDS.values(), 0.0)
     leases: dict[str, Any] = {"expired": 0, "returned": 0}
     for (name, label), (count, seconds) in sorted(totals.items()):
-        if name == Name.LEASES:
+        if name == CounterName.LEASES:
             leases[label] = count
         elif kind := {name.value: kind for name, kind in _KINDS.items()}.get(name):
             status, _, failure = label.partition("/")
@@ -158,8 +158,8 @@ def _webhooks(session: Session, totals: Totals) -> Iterator[Metric]:
     open_ones = select(func.count(), due).where(WebhookDelivery.state == DeliveryState.PENDING.value)
     count, oldest = session.execute(open_ones).one()
     for outcome in Outcome:
-        attempts.add_metric([outcome.value], totals.get((Name.WEBHOOKS.value, outcome.value), (0, 0.0))[0])
-    given_up.add_metric([], totals.get((Name.WEBHOOKS.value, GIVEN_UP), (0, 0.0))[0])
+        attempts.add_metric([outcome.value], totals.get((CounterName.WEBHOOKS.value, outcome.value), (0, 0.0))[0])
+    given_up.add_metric([], totals.get((CounterName.WEBHOOKS.value, GIVEN_UP), (0, 0.0))[0])
     pending.add_metric([], count)
     late.add_metric([], max(0.0, (now - oldest).total_seconds()) if oldest is not None else 0.0)
     yield from (attempts, given_up, pending, late)

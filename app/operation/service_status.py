@@ -93,7 +93,7 @@ class Status:
         return ("database", self.database), ("broker", self.broker)
 
 
-def look(settings: Settings) -> Status:
+def read_status(settings: Settings) -> Status:
     """Ask the database and the broker of the settings; whichever does not answer is said so.
 
     Raises

@@ -10,8 +10,8 @@ from app.answers.aerodynamics import FitAnswer
 from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document
 from app.jobs import idempotency, job_records
 from app.routes import documentation, reference_documentation
-from app.routes.common import PREFIX, Writers
-from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
+from app.routes.dependencies import PREFIX, Writers
+from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
 from app.schemas.faults import BadInput
 
 router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route_class=StrictJsonRoute)
@@ -48,4 +48,4 @@ def fit(
     def fingerprint() -> str:
         return idempotency.fingerprint(router.prefix, job_records.canonical(document.model_dump(mode="json")))
 
-    return once(writers, key, fingerprint, lambda _: Made(answer)).answer
+    return run_once(writers, key, fingerprint, lambda _: PostOutcome(answer)).answer

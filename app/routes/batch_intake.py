@@ -21,9 +21,9 @@ from app.http.problems import ProblemError, ProblemKind, invalid_document, query
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
 from app.routes import batch_documentation, documentation
-from app.routes.batch_common import BATCHES, accepted_batch
-from app.routes.common import CallerOf, MayReuse, SenderOf, Writers, vet_webhook
-from app.routes.once import KEY_PROBLEMS, KeyOf, Made, as_kept, held
+from app.routes.batch_status import BATCHES, accepted_batch
+from app.routes.dependencies import CallerOf, MayReuse, SenderOf, Writers, vet_webhook
+from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_holding_key, stored_answer
 from app.runtime.settings import Settings
 from app.schemas.faults import BadInput, Fault, parse_json
 from app.security.caller import Caller
@@ -100,17 +100,17 @@ async def submit(
     return made.answer
 
 
-def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> Made:
+def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> PostOutcome:
     take_in, lease_seconds = partial(_take_in, writers, caller, key, posted), posted.settings.key_lease_seconds
     try:
-        return held(writers, key, partial(_fingerprint, posted), take_in, lease_seconds)
+        return run_holding_key(writers, key, partial(_fingerprint, posted), take_in, lease_seconds)
     except BodyTooLarge as error:
         raise ProblemError(ProblemKind.TOO_LARGE, str(error), headers={"Connection": "close"}) from error
     except BadInput as error:
         raise invalid_document(error.faults) from error
 
 
-def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> Made:
+def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> PostOutcome:
     answers: list[Response] = []
 
     def on_accept(session: Session, batch_id: UUID) -> None:
@@ -118,12 +118,12 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
             webhooks.register(session, caller.owner, webhook_url, batch_id=batch_id)
         answers.append(accepted_batch(session, caller, batch_id))
         if key is not None:
-            idempotency.finish(session, key, _sum(posted), as_kept(answers[0]))
+            idempotency.finish(session, key, _sum(posted), stored_answer(answers[0]))
 
     incoming = replace(_incoming(posted), anew=not posted.may_reuse)
     webhook_url = _webhook_url(posted, incoming)
     receipt = intake.receive(writers, posted.settings, caller, incoming, on_accept, atomic=posted.how.atomic)
-    return Made(answers[0], receipt.chunk_ids)
+    return PostOutcome(answers[0], receipt.chunk_ids)
 
 
 def _webhook_url(posted: _Posted, incoming: Incoming) -> str | None:

@@ -15,10 +15,10 @@ from app.batches.ranking import Order, Place
 from app.http import paging
 from app.http.problems import ProblemKind, query_fault
 from app.routes import batch_documentation, documentation
-from app.routes.batch_common import batch_address, require_results
-from app.routes.common import PREFIX, CallerOf, Readers, SettingsOf
-from app.runtime.settings import cursor_key
-from app.storage.stored_results import PEAKS
+from app.routes.batch_status import batch_address, require_results
+from app.routes.dependencies import PREFIX, CallerOf, Readers, SettingsOf
+from app.runtime.settings import signing_key
+from app.storage.stored_results import RANKING_FIGURES
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
@@ -91,7 +91,7 @@ def rank(
 
     Lines for which the figure is not known are left out: without a critical wind speed up to the limit, say.
     """
-    query, key = asked.checked(), cursor_key(settings)
+    query, key = asked.checked(), signing_key(settings)
     order = query.order()
     after = _place(key, batch_id, order, query.cursor)
     require_results(readers, caller, batch_id, partial=query.partial)
@@ -117,7 +117,7 @@ def _line(query: RankingQuery, rank: int, row: Row[Any]) -> dict[str, Any]:
         clearance = query.horizontal_spacing_m - row.largest_width_m
     return {
         "rank": rank,
-        **{name: getattr(row, name) for name in ("number", "reference", "asset_id", *PEAKS)},
+        **{name: getattr(row, name) for name in ("number", "reference", "asset_id", *RANKING_FIGURES)},
         "margin_m_per_s": margin,
         "clearance_m": clearance,
     }

@@ -17,9 +17,10 @@ from app.export.columns import columns_of
 from app.http.conditional import strong_tag, unless_known
 from app.http.problems import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation
-from app.routes.batch_common import require_results
-from app.routes.common import PREFIX, CallerOf, Readers, streamed
-from app.routes.ended import Known
+from app.routes.batch_status import require_results
+from app.routes.dependencies import PREFIX, CallerOf, Readers
+from app.routes.finished_jobs import KnownTags
+from app.routes.streaming import streamed
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
@@ -58,7 +59,7 @@ def results(
     caller: CallerOf,
     readers: Readers,
     asked: Annotated[ResultsQuery, Query()],
-    known: Known = "",
+    known: KnownTags = "",
 ) -> StreamingResponse:
     """Return what came of the lines in the order of their numbers: everything, one object a line, or one table.
 

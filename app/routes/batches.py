@@ -16,7 +16,7 @@ from app.http.problems import ProblemKind, query_fault
 from app.jobs import batch_progress, idempotency
 from app.jobs.job_records import CancelOutcome
 from app.routes import batch_documentation, documentation
-from app.routes.batch_common import (
+from app.routes.batch_status import (
     BATCHES,
     accepted_batch,
     batch_address,
@@ -24,10 +24,10 @@ from app.routes.batch_common import (
     batch_summary,
     find_batch,
 )
-from app.routes.common import RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
-from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
+from app.routes.dependencies import RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
+from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
 from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
-from app.runtime.settings import cursor_key
+from app.runtime.settings import signing_key
 from app.security.caller import Owned
 from app.tables import ENDED
 
@@ -83,7 +83,7 @@ def list_batches(
     cursor: Annotated[str | None, Query(max_length=200, description="Place that a `next` address holds")] = None,
 ) -> JSONResponse:
     """List batches, newest first, a page at a time; `next` is the address of the following page."""
-    key = cursor_key(settings)
+    key = signing_key(settings)
     after = _place(key, cursor) if cursor else None
     with readers() as session:
         found = batch_records.page(session, caller.owner, after, limit + 1)
@@ -111,13 +111,13 @@ def resubmit(
 ) -> Response:
     """Run the lines that failed once more, under their numbers; if none has failed nothing changes."""
 
-    def make(session: Session) -> Made:
+    def make(session: Session) -> PostOutcome:
         batch = find_batch(session, caller, batch_id)
         size = intake.lines_a_chunk(settings, convert.read_analysis(batch.analysis))
         chunk_ids = batch_records.resubmit(session, caller, batch_id, size)
-        return Made(accepted_batch(session, caller, batch_id), chunk_ids)
+        return PostOutcome(accepted_batch(session, caller, batch_id), chunk_ids)
 
-    made = once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "resubmit"), make)
+    made = run_once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "resubmit"), make)
     sender.send(made.job_ids, chunk=True)
     return made.answer
 

@@ -10,8 +10,8 @@ from app import convert
 from app.answers.clearance import Clearance
 from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.routes import documentation
-from app.routes.common import PREFIX, Readers
-from app.routes.ended import EndedJob
+from app.routes.dependencies import PREFIX, Readers
+from app.routes.finished_jobs import FinishedJob
 from app.routes.results import point_rows, request_of_point
 from app.schemas.fields import example_of
 from app.storage import stored_results
@@ -43,12 +43,12 @@ class ClearanceQuery(BaseModel):
         ),
     },
 )
-def clearance(ended: EndedJob, asked: Annotated[ClearanceQuery, Query()], readers: Readers) -> JSONResponse:
+def clearance(finished: FinishedJob, asked: Annotated[ClearanceQuery, Query()], readers: Readers) -> JSONResponse:
     """Tell how near two phases come that gallop alike, each anywhere in its envelope: motion by motion, and by ellipse.
 
     The envelope is the convex hull of the paths of all sub-conductors; conductors are taken as lines.
     """
-    job, headers = ended.job, ended.headers("json")
+    job, headers = finished.job, finished.headers("json")
     offset = asked.vertical_spacing_m, asked.horizontal_spacing_m
     if offset == (0.0, 0.0):
         raise query_fault("vertical_spacing_m", "the other phase cannot hang in the same place")

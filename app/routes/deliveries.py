@@ -11,9 +11,10 @@ from app.answers.deliveries import DeliveryLog, WebhookSecret
 from app.http.problems import ProblemKind
 from app.jobs import idempotency, webhooks
 from app.routes import documentation
-from app.routes.batch_common import batch_address, find_batch
-from app.routes.common import PREFIX, CallerOf, Readers, SettingsOf, Writers, find_job, job_address
-from app.routes.once import KEY_PROBLEMS, KeyOf, Made, once
+from app.routes.batch_status import batch_address, find_batch
+from app.routes.dependencies import PREFIX, CallerOf, Readers, SettingsOf, Writers
+from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
+from app.routes.job_status import find_job, job_address
 from app.schemas.fields import example_of
 from app.tables import WebhookDelivery
 
@@ -63,26 +64,26 @@ def of_batch(batch_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse
 def send_of_job_again(job_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
     """Send the webhooks of a job that has ended once more, under the ids that they had."""
 
-    def make(session: Session) -> Made:
+    def make(session: Session) -> PostOutcome:
         find_job(session, caller, job_id)
         deliveries = webhooks.of(session, job_id=job_id)
         webhooks.send_again(session, deliveries)
-        return Made(_made(deliveries, 202))
+        return PostOutcome(_made(deliveries, 202))
 
-    return once(writers, key, lambda: idempotency.fingerprint(job_address(job_id), "deliveries"), make).answer
+    return run_once(writers, key, lambda: idempotency.fingerprint(job_address(job_id), "deliveries"), make).answer
 
 
 @router.post("/batches/{batch_id}/deliveries", status_code=202, response_model=DeliveryLog, responses=_SEND)
 def send_of_batch_again(batch_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
     """Send the webhooks of a batch that has ended once more, under the ids that they had."""
 
-    def make(session: Session) -> Made:
+    def make(session: Session) -> PostOutcome:
         find_batch(session, caller, batch_id)
         deliveries = webhooks.of(session, batch_id=batch_id)
         webhooks.send_again(session, deliveries)
-        return Made(_made(deliveries, 202))
+        return PostOutcome(_made(deliveries, 202))
 
-    return once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "deliveries"), make).answer
+    return run_once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "deliveries"), make).answer
 
 
 @router.get(

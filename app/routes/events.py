@@ -15,8 +15,9 @@ from app.http.problems import ProblemKind
 from app.jobs import batch_progress
 from app.jobs.watched_states import BatchSeen, Happening
 from app.routes import documentation
-from app.routes.batch_common import find_batch, line_counts
-from app.routes.common import PREFIX, CallerOf, Readers, find_job
+from app.routes.batch_status import find_batch, line_counts
+from app.routes.dependencies import PREFIX, CallerOf, Readers
+from app.routes.job_status import find_job
 from app.routes.waiting import BatchWatch, JobWatch
 from app.security.caller import Owned
 from app.tables import ENDED, JobEvent, JobEventKind

@@ -16,7 +16,7 @@ from app.http.problems import ProblemError, ProblemKind
 from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.operation import metrics
 from app.routes import documentation
-from app.routes.common import Readers, SettingsOf
+from app.routes.dependencies import Readers, SettingsOf
 from app.runtime.settings import Settings
 from app.storage.migration import is_newest
 

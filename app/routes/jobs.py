@@ -21,23 +21,11 @@ from app.jobs.idempotency import KeyTaken
 from app.jobs.job_records import CancelOutcome, Draft, JobFilters, Submission
 from app.jobs.submissions import Keyed, Order
 from app.routes import documentation
-from app.routes.common import (
-    PREFIX,
-    RETRY_SECONDS,
-    CallerOf,
-    MayReuse,
-    Readers,
-    SettingsOf,
-    Writers,
-    find_job,
-    find_status,
-    job_address,
-    job_document,
-    vet_webhook,
-)
-from app.routes.once import KEY_PROBLEMS, KeyOf, as_kept, first_answer
+from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers, vet_webhook
+from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, replayed_answer, stored_answer
+from app.routes.job_status import find_job, find_status, job_address, job_document
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
-from app.runtime.settings import cursor_key
+from app.runtime.settings import signing_key
 from app.schemas.fields import Label
 from app.security.caller import Owned
 from app.tables import ENDED, JobStatus
@@ -106,7 +94,7 @@ async def _ordered(
         return idempotency.fingerprint(router.prefix, job_records.canonical(kept), document.webhook_url or "")
 
     submission = Submission(request.state.caller, kept, line.name, line.asset_id, line.tags)
-    keyed = Keyed(key, fingerprint, lambda job: as_kept(_accepted(job))) if key is not None else None
+    keyed = Keyed(key, fingerprint, lambda job: stored_answer(_accepted(job))) if key is not None else None
     return Order(submission, document.webhook_url, may_reuse, keyed)
 
 
@@ -148,7 +136,7 @@ async def submit(request: Request, order: Annotated[Order, Depends(_ordered)]) -
         job: Draft = await shared.inbox.ask(order)
     except KeyTaken:
         assert order.keyed is not None
-        return await to_thread.run_sync(first_answer, shared.readers, order.keyed.key, order.keyed.fingerprint)
+        return await to_thread.run_sync(replayed_answer, shared.readers, order.keyed.key, order.keyed.fingerprint)
     if job.status is JobStatus.ACCEPTED:
         shared.dispatcher.put(job.id)
     return _accepted(job)
@@ -197,7 +185,7 @@ def list_jobs(
     readers: Readers,
 ) -> JSONResponse:
     """List jobs, newest first, a page at a time; `next` is the address of the following page."""
-    key = cursor_key(settings)
+    key = signing_key(settings)
     after = _place(key, filters.cursor) if filters.cursor else None
     with readers() as session:
         found = job_records.page(session, caller.owner, filters.as_filters(), after, filters.limit + 1)

@@ -10,7 +10,7 @@ from app.export.columns import all_tables
 from app.http.problems import ProblemKind
 from app.reference import conductors
 from app.routes import documentation, reference_documentation
-from app.routes.common import PREFIX
+from app.routes.dependencies import PREFIX
 from app.schemas import field_table
 
 router = APIRouter(prefix=PREFIX, tags=["reference"])

@@ -16,8 +16,10 @@ from app.export.columns import axis_columns, columns_of
 from app.export.formats import Format
 from app.http.problems import ProblemError, ProblemKind
 from app.routes import documentation
-from app.routes.common import PREFIX, Readers, failure_of, streamed
-from app.routes.ended import EndedJob
+from app.routes.dependencies import PREFIX, Readers
+from app.routes.finished_jobs import FinishedJob
+from app.routes.job_status import failure_of
+from app.routes.streaming import streamed
 from app.storage import stored_results
 from app.tables import Job
 
@@ -49,9 +51,9 @@ _TABLE_PROBLEMS = {
         **_PROBLEMS,
     },
 )
-def whole(ended: EndedJob, readers: Readers) -> StreamingResponse:
+def whole(finished: FinishedJob, readers: Readers) -> StreamingResponse:
     """Return everything that was found; a failed job answers with the rows that it has and its failure."""
-    job, headers = ended.job, ended.headers("json")
+    job, headers = finished.job, finished.headers("json")
 
     def pieces(session: Session) -> Iterator[str]:
         points = list(stored_results.points(session, job.id))
@@ -69,7 +71,7 @@ def whole(ended: EndedJob, readers: Readers) -> StreamingResponse:
 def table(
     table: TableName,
     request: Request,
-    ended: EndedJob,
+    finished: FinishedJob,
     readers: Readers,
     format: Annotated[Format | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
 ) -> StreamingResponse:
@@ -77,7 +79,7 @@ def table(
     chosen = format or formats.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {formats.PARQUET}.")
-    job, headers = ended.job, ended.headers(chosen)
+    job, headers = finished.job, finished.headers(chosen)
     name = convert.TABLES_BY_ADDRESS[table]
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
@@ -98,7 +100,7 @@ def table(
 )
 def study_plot(
     extension: PictureFormat,
-    ended: EndedJob,
+    finished: FinishedJob,
     readers: Readers,
     abscissa: Annotated[
         Literal["reduced", "parameter"], Query(description="The source's ratios, or values in the field's own unit")
@@ -107,7 +109,7 @@ def study_plot(
     """Draw all points of a study over what it varies; a study of two fields gives a map."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
-    job, headers = ended.job, ended.headers(extension)
+    job, headers = finished.job, finished.headers(extension)
     with readers() as session:
         found = _study_rows(session, job.id)
     length = job.document.get("line", {"span": {"length_m": 0.0}})["span"]["length_m"]
@@ -123,14 +125,14 @@ def study_plot(
 def plot(
     picture: Picture,
     extension: PictureFormat,
-    ended: EndedJob,
+    finished: FinishedJob,
     readers: Readers,
     point: Annotated[int, Query(ge=0, description="Point of a study")] = 0,
 ) -> Response:
     """Draw the amplitudes over wind speed, the orbits where they are observed, or the mode shapes of both models."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
-    job, headers = ended.job, ended.headers(extension)
+    job, headers = finished.job, finished.headers(extension)
     with readers() as session:
         found = point_rows(session, job.id, point)
         if picture == "modes":

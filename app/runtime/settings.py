@@ -6,13 +6,16 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, FilePath, SecretStr, field_validator, model_validator
+from pydantic import AliasChoices, Field, FilePath, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from app.runtime.weak_secrets import weak_secrets
 
 _PREFIX = "GALLOPING_"
-_SECRET_FILE = "cursor-secret"
+_SECRET_FILE = "signing-secret"
+_FORMER_SECRET_FILE = "cursor-secret"  # the name until the secret signed webhooks, too
+
+_SECRET_NAMES = AliasChoices("GALLOPING_SIGNING_SECRET", "GALLOPING_CURSOR_SECRET")  # the second is deprecated
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
@@ -39,12 +42,18 @@ class Settings(BaseSettings):
         If a value is out of its bounds, two contradict each other, or a secret of a deployment could be guessed.
     """
 
-    model_config = SettingsConfigDict(env_prefix=_PREFIX, frozen=True, extra="ignore", hide_input_in_errors=True)
+    model_config = SettingsConfigDict(
+        env_prefix=_PREFIX, frozen=True, extra="ignore", hide_input_in_errors=True, populate_by_name=True
+    )
 
     data_dir: Path = Field(default=Path("data"), description="Directory of all files of the embedded service")
     database_url: str = Field(default_factory=_default_database, description="SQLAlchemy address; SQLite or PostgreSQL")
     broker_url: str = Field(default_factory=_default_broker, description="Celery broker; redis:// or filesystem://")
-    cursor_secret: SecretStr | None = Field(default=None, description="Key that signs cursors; else a file in data_dir")
+    signing_secret: SecretStr | None = Field(
+        default=None,
+        validation_alias=_SECRET_NAMES,
+        description="Secret that signs cursors and webhooks; without one the service makes one in data_dir",
+    )
     key_cache_seconds: Seconds = Field(default=5.0, description="A revoked key works on for at most so long")
     reads_per_minute: Count = Field(default=60_000, description="Most GETs of one owner's keys in a minute")
     changes_per_minute: Count = Field(default=6_000, description="Most other requests of one owner's keys in a minute")
@@ -118,7 +127,7 @@ class Settings(BaseSettings):
 
     @model_validator(mode="after")
     def _guarded(self) -> "Settings":
-        secret = self.cursor_secret.get_secret_value() if self.cursor_secret is not None else None
+        secret = self.signing_secret.get_secret_value() if self.signing_secret is not None else None
         if weak := weak_secrets(self.database_url, self.broker_url, secret):
             raise ValueError("; ".join(weak))
         return self
@@ -136,7 +145,7 @@ def get_settings() -> Settings:
     return Settings()
 
 
-def cursor_key(settings: Settings) -> bytes:
+def signing_key(settings: Settings) -> bytes:
     """Return the key that signs cursors: the one that is set, else one made once and kept in a private file.
 
     Raises
@@ -144,10 +153,12 @@ def cursor_key(settings: Settings) -> bytes:
     OSError
         If the file can be neither read nor made.
     """
-    if settings.cursor_secret is not None:
-        return settings.cursor_secret.get_secret_value().encode()
+    if settings.signing_secret is not None:
+        return settings.signing_secret.get_secret_value().encode()
     settings.data_dir.mkdir(parents=True, exist_ok=True)
-    path = settings.data_dir / _SECRET_FILE
+    path, former = settings.data_dir / _SECRET_FILE, settings.data_dir / _FORMER_SECRET_FILE
+    if former.exists():
+        return former.read_bytes()
     if not path.exists():
         _keep_secret(path)
     return path.read_bytes()

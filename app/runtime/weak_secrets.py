@@ -12,14 +12,14 @@ _EXAMPLES = frozenset(
 )
 
 
-def weak_secrets(database_url: str, broker_url: str, cursor_secret: str | None) -> list[str]:
+def weak_secrets(database_url: str, broker_url: str, signing_secret: str | None) -> list[str]:
     """Return in sentences what is weak; nothing for a service whose database and broker are on its own machine.
 
     That one is its operator's alone until it has keys, and makes its secret itself.
     """
     addresses = {"GALLOPING_DATABASE_URL": database_url, "GALLOPING_BROKER_URL": broker_url}
     remote = {name: parts for name, url in addresses.items() if (parts := _elsewhere(url)) is not None}
-    return [*_weak_passwords(remote), *_weak_cursor_secret(cursor_secret)] if remote else []
+    return [*_weak_passwords(remote), *_weak_signing_secret(signing_secret)] if remote else []
 
 
 def _elsewhere(url: str) -> SplitResult | None:
@@ -40,8 +40,8 @@ def _weak_passwords(remote: dict[str, SplitResult]) -> Iterator[str]:
             yield f"{name} has a password that anybody could guess"
 
 
-def _weak_cursor_secret(secret: str | None) -> Iterator[str]:
+def _weak_signing_secret(secret: str | None) -> Iterator[str]:
     if secret is None:
-        yield "GALLOPING_CURSOR_SECRET must be set where database or broker are on another machine"
+        yield "GALLOPING_SIGNING_SECRET must be set where database or broker are on another machine"
     elif len(secret) < _SHORTEST or secret.lower() in _EXAMPLES:
-        yield f"GALLOPING_CURSOR_SECRET must be a random text of at least {_SHORTEST} characters"
+        yield f"GALLOPING_SIGNING_SECRET must be a random text of at least {_SHORTEST} characters"

@@ -64,7 +64,7 @@ class Gate:
             await answer(scope, receive, send)
             return
         scope.setdefault("state", {})["caller"] = caller
-        await self.app(scope, receive, _telling(standing, send) if standing is not None else send)
+        await self.app(scope, receive, _with_quota_fields(standing, send) if standing is not None else send)
 
     async def _admit(self, scope: types.Scope) -> tuple[Caller, Standing | None]:
         """Return who asks, and what is left of their quota if they have one.
@@ -146,16 +146,16 @@ def _refused(kind: ProblemKind, said: str, **parameters: str) -> ProblemError:
     return ProblemError(kind, said, headers={"WWW-Authenticate": f"Bearer {challenge}"})
 
 
-def _telling(standing: Standing, send: types.Send) -> types.Send:
+def _with_quota_fields(standing: Standing, send: types.Send) -> types.Send:
     """Add the standing of a quota to the answer."""
     fields = [(name.lower().encode(), value.encode()) for name, value in standing.fields.items()]
 
-    async def send_telling(message: types.Message) -> None:
+    async def send_with_quota(message: types.Message) -> None:
         if message["type"] == "http.response.start":
             message["headers"] = [*message["headers"], *fields]
         await send(message)
 
-    return send_telling
+    return send_with_quota
 
 
 def _look_up(readers: sessionmaker[Session], writers: sessionmaker[Session], digest: str) -> Caller | None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from app.convert import PointResult
 
 STATIC = tuple(columns_of(StaticState))
-PEAKS = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
+RANKING_FIGURES = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100
 _OWN = threading.local()
@@ -106,7 +106,7 @@ def _as_columns(point: "PointResult", compressor: zstandard.ZstdCompressor) -> d
         "warnings": point.warnings,
         "engine_version": point.engine_version,
         "failure": point.failure,
-        **{name: point.peaks.get(name) for name in PEAKS},
+        **{name: point.peaks.get(name) for name in RANKING_FIGURES},
         "tables": None if failed else compressor.compress(point.tables_json),
         "orbits": None if failed else compressor.compress(point.orbits_json),
         "input_hash": point.input_hash,

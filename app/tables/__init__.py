@@ -3,10 +3,10 @@
 from app.tables.access import ApiKey, AuditAction, AuditEvent
 from app.tables.base import ENDED, Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
 from app.tables.batches import Batch, BatchItem
+from app.tables.counter_increments import CounterIncrement
 from app.tables.idempotency import IdempotencyKey
 from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.results import PointRow
-from app.tables.tallies import Tally
 from app.tables.webhooks import DeliveryState, WebhookDelivery
 from app.tables.workers import Worker
 
@@ -18,6 +18,7 @@ __all__ = [
     "Base",
     "Batch",
     "BatchItem",
+    "CounterIncrement",
     "DeliveryState",
     "FailureKind",
     "IdempotencyKey",
@@ -27,7 +28,6 @@ __all__ = [
     "JobStatus",
     "JobTag",
     "PointRow",
-    "Tally",
     "UtcDateTime",
     "WebhookDelivery",
     "Worker",

@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 SECRETS = {
     "POSTGRES_PASSWORD": "pw1",
     "REDIS_PASSWORD": "pw2",
-    "GALLOPING_CURSOR_SECRET": "pw3-and-more-random-characters",
+    "GALLOPING_SIGNING_SECRET": "pw3-and-more-random-characters",
 }
 NEEDED = re.compile(r"\$\{(\w+):\?[^}]+\}")
 OURS = ("api", "worker", "migrations")

@@ -187,7 +187,7 @@ def test_a_name_is_only_text_in_a_picture(client: httpx.Client, own: Settings, n
 
 @pytest.mark.parametrize("text", TRAVERSALS)
 def test_no_address_leads_to_a_file(client: httpx.Client, own: Settings, text: str) -> None:
-    secret = own.data_dir / "cursor-secret"
+    secret = own.data_dir / "signing-secret"
     client.get("/v1/jobs?limit=1")  # makes the secret
     job = service.finished(client, own)
     for place in ("/", "/docs/", "/problems/", f"{job}/plots/", f"{job}/results/", "/v1/conductors/", "/v1/batches/"):

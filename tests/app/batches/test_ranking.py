@@ -11,7 +11,7 @@ from app.batches.ranking import Order, Place
 from app.http.paging import BadCursor
 from app.jobs import leases
 from app.security.caller import LOCAL
-from app.storage.stored_results import PEAKS
+from app.storage.stored_results import RANKING_FIGURES
 from tests.batch_rows import add_batch, claim
 from tests.documents import point_result
 
@@ -31,7 +31,9 @@ def filled(sessions: sessionmaker[Session], seed: int) -> tuple[UUID, dict[int, 
         with sessions.begin() as session:
             _, lines = batch_records.lines_of_chunk(session, chunk, batch_id)
             for line in lines:
-                figures[line.number] = {name: draw.choice([None, 0.1 + 0.2, 1.5, 2.5, 1e-300]) for name in PEAKS}
+                figures[line.number] = {
+                    name: draw.choice([None, 0.1 + 0.2, 1.5, 2.5, 1e-300]) for name in RANKING_FIGURES
+                }
             found = [replace(point_result(line.number), peaks=figures[line.number]) for line in lines]
             assert leases.finish(session, held, found)
     return batch_id, figures

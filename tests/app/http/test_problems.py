@@ -212,9 +212,9 @@ def test_a_database_that_does_not_answer_is_503(tmp_path: Path) -> None:
 
 
 def test_a_defect_is_500_without_its_traceback(own_settings: Settings, own_client: httpx.Client) -> None:
-    (own_settings.data_dir / "cursor-secret").mkdir()  # so that reading the secret fails as nobody foresaw
+    (own_settings.data_dir / "signing-secret").mkdir()  # so that reading the secret fails as nobody foresaw
     document = problem(own_client.get("/v1/jobs"), 500)
-    assert "cursor-secret" not in json.dumps(document)
+    assert "signing-secret" not in json.dumps(document)
 
 
 def test_the_document_of_a_problem_lists_a_thousand_faults_at_most() -> None:

@@ -62,7 +62,7 @@ def test_the_log_names_the_route_of_what_goes_wrong(
 def test_the_answer_to_a_defect_carries_the_id(
     own_settings: Settings, own_client: httpx.Client, caplog: pytest.LogCaptureFixture
 ) -> None:
-    (own_settings.data_dir / "cursor-secret").mkdir()  # so that reading the secret fails as nobody foresaw
+    (own_settings.data_dir / "signing-secret").mkdir()  # so that reading the secret fails as nobody foresaw
     caplog.set_level(logging.INFO, "app.http.request_log")
     answer = own_client.get("/v1/jobs", headers={"X-Request-ID": "d1"})
     assert (answer.status_code, answer.headers["x-request-id"]) == (500, "d1")

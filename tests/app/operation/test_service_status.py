@@ -24,7 +24,7 @@ def test_work_is_counted_as_it_is(deployment: Settings, deployed: sessionmaker[S
         leases.claim(session, running, "here", 60.0)
         leases.claim(session, lost, "gone", -1.0)
     assert send(deployment, waiting)
-    found = service_status.look(deployment)
+    found = service_status.read_status(deployment)
     assert (found.database, found.broker) == ("ok", "ok")
     assert found.contents is not None
     assert found.queues == service_status.Queues(jobs=1, chunks=0)
@@ -41,13 +41,13 @@ def test_work_is_counted_as_it_is(deployment: Settings, deployed: sessionmaker[S
 
 def test_workers_come_and_go(deployment: Settings, deployed: sessionmaker[Session]) -> None:
     def seen() -> list[bool]:
-        contents = service_status.look(deployment).contents
+        contents = service_status.read_status(deployment).contents
         return [worker.silent for worker in contents.workers] if contents else []
 
-    assert "No worker is there." in service_status.look(deployment).faults()
+    assert "No worker is there." in service_status.read_status(deployment).faults()
     with running_worker(deployment) as process:
         wait_until(lambda: seen() == [False], what="the worker in the list")
-        assert service_status.look(deployment).faults() == []
+        assert service_status.read_status(deployment).faults() == []
         process.terminate()
         process.wait(20.0)
         assert seen() == []
@@ -61,7 +61,7 @@ def test_a_worker_that_was_killed_is_silent_and_at_last_forgotten(
         session.flush()
         (worker,) = workers.listed(session)
         worker.seen_at -= timedelta(seconds=3.0 * workers.report_seconds(settings))
-    assert any("The worker killed is silent" in fault for fault in service_status.look(settings).faults())
+    assert any("The worker killed is silent" in fault for fault in service_status.read_status(settings).faults())
     with sessions.begin() as session:
         workers.listed(session)[0].seen_at -= timedelta(hours=1)
         session.flush()
@@ -72,7 +72,7 @@ def test_a_worker_that_was_killed_is_silent_and_at_last_forgotten(
 
 def test_what_does_not_answer_is_said_so(tmp_path: Path) -> None:
     database, broker = (f"{kind}://127.0.0.1:{free_port()}/0" for kind in ("postgresql", "redis"))
-    found = service_status.look(Settings(data_dir=tmp_path, database_url=database, broker_url=broker))
+    found = service_status.read_status(Settings(data_dir=tmp_path, database_url=database, broker_url=broker))
     assert (found.queues, found.contents) == (None, None)
     assert found.faults() == ["The database cannot be reached.", "The broker cannot be reached."]
 
@@ -80,6 +80,6 @@ def test_what_does_not_answer_is_said_so(tmp_path: Path) -> None:
 def test_a_database_of_another_version_is_said_so(settings: Settings, sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
         session.execute(text("UPDATE alembic_version SET version_num = '0001'"))
-    found = service_status.look(settings)
+    found = service_status.read_status(settings)
     assert found.contents is None
     assert "galloping migrate" in found.faults()[0]

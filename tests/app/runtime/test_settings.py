@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from pydantic import SecretStr, ValidationError
 
-from app.runtime.settings import Settings, cursor_key
+from app.runtime.settings import Settings, signing_key
 
 
 def test_defaults_need_no_other_server(tmp_path: Path) -> None:
@@ -15,7 +15,7 @@ def test_defaults_need_no_other_server(tmp_path: Path) -> None:
     assert settings.broker_url == "filesystem://localhost"
     assert settings.max_attempts == 3
     assert settings.max_body_bytes == 20_000_000
-    assert settings.cursor_secret is None
+    assert settings.signing_secret is None
 
 
 def test_relative_data_directory_becomes_absolute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -49,28 +49,41 @@ def test_bad_settings_are_refused(field: str, value: Any) -> None:
 
 
 def test_child_processes_get_the_same_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    settings = Settings(data_dir=tmp_path, lease_seconds=4.5, worker_processes=7, cursor_secret=SecretStr("s3cret"))
+    settings = Settings(data_dir=tmp_path, lease_seconds=4.5, worker_processes=7, signing_secret=SecretStr("s3cret"))
     for name, value in settings.environment().items():
         monkeypatch.setenv(name, value)
     assert Settings() == settings
 
 
 def test_secret_is_not_shown(tmp_path: Path) -> None:
-    assert "s3cret" not in repr(Settings(data_dir=tmp_path, cursor_secret=SecretStr("s3cret")))
+    assert "s3cret" not in repr(Settings(data_dir=tmp_path, signing_secret=SecretStr("s3cret")))
 
 
-def test_cursor_key_that_is_set_is_used(tmp_path: Path) -> None:
-    settings = Settings(data_dir=tmp_path / "none", cursor_secret=SecretStr("s3cret"))
-    assert cursor_key(settings) == b"s3cret"
+def test_signing_key_that_is_set_is_used(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "none", signing_secret=SecretStr("s3cret"))
+    assert signing_key(settings) == b"s3cret"
     assert not (tmp_path / "none").exists()
 
 
-def test_cursor_key_is_made_once_in_a_private_file(tmp_path: Path) -> None:
+def test_the_former_name_of_the_signing_secret_still_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GALLOPING_CURSOR_SECRET", "former")
+    assert signing_key(Settings(data_dir=tmp_path)) == b"former"
+    monkeypatch.setenv("GALLOPING_SIGNING_SECRET", "present")
+    assert signing_key(Settings(data_dir=tmp_path)) == b"present"
+
+
+def test_a_secret_file_of_an_earlier_version_is_used(tmp_path: Path) -> None:
+    (tmp_path / "cursor-secret").write_text("kept since then")
+    assert signing_key(Settings(data_dir=tmp_path)) == b"kept since then"
+    assert [path.name for path in tmp_path.iterdir()] == ["cursor-secret"]
+
+
+def test_signing_key_is_made_once_in_a_private_file(tmp_path: Path) -> None:
     settings = Settings(data_dir=tmp_path / "data")
     with ThreadPoolExecutor(8) as pool:
-        keys = set(pool.map(lambda _: cursor_key(settings), range(32)))
+        keys = set(pool.map(lambda _: signing_key(settings), range(32)))
     files = list((tmp_path / "data").iterdir())
     assert len(keys) == 1
     assert len(next(iter(keys))) >= 40
     assert [stat.S_IMODE(path.stat().st_mode) for path in files] == [0o600]
-    assert cursor_key(Settings(data_dir=tmp_path / "other")) not in keys
+    assert signing_key(Settings(data_dir=tmp_path / "other")) not in keys

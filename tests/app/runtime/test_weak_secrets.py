@@ -29,7 +29,7 @@ def test_what_is_on_one_machine_may_be_left_as_it_is(database: str, broker: str)
 @pytest.mark.parametrize("secret", [None, "", "short", "changeme", "d1bca6ef8f0244f"])
 def test_a_deployment_needs_a_secret_for_its_cursors(secret: str | None) -> None:
     (said,) = weak_secrets(*DEPLOYED, secret)
-    assert said.startswith("GALLOPING_CURSOR_SECRET must be")
+    assert said.startswith("GALLOPING_SIGNING_SECRET must be")
     assert weak_secrets(*DEPLOYED, GOOD) == []
 
 
@@ -47,8 +47,8 @@ def test_a_password_may_be_left_to_files_or_certificates() -> None:
 
 def test_settings_are_refused_without_showing_what_they_hold() -> None:
     with pytest.raises(ValidationError) as refused:
-        Settings(database_url="postgresql://me:Wn7qTq0c@db.example/x", cursor_secret=SecretStr("short-one"))
-    assert "GALLOPING_CURSOR_SECRET must be a random text" in str(refused.value)
+        Settings(database_url="postgresql://me:Wn7qTq0c@db.example/x", signing_secret=SecretStr("short-one"))
+    assert "GALLOPING_SIGNING_SECRET must be a random text" in str(refused.value)
     assert "Wn7qTq0c" not in str(refused.value)
     assert "short-one" not in str(refused.value)
 
@@ -63,5 +63,5 @@ def test_no_process_of_a_deployment_starts_with_a_weak_secret(
     assert ended.returncode == 2
     assert ended.stderr.splitlines() == [
         "GALLOPING_DATABASE_URL has a password that anybody could guess; "
-        "GALLOPING_CURSOR_SECRET must be set where database or broker are on another machine"
+        "GALLOPING_SIGNING_SECRET must be set where database or broker are on another machine"
     ]

@@ -6,7 +6,7 @@ from sqlalchemy.orm import Mapped, mapped_column
 from app.tables.base import Base
 
 
-class Tally(Base):
+class CounterIncrement(Base):
     """So many things of a kind, and the seconds that they took; the total of a kind is the sum of its rows."""
 
     __tablename__ = "tallies"

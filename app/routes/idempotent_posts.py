@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import idempotency
 from app.jobs.idempotency import Answer, Kept, Key, KeyTaken
-from app.routes.common import RETRY_SECONDS
+from app.routes.dependencies import RETRY_SECONDS
 
 _RENEWALS_A_LEASE = 5
 _REPLAYED = "Idempotency-Replayed"
@@ -49,16 +49,19 @@ KeyOf = Annotated[Key | None, Depends(_key)]
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class PostOutcome:
     """The answer to a POST, and the jobs that it made, to be sent to the workers after the commit."""
 
     answer: Response
     job_ids: Sequence[UUID] = ()
 
 
-def once(
-    writers: sessionmaker[Session], key: Key | None, fingerprint: Callable[[], str], make: Callable[[Session], Made]
-) -> Made:
+def run_once(
+    writers: sessionmaker[Session],
+    key: Key | None,
+    fingerprint: Callable[[], str],
+    make: Callable[[Session], PostOutcome],
+) -> PostOutcome:
     """Make something and keep the answer in one transaction; under a key that is in use, give its answer again.
 
     Raises
@@ -69,27 +72,29 @@ def once(
     try:
         with writers.begin() as session:
             made = make(session)
-            if key is not None and not idempotency.keep(session, [Kept(key, fingerprint(), as_kept(made.answer))]):
+            if key is not None and not idempotency.keep(
+                session, [Kept(key, fingerprint(), stored_answer(made.answer))]
+            ):
                 raise KeyTaken
             return made
     except KeyTaken:
         assert key is not None
-        return Made(first_answer(writers, key, fingerprint))
+        return PostOutcome(replayed_answer(writers, key, fingerprint))
 
 
-def held(
+def run_holding_key(
     writers: sessionmaker[Session],
     key: Key | None,
     fingerprint: Callable[[], str],
-    work: Callable[[], Made],
+    work: Callable[[], PostOutcome],
     lease_seconds: float,
-) -> Made:
+) -> PostOutcome:
     """Do what takes several transactions while the key is held under a lease; the last of them finishes it.
 
     Raises
     ------
     ProblemError
-        As `work` raises it, then with the key given up; else as from `once`.
+        As `work` raises it, then with the key given up; else as from `run_once`.
     """
     if key is None:
         return work()
@@ -97,9 +102,9 @@ def held(
         with writers.begin() as session:
             idempotency.hold(session, key, timedelta(seconds=lease_seconds))
     except KeyTaken:
-        return Made(first_answer(writers, key, fingerprint))
+        return PostOutcome(replayed_answer(writers, key, fingerprint))
     try:
-        with _renewed(writers, key, lease_seconds):
+        with _key_renewed(writers, key, lease_seconds):
             return work()
     except BaseException as error:
         with suppress(SQLAlchemyError), writers.begin() as session:
@@ -110,7 +115,7 @@ def held(
 
 
 @contextmanager
-def _renewed(writers: sessionmaker[Session], key: Key, lease_seconds: float) -> Iterator[None]:
+def _key_renewed(writers: sessionmaker[Session], key: Key, lease_seconds: float) -> Iterator[None]:
     """Renew the lease of a key in a thread, so that it lasts however slow the work is, and ends with the process.
 
     Who has lost it to another learns so when the work finishes the key.
@@ -136,7 +141,7 @@ def _renewed(writers: sessionmaker[Session], key: Key, lease_seconds: float) -> 
         thread.join()
 
 
-def first_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callable[[], str]) -> Response:
+def replayed_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callable[[], str]) -> Response:
     """Return the first answer under a key; the fingerprint of the request is only asked for if there is one.
 
     Raises
@@ -155,7 +160,7 @@ def first_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callabl
     return Response(answer.body, answer.status, headers=headers, media_type=JSONResponse.media_type)
 
 
-def as_kept(answer: Response) -> Answer:
+def stored_answer(answer: Response) -> Answer:
     """Return what is kept of an answer."""
     headers = {name: value for name, value in answer.headers.items() if name not in _OF_THE_BODY}
     return Answer(answer.status_code, headers, bytes(answer.body).decode())

@@ -10,7 +10,7 @@ from app.batches import batch_records, line_results
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import batch_progress
 from app.jobs.batch_progress import Counts
-from app.routes.common import PREFIX, RETRY_SECONDS
+from app.routes.dependencies import PREFIX, RETRY_SECONDS
 from app.security.caller import Caller
 from app.tables import ENDED, Batch
 

@@ -8,16 +8,17 @@ from fastapi import Depends, Header
 
 from app.http.conditional import strong_tag, unless_known
 from app.http.problems import ProblemError, ProblemKind
-from app.routes.common import RETRY_SECONDS, CallerOf, Readers, find_job, job_address
+from app.routes.dependencies import RETRY_SECONDS, CallerOf, Readers
+from app.routes.job_status import find_job, job_address
 from app.tables import Job, JobStatus
 
-Known = Annotated[
+KnownTags = Annotated[
     str, Header(alias="If-None-Match", description="Entity tags of what the client has", examples=['"4f1d"'])
 ]
 
 
 @dataclass(frozen=True, slots=True)
-class _Ended:
+class _FinishedJob:
     """A job that has ended, and the tags of the answers about it that the client has."""
 
     job: Job
@@ -35,7 +36,7 @@ class _Ended:
         return unless_known(self.known, strong_tag(job.input_hash, job.engine_version, job.status, form))
 
 
-def _ended_job(job_id: UUID, caller: CallerOf, readers: Readers, known: Known = "") -> _Ended:
+def _finished_job(job_id: UUID, caller: CallerOf, readers: Readers, known: KnownTags = "") -> _FinishedJob:
     with readers() as session:
         job = find_job(session, caller, job_id)
     if job.status is JobStatus.DISMISSED:
@@ -47,7 +48,7 @@ def _ended_job(job_id: UUID, caller: CallerOf, readers: Readers, known: Known = 
             links=[{"rel": "status", "href": job_address(job_id)}],
             headers={"Retry-After": RETRY_SECONDS},
         )
-    return _Ended(job, known)
+    return _FinishedJob(job, known)
 
 
-EndedJob = Annotated[_Ended, Depends(_ended_job)]
+FinishedJob = Annotated[_FinishedJob, Depends(_finished_job)]

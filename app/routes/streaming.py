@@ -1,0 +1,38 @@
+"""Answers that are read from the database while they are sent."""
+
+from collections.abc import Callable, Generator, Iterator, Mapping
+
+from fastapi.responses import StreamingResponse
+from sqlalchemy.orm import Session, sessionmaker
+from starlette.types import Receive, Scope, Send
+
+
+class _ClosedStream(StreamingResponse):
+    """A stream whose generator is closed when the answer ends, also where the client leaves before its end."""
+
+    def __init__(self, pieces: Generator[str | bytes, None, None], media_type: str, headers: Mapping[str, str]) -> None:
+        """Take the generator of the pieces."""
+        super().__init__(pieces, media_type=media_type, headers=headers)
+        self._pieces = pieces
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the pieces, and let go of what they hold."""
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._pieces.close()
+
+
+def streamed(
+    readers: sessionmaker[Session],
+    pieces: Callable[[Session], Iterator[str] | Iterator[bytes]],
+    media_type: str,
+    headers: Mapping[str, str],
+) -> StreamingResponse:
+    """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
+
+    def stream() -> Generator[str | bytes, None, None]:
+        with readers() as session:
+            yield from pieces(session)
+
+    return _ClosedStream(stream(), media_type, headers)
