@@ -1,1 +1,1 @@
-"""The web service and the command line: documents in, jobs kept in SQL, results and pictures out."""
+"""The web service and its command line: they take documents, keep jobs in SQL, and return results and pictures."""

@@ -1,4 +1,4 @@
-"""The web application: routes, problems, and what they share."""
+"""Assemble the web application: routes, middleware, problem handlers and the state that requests share."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -52,10 +52,10 @@ Units stand in the names of the fields. Faults are `application/problem+json` an
 
 
 class Service(FastAPI):
-    """The application, whose OpenAPI document keeps the nulls of its examples."""
+    """The FastAPI application. Its OpenAPI document keeps the nulls in its examples."""
 
     def openapi(self) -> dict[str, Any]:
-        """Return the OpenAPI document."""
+        """Return the OpenAPI document, built once."""
         if not self.openapi_schema:
             self.openapi_schema = documentation.guarded(
                 documentation.as_sent(documentation.with_nulls(super().openapi()))
@@ -63,12 +63,12 @@ class Service(FastAPI):
         return self.openapi_schema
 
     def build_middleware_stack(self) -> ASGIApp:
-        """Return the application inside of what must hold even for the answer to a defect."""
+        """Wrap the application in the middleware that must also handle answers to internal errors."""
         return RequestLog(SecurityHeaders(super().build_middleware_stack()), self.state.requests.observe)
 
 
 def create_app(settings: Settings | None = None) -> Service:
-    """Make the application; without settings it takes those of the process' environment.
+    """Build the application; without settings, read them from the environment of the process.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def create_app(settings: Settings | None = None) -> Service:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         yield
-        for groups in (app.state.inbox, app.state.dispatcher, app.state.statuses):  # in the order of their work
+        for groups in (app.state.inbox, app.state.dispatcher, app.state.statuses):  # each passes work to the next
             await groups.close()
         await meter.close()
         for watch in (app.state.job_watch, app.state.batch_watch):
@@ -116,7 +116,7 @@ def create_app(settings: Settings | None = None) -> Service:
 
 
 def _equip(app: Service, settings: Settings, database: Engine) -> None:
-    """Give the application what its routes share: connections, groups of requests, and the watches of streams."""
+    """Attach what routes share: database sessions, grouped calls, the message sender and the watches behind streams."""
     app.state.settings = settings
     app.state.requests = metrics.requests()
     app.state.readers = session_factory(database, read_only=True)

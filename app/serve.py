@@ -1,4 +1,4 @@
-"""The commands that run the service: migrate, api, worker, and serve, which is the whole of it in one command."""
+"""The commands that run the service: migrate, api, worker, and serve, which runs all of them together."""
 
 import asyncio
 import gc
@@ -27,33 +27,33 @@ if TYPE_CHECKING:
     from app.main import Service
 
 HTTP = "app.http.bounded_heads:BoundedHeads"
-"""What speaks HTTP on a connection, as uvicorn is told of it."""
+"""The protocol class that uvicorn loads for each connection."""
 
-_SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # the client library's name, read as it is loaded
-_METRICS_BYTES = 1 << 20  # far more than all routes and answers need
+_SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # prometheus_client reads this variable when it is imported
+_METRICS_BYTES = 1 << 20  # far more than the metrics of all routes need
 _STOP_SECONDS = 10.0
-_LOOK_SECONDS = 0.5
-_START_SECONDS = 30  # a process that says nothing for so long is replaced; loading takes seconds on a busy machine
+_POLL_SECONDS = 0.5
+_START_SECONDS = 30  # uvicorn replaces a process silent for this long; loading takes seconds on a busy machine
 
 _logger = logging.getLogger(__name__)
 
 
 class Unguarded(Exception):
-    """Raised when a service would be open to everybody."""
+    """Raised when the service would be open to other machines without any key."""
 
 
 def worker(settings: Settings) -> NoReturn:
-    """Become a worker: a new program in this process, since the BLAS library reads its settings as it loads."""
+    """Replace this process by a worker program; BLAS reads its settings only when a program loads it."""
     os.execve(sys.executable, [sys.executable, "-m", "worker"], processes.environment(settings))
 
 
 def api(settings: Settings, host: str, port: int) -> int:
-    """Run the API alone, until SIGTERM or SIGINT; returns 0.
+    """Run the API alone until SIGTERM or SIGINT arrives; return 0.
 
-    Requests that are being served then are finished, as long as that takes no longer than the time for a stop.
+    At a stop the API finishes the requests in progress, for at most `shutdown_seconds`.
     """
     logs.configure(settings)
-    os.environ.update(settings.environment())  # where the application reads them, here or in children of uvicorn's
+    os.environ.update(settings.environment())  # the application reads them here, and in the child processes of uvicorn
     os.environ[_SHARED_METRICS] = str(_empty_folder(settings.data_dir / f"metrics-{port}"))
     uvicorn.run(
         "app.serve:_application",
@@ -64,7 +64,7 @@ def api(settings: Settings, host: str, port: int) -> int:
         port=port,
         workers=settings.api_processes,
         log_config=None,
-        access_log=False,  # ours is in the place of uvicorn's
+        access_log=False,  # app.http.request_log replaces it
         server_header=False,
         timeout_worker_healthcheck=_START_SECONDS,
         timeout_graceful_shutdown=math.ceil(settings.shutdown_seconds),
@@ -75,24 +75,24 @@ def api(settings: Settings, host: str, port: int) -> int:
 def serve(settings: Settings, host: str, port: int) -> int:
     """Migrate, then run the API and a worker as child processes until SIGTERM or SIGINT; return the exit code.
 
-    A worker that ends by itself is started again; if the API does, the service ends with its code. Both end with this
-    process even if it is killed, and whatever they left undone is taken up by the next start.
+    If the worker exits, start it again. If the API exits, end the service with its exit code. Both children end when
+    this process ends, even if it is killed. The next start resumes unfinished work.
 
     Raises
     ------
     Unguarded
-        If others than this machine could reach a service that has no key.
+        If other machines could reach the service and no key exists.
     """
     logs.configure(settings)
     migrate(settings)
     if not is_loopback(host) and not _has_keys(settings):
-        raise Unguarded(f"{host} can be reached by others, and there is no key yet: `galloping keys create` makes one")
+        raise Unguarded(f"other machines can reach {host}, and no key exists: create one with `galloping keys create`")
     with processes.until_stopped() as wait:
         api_process = processes.start(settings, "app.serve", host, str(port))
         worker_process = processes.start(settings, "worker")
-        while not wait(_LOOK_SECONDS) and api_process.poll() is None:
+        while not wait(_POLL_SECONDS) and api_process.poll() is None:
             if worker_process.poll() is not None:
-                _logger.warning("the worker ended with code %s and is started again", worker_process.returncode)
+                _logger.warning("the worker exited with code %s; starting it again", worker_process.returncode)
                 worker_process = processes.start(settings, "worker")
         code = api_process.poll()
         processes.stop([api_process, worker_process], signal.SIGTERM, settings.shutdown_seconds + _STOP_SECONDS)
@@ -109,8 +109,8 @@ def _has_keys(settings: Settings) -> bool:
 
 
 def _application() -> "Service":
-    """Make the application of one API process, which is a child of uvicorn's if there are several."""
-    from app.main import create_app  # noqa: PLC0415 - the client library of the metrics reads the variable as it loads
+    """Build the application of one API process; with several processes, each is a child of uvicorn."""
+    from app.main import create_app  # noqa: PLC0415 - prometheus_client reads the variable when it is imported
 
     settings = get_settings()
     _reserve_metrics(Path(os.environ[_SHARED_METRICS]))
@@ -119,19 +119,22 @@ def _application() -> "Service":
         logs.configure(settings)
         processes.end_with_parent(os.getppid())
     app = create_app(settings)
-    _release_at_a_stop(app)
-    _exempt_what_stays()
+    _release_watches_on_stop(app)
+    _freeze_loaded_objects()
     return app
 
 
-def _exempt_what_stays() -> None:
-    """Let the garbage collector pass over what is loaded by now: to go through it all holds up everybody for 0.2 s."""
+def _freeze_loaded_objects() -> None:
+    """Exclude everything loaded so far from garbage collection; a full collection stops all requests for 0.2 s."""
     gc.collect()
     gc.freeze()
 
 
-def _release_at_a_stop(app: "Service") -> None:
-    """Let those go who wait for a change as soon as a stop is asked for: the server waits for them before it ends."""
+def _release_watches_on_stop(app: "Service") -> None:
+    """Release the clients that wait for a change as soon as a stop signal arrives.
+
+    Otherwise the server would wait for them before it ends.
+    """
     loop = asyncio.get_running_loop()
 
     def release() -> None:
@@ -148,16 +151,17 @@ def _after(first: Callable[[], object], handler: Any, number: int, frame: FrameT
 
 
 def _empty_folder(path: Path) -> Path:
-    """Make a folder without anything in it; what an earlier run counted there is no longer counted on."""
+    """Create an empty folder; delete what an earlier run left there, whose counts no longer matter."""
     shutil.rmtree(path, ignore_errors=True)
     path.mkdir(parents=True)
     return path
 
 
 def _reserve_metrics(folder: Path) -> None:
-    """Write the file of this process's metrics in full: the library maps it, and a disk without room kills who counts.
+    """Write this process's metrics file in full, because prometheus_client maps it into memory.
 
-    It would make a sparse file, whose pages are only sought when they are written, by a signal instead of an error.
+    The library would create a sparse file. On a full disk, writing to it kills the process by a signal instead of
+    raising an error.
     """
     (folder / f"histogram_{os.getpid()}.db").write_bytes(bytes(_METRICS_BYTES))
 

@@ -1,1 +1,1 @@
-"""HTTP below the routes: problem documents, limits, headers, paging, request log. No lines, no jobs."""
+"""HTTP below the routes: problem documents, limits, headers, paging, request log. Nothing about lines or jobs."""

@@ -1,4 +1,4 @@
-"""A limit on request bodies that holds while they come in, and lets clients read why theirs was refused unread."""
+"""Limit the size of request bodies while they arrive, and let the client read why its body was refused."""
 
 import asyncio
 import contextlib
@@ -9,8 +9,8 @@ from fastapi import Request, Response
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-# A connection that is closed on a client who still sends is reset, and the answer with it. So what comes after the
-# answer is read for a while and thrown away.
+# Closing a connection while the client still sends resets it, and the client loses the answer. So read and discard
+# the rest of the body for a while after answering.
 _LINGER_SECONDS = 2.0
 
 Refuse = Callable[[Request, Exception], Awaitable[Response]]
@@ -18,19 +18,23 @@ Refuse = Callable[[Request, Exception], Awaitable[Response]]
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """How large a body may be, and the fault of one that is larger."""
+    """The largest size of a body in bytes, and the error raised for a larger one."""
 
     most_bytes: int
     too_large: HTTPException
 
 
 class BodyLimit:
-    """ASGI middleware: no application sees more of a body than the limit; one announced as larger it does not see."""
+    """ASGI middleware that refuses bodies above a limit.
+
+    If the announced length exceeds the limit, the application does not see the request.
+    """
 
     def __init__(self, app: ASGIApp, limits: Mapping[str, Limit], refuse: Refuse) -> None:
-        """Wrap an application; `limits` are by path, and the one under "" holds for all others.
+        """Wrap an application; `limits` maps paths to limits, and the limit under "" applies to all other paths.
 
-        A limit's fault is raised in the application as it reads on, or made an answer by `refuse` before.
+        If the body exceeds its limit while the application reads it, raise the limit's error there. If the announced
+        length does, answer with `refuse`.
         """
         self.app = app
         self.limits = limits

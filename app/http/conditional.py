@@ -1,4 +1,4 @@
-"""Answers that the client has already: strong entity tags and 304 (RFC 9110, sections 8.8.3 and 13.1.2)."""
+"""Conditional requests: strong entity tags and 304 answers (RFC 9110, sections 8.8.3 and 13.1.2)."""
 
 import hashlib
 
@@ -8,22 +8,22 @@ from app.convert import ENGINE_VERSION
 
 
 class Bodiless(HTTPException):
-    """Raised by a route to answer with a status and headers alone."""
+    """Raised by a route to answer with a status and headers only."""
 
 
 def strong_tag(*parts: object) -> str:
-    """Return the tag of what follows from these parts, as this version of the service writes it down."""
+    """Return the entity tag for content determined by these parts and by the version of the service."""
     text = "\0".join(map(str, (ENGINE_VERSION, *parts)))
     return f'"{hashlib.sha256(text.encode()).hexdigest()[:32]}"'
 
 
 def unless_known(known: str, tag: str) -> dict[str, str]:
-    """Return the headers of an answer with this tag, which a client may keep but is to ask about.
+    """Return the headers of an answer with this tag; the client may cache it but must revalidate it.
 
     Raises
     ------
     Bodiless
-        304 if the tag is among the `known` ones of an If-None-Match header.
+        304 if the tag is in `known`, the value of the If-None-Match header.
     """
     headers = {"ETag": tag, "Cache-Control": "private, no-cache", "Vary": "Accept, Authorization"}
     tags = {text.strip().removeprefix("W/") for text in known.split(",")}

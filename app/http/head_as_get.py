@@ -1,4 +1,4 @@
-"""HEAD wherever GET is served (RFC 9110): the same answer without its body."""
+"""Answer HEAD wherever GET is served (RFC 9110): the same answer without its body."""
 
 import anyio
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -7,7 +7,7 @@ _ENDLESS = b"text/event-stream"
 
 
 class HeadAsGet:
-    """ASGI middleware: the application sees a GET, and the client gets the head of its answer."""
+    """ASGI middleware that passes HEAD to the application as GET and sends only the head of the answer."""
 
     def __init__(self, app: ASGIApp) -> None:
         """Wrap an application."""
@@ -36,4 +36,4 @@ class HeadAsGet:
             try:
                 await self.app(as_get, receive, send_head)
             finally:
-                scope["route"] = as_get.get("route")  # for what is told of the request
+                scope["route"] = as_get.get("route")  # the request log reads it

@@ -1,4 +1,4 @@
-"""Opaque cursors for keyset paging: the place of the last row, signed so that no client can make one up."""
+"""Opaque cursors for keyset paging: the position of the last row, signed so that clients cannot forge one."""
 
 import base64
 import binascii
@@ -15,11 +15,11 @@ Place = tuple[datetime, UUID]
 
 
 class BadCursor(ValueError):
-    """Raised when a cursor was not made with this key."""
+    """Raised when a cursor was not signed with this key."""
 
 
 def encode(key: bytes, place: Place) -> str:
-    """Return the cursor of a place."""
+    """Return the cursor for a position."""
     created_at, identity = place
     delta = created_at - _EPOCH
     microseconds = (delta.days * 86_400 + delta.seconds) * 1_000_000 + delta.microseconds
@@ -28,39 +28,39 @@ def encode(key: bytes, place: Place) -> str:
 
 
 def decode(key: bytes, cursor: str) -> Place:
-    """Return the place of a cursor.
+    """Return the position in a cursor.
 
     Raises
     ------
     BadCursor
-        If it was not made by `encode` with this key.
+        If `encode` did not create it with this key.
     """
     payload = unseal(key, cursor)
     microseconds = int.from_bytes(payload[:_STAMP_BYTES], "big")
-    seconds, rest = divmod(microseconds, 1_000_000)
-    return datetime.fromtimestamp(seconds, UTC).replace(microsecond=rest), UUID(bytes=payload[_STAMP_BYTES:])
+    seconds, fraction = divmod(microseconds, 1_000_000)
+    return datetime.fromtimestamp(seconds, UTC).replace(microsecond=fraction), UUID(bytes=payload[_STAMP_BYTES:])
 
 
 def seal(key: bytes, payload: bytes) -> str:
-    """Return a payload with its signature as text."""
+    """Return a payload and its signature as text."""
     return base64.urlsafe_b64encode(_sign(key, payload) + payload).decode()
 
 
 def unseal(key: bytes, cursor: str) -> bytes:
-    """Return the payload of a text that `seal` made with this key.
+    """Return the payload of a text that `seal` created with this key.
 
     Raises
     ------
     BadCursor
-        If it is no such text.
+        If `seal` did not create it with this key.
     """
     try:
         raw = base64.b64decode(cursor.encode("ascii"), altchars=b"-_", validate=True)
     except (binascii.Error, UnicodeEncodeError) as error:
-        raise BadCursor("the cursor is not one of ours") from error
+        raise BadCursor("the cursor is not one that this service issued") from error
     signature, payload = raw[:_SIGNATURE_BYTES], raw[_SIGNATURE_BYTES:]
     if not hmac.compare_digest(signature, _sign(key, payload)):
-        raise BadCursor("the cursor is not one of ours")
+        raise BadCursor("the cursor is not one that this service issued")
     return payload
 
 

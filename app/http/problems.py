@@ -1,4 +1,4 @@
-"""Every fault as problem details (RFC 9457), whoever finds it: routes, FastAPI, Starlette, the body limit, a defect."""
+"""Answer every error as problem details (RFC 9457): from routes, FastAPI, Starlette, the body limit, or a defect."""
 
 import logging
 from collections.abc import Callable, Coroutine, Mapping, Sequence
@@ -24,29 +24,34 @@ _logger = logging.getLogger(__name__)
 
 
 class ProblemKind(Enum):
-    """What can be wrong: slug of its page, status, title and a sentence for the page."""
+    """The kinds of problem: slug of the explaining page, status, title, and a sentence for the page."""
 
-    INVALID_PARAMETER = ("invalid-parameter", 400, "Invalid parameter", "A query parameter cannot be taken.")
-    UNAUTHENTICATED = ("unauthenticated", 401, "Unauthenticated", "The request needs a key that is known and good.")
-    FORBIDDEN = ("forbidden", 403, "Forbidden", "The key does not have the scope that this method needs.")
-    NOT_FOUND = ("not-found", 404, "Not found", "There is nothing at this address, or no longer.")
-    METHOD_NOT_ALLOWED = ("method-not-allowed", 405, "Method not allowed", "The address does not take this method.")
-    NOT_ACCEPTABLE = ("not-acceptable", 406, "Not acceptable", "None of the media types asked for can be made.")
-    # Those who share a status stand before the one that any other fault of this status is.
+    INVALID_PARAMETER = ("invalid-parameter", 400, "Invalid parameter", "A query parameter is not valid.")
+    UNAUTHENTICATED = ("unauthenticated", 401, "Unauthenticated", "The request needs a valid API key.")
+    FORBIDDEN = ("forbidden", 403, "Forbidden", "The API key lacks the scope that this method needs.")
+    NOT_FOUND = ("not-found", 404, "Not found", "There is nothing at this address, or it was removed.")
+    METHOD_NOT_ALLOWED = ("method-not-allowed", 405, "Method not allowed", "The address does not support this method.")
+    NOT_ACCEPTABLE = (
+        "not-acceptable",
+        406,
+        "Not acceptable",
+        "The Accept header allows no media type of this address.",
+    )
+    # Where kinds share a status, the last one applies to any other error of that status.
     REQUEST_IN_FLIGHT = (
         "request-in-flight",
         409,
         "Request in flight",
-        "An earlier request with this Idempotency-Key is still at work; its answer comes to who asks again.",
+        "An earlier request with this Idempotency-Key is still in progress; repeat the request to get its answer.",
     )
-    NOT_READY = ("not-ready", 409, "Not ready", "The job has not ended; its status document tells how far it is.")
+    NOT_READY = ("not-ready", 409, "Not ready", "The job has not ended; its status document shows the progress.")
     DISMISSED = ("dismissed", 410, "Dismissed", "The job was cancelled and has no results.")
     TOO_LARGE = ("too-large", 413, "Body too large", "The request body is larger than the operator allows.")
     UNSUPPORTED_MEDIA_TYPE = (
         "unsupported-media-type",
         415,
         "Unsupported media type",
-        "The body is of another type than taken.",
+        "The service does not accept a body of this media type.",
     )
     KEY_REUSED = (
         "idempotency-key-reused",
@@ -54,24 +59,24 @@ class ProblemKind(Enum):
         "Idempotency-Key reused",
         "The Idempotency-Key was used for another request within the last 24 hours.",
     )
-    INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is no JSON, or fields of it are wrong.")
+    INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is not JSON, or fields of it are wrong.")
     TOO_MANY_REQUESTS = (
         "too-many-requests",
         429,
         "Too many requests",
-        "The quota of the minute is used up; Retry-After says when to go on.",
+        "The quota for this minute is used up; wait as long as Retry-After says.",
     )
     HEAD_TOO_LARGE = (
         "head-too-large",
         431,
         "Head too large",
-        "The address and the header fields of the request are together too large, or the fields too many.",
+        "The request's address and header fields together are too large, or it has too many header fields.",
     )
-    INTERNAL = ("internal", 500, "Internal error", "A defect of the service; the operator's log has the details.")
-    UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it depends on; try again later.")
+    INTERNAL = ("internal", 500, "Internal error", "The service has a defect; the operator's log has the details.")
+    UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach its database; try again later.")
 
     def __init__(self, slug: str, status: int, title: str, description: str) -> None:
-        """Keep the parts under their names."""
+        """Store the parts of a kind as attributes."""
         self.slug = slug
         self.status = status
         self.title = title
@@ -83,7 +88,7 @@ _BY_STATUS = {kind.status: kind for kind in ProblemKind}
 
 
 class ProblemError(HTTPException):
-    """Raised by a route to answer with a problem; FastAPI lets it pass wherever it arises."""
+    """Raised by a route to answer with a problem; FastAPI does not convert it."""
 
     def __init__(
         self,
@@ -94,7 +99,7 @@ class ProblemError(HTTPException):
         links: Sequence[Mapping[str, str]] = (),
         headers: Mapping[str, str] | None = None,
     ) -> None:
-        """Take the kind, a sentence for this occurrence, and what else the document shall hold."""
+        """Take the kind, a sentence for this occurrence, and optional faults, links and headers."""
         self.kind = kind
         self.faults = faults
         self.links = links
@@ -102,7 +107,7 @@ class ProblemError(HTTPException):
 
 
 def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequence[Fault] = ()) -> dict[str, Any]:
-    """Return the problem document of one occurrence, with at most `MOST_FAULTS` faults."""
+    """Return the problem document for one occurrence, with at most `MOST_FAULTS` faults."""
     listed = [{"pointer": f.pointer, "code": f.code, "detail": f.detail} for f in faults[:MOST_FAULTS]]
     more = f" Only the first {MOST_FAULTS} of {len(faults)} faults are listed." if len(faults) > MOST_FAULTS else ""
     return {
@@ -116,7 +121,7 @@ def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequ
 
 
 def install(app: FastAPI, max_body_bytes: Mapping[str, int]) -> None:
-    """Let an application answer every fault with a problem, and limit its bodies by path, "" being all others."""
+    """Make an application answer every error with a problem, and limit its bodies by path; "" means all other paths."""
     app.add_exception_handler(ProblemError, answer)
     app.add_exception_handler(Bodiless, _on_bodiless)
     app.add_exception_handler(HTTPException, _on_http)
@@ -133,10 +138,10 @@ def _too_large(most_bytes: int) -> ProblemError:
 
 
 class StrictJsonRoute(APIRoute):
-    """A route whose body is strict JSON: another media type is 415, and every fault of the text is 422."""
+    """A route that accepts strict JSON only: answer 415 to another media type and 422 to any error in the text."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Put the strict request in the place of the usual one."""
+        """Return the handler that parses the body strictly."""
         handler = super().get_route_handler()
         takes_body = self.body_field is not None
 
@@ -159,16 +164,16 @@ class _StrictRequest(Request):
 def _require_json(request: Request) -> None:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type != "application/json":
-        said = f"The body is {media_type[:100]!r}, not application/json."
-        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Post": "application/json"})
+        detail = f"The body is {media_type[:100]!r}, not application/json."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Post": "application/json"})
     encoding = request.headers.get("content-encoding", "identity").strip().lower()
     if encoding != "identity":
-        said = f"The content encoding {encoding[:100]!r} is taken for batches only."
-        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Encoding": "identity"})
+        detail = f"The content encoding {encoding[:100]!r} is accepted for batches only."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Encoding": "identity"})
 
 
 def invalid_document(faults: Sequence[Fault]) -> ProblemError:
-    """Return the problem of a body with these faults."""
+    """Return the problem for a body with these faults."""
     return ProblemError(ProblemKind.INVALID_DOCUMENT, _count(faults), faults=faults)
 
 
@@ -184,7 +189,7 @@ def _respond(request: Request, problem: ProblemError) -> JSONResponse:
 
 
 async def answer(request: Request, error: Exception) -> Response:
-    """Answer with a problem that was raised."""
+    """Answer with the problem that was raised."""
     assert isinstance(error, ProblemError)
     return _respond(request, error)
 
@@ -202,11 +207,11 @@ async def _on_http(request: Request, error: Exception) -> Response:
 
 
 def _methods(request: Request) -> str:
-    """Return the methods that an address takes; the router itself tells those of the first route there only."""
+    """Return the methods that an address supports; Starlette reports only those of the first matching route."""
 
     def takes(method: str) -> bool:
-        asked = {**request.scope, "method": method}
-        return any(route.matches(asked)[0] is Match.FULL for route in request.app.routes)
+        scope = {**request.scope, "method": method}
+        return any(route.matches(scope)[0] is Match.FULL for route in request.app.routes)
 
     methods = [method for method in _METHODS if takes(method)]
     return ", ".join(sorted({*methods, "HEAD"} if "GET" in methods else methods))
@@ -229,17 +234,17 @@ async def _on_database(request: Request, error: Exception) -> Response:
 
 
 def database_fault(error: Exception) -> ProblemError:
-    """Return the problem of a database that does not answer, and log it."""
+    """Log that the database does not answer, and return the problem for it."""
     _logger.error("the database does not answer: %s", error)
     return ProblemError(ProblemKind.UNAVAILABLE, "The database does not answer.", headers={"Retry-After": "5"})
 
 
 async def _on_defect(request: Request, error: Exception) -> Response:
-    # Starlette raises the error again after this answer, so that the server logs it with its traceback.
+    # Starlette raises the error again after this answer, and the server logs it with its traceback.
     return _respond(request, ProblemError(ProblemKind.INTERNAL, ProblemKind.INTERNAL.description))
 
 
 def query_fault(name: str, detail: str) -> ProblemError:
-    """Return the problem of one query parameter."""
+    """Return the problem for one query parameter."""
     fault = Fault(json_pointer(["query", name]), "invalid", detail)
     return ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=[fault])

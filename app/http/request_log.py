@@ -1,4 +1,4 @@
-"""Every request under its id: taken from the caller or made, answered, and written to the log with how it ended."""
+"""Give every request an id, and log it with its status and duration."""
 
 import logging
 import time
@@ -19,10 +19,10 @@ _logger = logging.getLogger(__name__)
 
 
 class RequestLog:
-    """ASGI middleware around all others, so that the answers to defects carry the id, too."""
+    """ASGI middleware around all others, so that even the answer to a defect carries the request id."""
 
     def __init__(self, app: ASGIApp, observe: Observe) -> None:
-        """Wrap an application; `observe` is told method, route, status and seconds of every request."""
+        """Wrap an application; call `observe` with method, route, status and seconds of every request."""
         self.app = app
         self.observe = observe
 
@@ -34,7 +34,7 @@ class RequestLog:
         begin = time.perf_counter()
         headers = Headers(scope=scope)
         ids = correlation.of_request(headers.get(REQUEST_ID), headers.get("traceparent"))
-        status = 499  # as others write it for a client that left before the answer
+        status = 499  # nginx's code for a client that left before the answer
 
         async def send_with_id(message: Message) -> None:
             nonlocal status
@@ -53,7 +53,7 @@ class RequestLog:
 
 
 def _log(scope: Scope, status: int, seconds: float) -> None:
-    # Those who poll make thousands of these; they are in the metrics.
+    # Polling clients cause thousands of these; the metrics count them.
     uneventful = scope["method"] in _READS and status < 400
     level = logging.DEBUG if uneventful else logging.INFO
     if not _logger.isEnabledFor(level):
@@ -70,5 +70,5 @@ def _log(scope: Scope, status: int, seconds: float) -> None:
 
 
 def route_of(scope: Scope) -> str:
-    """Return the template of the route that served a request, such as /v1/jobs/{job_id}; empty if there is none."""
+    """Return the path template of the route that served a request, such as /v1/jobs/{job_id}; empty without a route."""
     return getattr(scope.get("route"), "path_format", "")

@@ -1,4 +1,4 @@
-"""Headers that every answer has, whoever makes it, for the browsers among the clients."""
+"""Security headers that every answer carries, for clients that are browsers."""
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -23,7 +23,7 @@ _ENCRYPTED = (b"strict-transport-security", b"max-age=31536000")
 
 
 class SecurityHeaders:
-    """ASGI middleware: adds to an answer what it does not say itself."""
+    """ASGI middleware that adds the headers which an answer does not set itself."""
 
     def __init__(self, app: ASGIApp) -> None:
         """Wrap an application."""
@@ -39,8 +39,8 @@ class SecurityHeaders:
 
         async def send_safe(message: Message) -> None:
             if message["type"] == "http.response.start":
-                said = {name.lower() for name, _ in message["headers"]}
-                message["headers"] = [*message["headers"], *(item for item in wanted if item[0] not in said)]
+                present = {name.lower() for name, _ in message["headers"]}
+                message["headers"] = [*message["headers"], *(item for item in wanted if item[0] not in present)]
             await send(message)
 
         await self.app(scope, receive, send_safe)

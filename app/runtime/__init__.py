@@ -1,1 +1,1 @@
-"""What a process needs before it serves: settings, logs, telemetry, child processes. No jobs, no HTTP."""
+"""What a process needs before it serves: settings, logs, telemetry, child processes. Nothing about jobs or HTTP."""

@@ -1,7 +1,7 @@
-"""The ids that tie a request to its jobs, and every line of the logs to both.
+"""The ids that link a request, its jobs and every log line about them.
 
-They are kept in a context variable: whatever works for a request or a job finds them without being handed them, in
-its own thread or task and in those that it starts with its context.
+A context variable holds them. Code that serves a request or runs a job can read them in its own thread or task, and in
+those that it starts with a copy of its context.
 """
 
 import re
@@ -22,9 +22,9 @@ _TRACE_PARENT = re.compile(r"(?!ff)[0-9a-f]{2}-(?!0{32})[0-9a-f]{32}-(?!0{16})[0
 
 @dataclass(frozen=True, slots=True)
 class Ids:
-    """What is being worked on: a request, and in a worker its job.
+    """The ids of the current work: a request and, in a worker, its job.
 
-    trace_parent names the caller's span as W3C Trace Context writes it.
+    `trace_parent` identifies the caller's span in the format of W3C Trace Context.
     """
 
     request_id: str | None = None
@@ -43,17 +43,17 @@ _current: ContextVar[Ids] = ContextVar("ids", default=_NONE)
 
 
 def current() -> Ids:
-    """Return the ids of what is being worked on here; all are None outside of requests and jobs."""
+    """Return the ids of the current work; all are None outside requests and jobs."""
     return _current.get()
 
 
 def request_id() -> str | None:
-    """Return the id of the request that is being served, or that made the job at work."""
+    """Return the id of the current request, or of the request that created the current job."""
     return _current.get().request_id
 
 
 def trace_parent() -> str | None:
-    """Return the span that what happens here belongs to: OpenTelemetry's if it is on, else the caller's."""
+    """Return the current span: OpenTelemetry's if tracing is on, otherwise the caller's."""
     span = get_current_span().get_span_context()
     if span.is_valid:
         return f"00-{span.trace_id:032x}-{span.span_id:016x}-{span.trace_flags:02x}"
@@ -61,13 +61,13 @@ def trace_parent() -> str | None:
 
 
 def of_this_work() -> Ids:
-    """Return the ids that a job made here is to carry."""
+    """Return the ids to store with a job that this request creates."""
     return Ids(request_id(), trace_parent())
 
 
 @contextmanager
 def bound(ids: Ids) -> Iterator[None]:
-    """Work under these ids, and afterwards under those of before."""
+    """Set the ids for the enclosed code, then restore the previous ones."""
     token = _current.set(ids)
     try:
         yield
@@ -76,9 +76,9 @@ def bound(ids: Ids) -> Iterator[None]:
 
 
 def of_request(given_id: str | None, given_parent: str | None) -> Ids:
-    """Return the ids of a request by its headers X-Request-ID and traceparent; an id that cannot be kept is replaced.
+    """Return the ids of a request from its headers X-Request-ID and traceparent; replace an id that is not acceptable.
 
-    What an id may hold is bounded, since it goes into headers, logs and the database as it stands.
+    An id is limited in length and characters because it goes into headers, logs and the database unchanged.
     """
     kept = given_id if given_id and _REQUEST_ID.fullmatch(given_id) else str(uuid7())
     return Ids(kept, given_parent if given_parent and _TRACE_PARENT.fullmatch(given_parent) else None)

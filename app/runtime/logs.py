@@ -1,6 +1,6 @@
-"""Logs of all our processes: one event a line to standard error, with the ids of the request and the job.
+"""Logging for all our processes: one event a line on standard error, with the ids of the request and the job.
 
-Everybody logs with the standard library, facts as `extra`; structlog makes the lines of it.
+Modules log with the standard library and pass facts as `extra`; structlog formats the lines.
 """
 
 import logging
@@ -17,7 +17,7 @@ _WORDY = ("celery", "kombu", "amqp", "alembic", "httpx", "httpcore", "matplotlib
 
 
 def configure(settings: Settings) -> None:
-    """Let this process write its logs as the settings say; what was configured before is replaced."""
+    """Configure the logs of this process from the settings, replacing any earlier configuration."""
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(_formatter(settings))
     logging.basicConfig(level=settings.log_level.upper(), handlers=[handler], force=True)
@@ -27,7 +27,7 @@ def configure(settings: Settings) -> None:
 
 
 def _formatter(settings: Settings) -> ProcessorFormatter:
-    """Make lines of JSON for machines, or coloured ones for people."""
+    """Return a formatter that writes JSON for machines or coloured lines for people."""
     renderers: list[Processor] = [ProcessorFormatter.remove_processors_meta]
     if settings.log_format == "json":
         renderers += [structlog.processors.format_exc_info, structlog.processors.JSONRenderer(default=str)]
@@ -52,5 +52,5 @@ def _add_ids(_logger: WrappedLogger, _method: str, event: EventDict) -> EventDic
         "attempt": ids.attempt,
     }
     event.update({name: value for name, value in found.items() if value is not None})
-    event.pop("color_message", None)  # uvicorn's own line once more, for terminals
+    event.pop("color_message", None)  # uvicorn repeats its message here for terminals
     return event

@@ -1,4 +1,4 @@
-"""Processes of our own: started with the settings in their environment, ended with their parent, stopped in time."""
+"""Child processes: start them with the settings in their environment, end them with their parent, stop them in time."""
 
 import contextlib
 import os
@@ -12,17 +12,17 @@ from queue import Empty, SimpleQueue
 from types import FrameType
 from typing import IO, TYPE_CHECKING
 
-if TYPE_CHECKING:  # it loads slowly, and `galloping analyse` has no settings
+if TYPE_CHECKING:  # pydantic loads slowly, and `galloping analyse` needs no settings
     from app.runtime.settings import Settings
 
 _PARENT = "GALLOPING_PARENT_PROCESS"
-_LOOK_SECONDS = 0.3
-# Threads of a BLAS library and forked workers freeze each other; the library reads these once, as numpy loads.
+_POLL_SECONDS = 0.3
+# BLAS threads can deadlock in forked workers. The library reads these variables once, when numpy loads it.
 ONE_BLAS_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def environment(settings: "Settings") -> dict[str, str]:
-    """Return this process's environment with the settings in it and one BLAS thread."""
+    """Return this process's environment with the settings added and BLAS limited to one thread."""
     return {**os.environ, **ONE_BLAS_THREAD, **settings.environment()}
 
 
@@ -33,7 +33,9 @@ def start(
     extra: Mapping[str, str] | None = None,
     log: IO[bytes] | None = None,
 ) -> "Child":
-    """Start a module of ours as a child process, which should call `end_with_parent`; its output goes to log if given.
+    """Start one of our modules as a child process; send its output to `log` if given.
+
+    The module should call `end_with_parent`.
 
     Raises
     ------
@@ -49,9 +51,9 @@ Child = subprocess.Popen[bytes]
 
 
 def end_with_parent(parent: int | None = None) -> None:
-    """End this process soon after its parent, even if that was killed; without a known parent nothing happens.
+    """End this process soon after its parent ends, even if the parent was killed; without a known parent, do nothing.
 
-    An orphan would keep a port, take messages, and work on jobs that are another's by now.
+    An orphan would keep a port, take messages, and work on jobs that now belong to another process.
     """
     expected = parent or int(os.environ.get(_PARENT, "0"))
     if expected:
@@ -59,7 +61,7 @@ def end_with_parent(parent: int | None = None) -> None:
 
 
 def stop(children: Sequence[Child], signal_number: int, seconds: float) -> None:
-    """Ask the children to end, and kill those that have not done so in time."""
+    """Signal the children to end, and kill those still running after `seconds`."""
     for child in children:
         child.send_signal(signal_number)
     deadline = time.monotonic() + seconds
@@ -73,20 +75,20 @@ def stop(children: Sequence[Child], signal_number: int, seconds: float) -> None:
 
 @contextlib.contextmanager
 def until_stopped() -> Iterator[Callable[[float], bool]]:
-    """Give a function that waits for some seconds and tells whether SIGTERM or SIGINT has asked for an end."""
-    asked: SimpleQueue[int] = SimpleQueue()  # its put, unlike an event's set, may interrupt a get of the same thread
+    """Yield a function that waits for some seconds and tells whether SIGTERM or SIGINT has arrived."""
+    signals: SimpleQueue[int] = SimpleQueue()  # a handler may put while this thread gets; an Event would deadlock
 
-    def ask(number: int, _frame: FrameType | None) -> None:
-        asked.put(number)
+    def note(number: int, _frame: FrameType | None) -> None:
+        signals.put(number)
 
     def wait(seconds: float) -> bool:
         try:
-            asked.get(timeout=seconds)
+            signals.get(timeout=seconds)
         except Empty:
             return False
         return True
 
-    former = {number: signal.signal(number, ask) for number in (signal.SIGTERM, signal.SIGINT)}
+    former = {number: signal.signal(number, note) for number in (signal.SIGTERM, signal.SIGINT)}
     try:
         yield wait
     finally:
@@ -96,5 +98,5 @@ def until_stopped() -> Iterator[Callable[[float], bool]]:
 
 def _watch(parent: int) -> None:
     while os.getppid() == parent:
-        time.sleep(_LOOK_SECONDS)
-    os._exit(1)  # at once: whatever a clean end would do, the next start repairs
+        time.sleep(_POLL_SECONDS)
+    os._exit(1)  # at once: the next start repairs what a clean shutdown would have done

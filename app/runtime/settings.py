@@ -1,4 +1,4 @@
-"""What an operator can set: one typed object, read from `GALLOPING_...` environment variables."""
+"""The operator's settings: one typed object, read from `GALLOPING_...` environment variables."""
 
 import os
 import secrets
@@ -13,7 +13,7 @@ from app.runtime.weak_secrets import weak_secrets
 
 _PREFIX = "GALLOPING_"
 _SECRET_FILE = "signing-secret"
-_FORMER_SECRET_FILE = "cursor-secret"  # the name until the secret signed webhooks, too
+_FORMER_SECRET_FILE = "cursor-secret"  # written by earlier versions
 
 _SECRET_NAMES = AliasChoices("GALLOPING_SIGNING_SECRET", "GALLOPING_CURSOR_SECRET")  # the second is deprecated
 
@@ -34,19 +34,19 @@ def _usable_processors() -> int:
 
 
 class Settings(BaseSettings):
-    """Settings of the service, its workers and the command line; every one has a default that needs no other server.
+    """Settings of the service, its workers and the command line; the defaults need no other server.
 
     Raises
     ------
     pydantic.ValidationError
-        If a value is out of its bounds, two contradict each other, or a secret of a deployment could be guessed.
+        If a value is out of bounds, two settings conflict, or a secret is easy to guess.
     """
 
     model_config = SettingsConfigDict(
         env_prefix=_PREFIX, frozen=True, extra="ignore", hide_input_in_errors=True, populate_by_name=True
     )
 
-    data_dir: Path = Field(default=Path("data"), description="Directory of all files of the embedded service")
+    data_dir: Path = Field(default=Path("data"), description="Directory for all files of the embedded service")
     database_url: str = Field(default_factory=_default_database, description="SQLAlchemy address; SQLite or PostgreSQL")
     broker_url: str = Field(default_factory=_default_broker, description="Celery broker; redis:// or filesystem://")
     signing_secret: SecretStr | None = Field(
@@ -54,46 +54,46 @@ class Settings(BaseSettings):
         validation_alias=_SECRET_NAMES,
         description="Secret that signs cursors and webhooks; without one the service makes one in data_dir",
     )
-    key_cache_seconds: Seconds = Field(default=5.0, description="A revoked key works on for at most so long")
-    reads_per_minute: Count = Field(default=60_000, description="Most GETs of one owner's keys in a minute")
-    changes_per_minute: Count = Field(default=6_000, description="Most other requests of one owner's keys in a minute")
-    strangers_per_minute: Count = Field(default=300, description="Most looks for unremembered keys of one address")
+    key_cache_seconds: Seconds = Field(default=5.0, description="Longest time that a revoked key still works")
+    reads_per_minute: Count = Field(default=60_000, description="Most GETs a minute with one owner's keys")
+    changes_per_minute: Count = Field(default=6_000, description="Most other requests a minute with one owner's keys")
+    strangers_per_minute: Count = Field(default=300, description="Most unfamiliar keys a minute from one address")
     max_body_bytes: Count = Field(default=20_000_000, description="Largest request body")
     max_batch_bytes: Count = Field(default=512_000_000, description="Largest NDJSON or CSV batch, decompressed")
-    max_batch_line_bytes: Count = Field(default=1_000_000, description="Longest text line of an NDJSON or CSV batch")
-    max_batch_lines: Count = Field(default=100_000, description="Most lines of a batch")
-    batches_at_once: Count = Field(default=4, description="Batches that one process takes in at once; others wait")
-    key_lease_seconds: Seconds = Field(default=15.0, description="A key whose batch's receiver died is free after that")
-    chunk_seconds: Seconds = Field(default=2.0, description="Estimated work that one message of a batch carries")
-    most_chunk_lines: Count = Field(default=256, description="Most lines that one message of a batch carries")
+    max_batch_line_bytes: Count = Field(default=1_000_000, description="Longest line of text in an NDJSON or CSV batch")
+    max_batch_lines: Count = Field(default=100_000, description="Most lines in a batch")
+    batches_at_once: Count = Field(default=4, description="Batches that one process receives at once; others wait")
+    key_lease_seconds: Seconds = Field(default=15.0, description="Time until a key is free if its request died")
+    chunk_seconds: Seconds = Field(default=2.0, description="Estimated work in one chunk of a batch")
+    most_chunk_lines: Count = Field(default=256, description="Most lines in one chunk of a batch")
 
-    longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait that `Prefer: wait` is granted")
-    watch_seconds: Seconds = Field(default=0.3, description="Between two looks at what clients wait for")
+    longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait granted to `Prefer: wait`")
+    watch_seconds: Seconds = Field(default=0.3, description="Time between two queries for what clients wait for")
 
-    lease_seconds: Seconds = Field(default=30.0, description="A worker silent for so long has lost its job")
-    heartbeat_seconds: Seconds = Field(default=1.0, description="Between two reports of a worker on its job")
-    max_attempts: Count = Field(default=3, description="Attempts before a job counts as lost with its workers")
+    lease_seconds: Seconds = Field(default=30.0, description="A worker silent for this long loses its job")
+    heartbeat_seconds: Seconds = Field(default=1.0, description="Time between a worker's two reports on its job")
+    max_attempts: Count = Field(default=3, description="Attempts before a job fails because its workers were lost")
     soft_time_limit_seconds: Seconds = Field(default=3600.0, description="A job that runs longer fails")
-    hard_time_limit_seconds: Seconds = Field(default=3660.0, description="A process that still runs then is killed")
+    hard_time_limit_seconds: Seconds = Field(default=3660.0, description="A process that runs a job longer is killed")
 
-    webhook_private_networks: bool = Field(default=False, description="Webhooks may go to private networks, too")
-    webhook_ca_file: FilePath | None = Field(default=None, description="Authorities that prove webhook receivers")
-    webhook_timeout_seconds: Seconds = Field(default=10.0, description="Longest that sending one webhook takes")
-    webhook_retry_seconds: Seconds = Field(default=5.0, description="First pause between attempts; the next ones grow")
-    webhook_attempts: Count = Field(default=8, description="Attempts before a webhook is given up, after some 27 hours")
+    webhook_private_networks: bool = Field(default=False, description="Whether webhooks may go to private networks")
+    webhook_ca_file: FilePath | None = Field(default=None, description="Certificate authorities for webhook receivers")
+    webhook_timeout_seconds: Seconds = Field(default=10.0, description="Longest time for one attempt to send a webhook")
+    webhook_retry_seconds: Seconds = Field(default=5.0, description="First pause between attempts; later ones grow")
+    webhook_attempts: Count = Field(default=8, description="Attempts to send a webhook, over some 27 hours")
 
-    log_level: Literal["debug", "info", "warning", "error"] = Field(default="info", description="Least that is logged")
-    log_format: Literal["json", "text"] = Field(default="json", description="Logs for machines, or for people")
+    log_level: Literal["debug", "info", "warning", "error"] = Field(default="info", description="Lowest level to log")
+    log_format: Literal["json", "text"] = Field(default="json", description="Log format for machines or for people")
 
-    opentelemetry: bool = Field(default=False, description="Whether requests and jobs are traced")
+    opentelemetry: bool = Field(default=False, description="Whether to trace requests and jobs")
 
     api_processes: Count = Field(default=1, description="Processes that answer requests")
-    worker_processes: Count = Field(default_factory=_usable_processors, description="Jobs run at once by one worker")
-    max_jobs_per_process: Count = Field(default=200, description="After so many jobs a process is replaced")
-    shutdown_seconds: Seconds = Field(default=8.0, description="Time that a stopping worker gives to its running jobs")
-    sweep_seconds: Seconds = Field(default=2.0, description="Between two looks for lost leases and unsent jobs")
-    redispatch_seconds: Seconds = Field(default=15.0, description="Unclaimed so long with an empty queue: sent again")
-    broker_timeout_seconds: Seconds = Field(default=1.0, description="Longest wait for one answer of the broker")
+    worker_processes: Count = Field(default_factory=_usable_processors, description="Jobs that one worker runs at once")
+    max_jobs_per_process: Count = Field(default=200, description="Jobs after which a worker process is replaced")
+    shutdown_seconds: Seconds = Field(default=8.0, description="Time that a stopping worker gives its running jobs")
+    sweep_seconds: Seconds = Field(default=2.0, description="Time between sweeps for lost leases and unsent jobs")
+    redispatch_seconds: Seconds = Field(default=15.0, description="A job unclaimed for this long is sent again")
+    broker_timeout_seconds: Seconds = Field(default=1.0, description="Longest wait for the broker to answer")
 
     @field_validator("data_dir")
     @classmethod
@@ -133,7 +133,7 @@ class Settings(BaseSettings):
         return self
 
     def environment(self) -> dict[str, str]:
-        """Return the environment variables that give a child process these same settings."""
+        """Return the environment variables that pass these settings to a child process."""
         values = self.model_dump(exclude_none=True)
         plain = {k: v.get_secret_value() if isinstance(v, SecretStr) else str(v) for k, v in values.items()}
         return {_PREFIX + name.upper(): value for name, value in plain.items()}
@@ -141,17 +141,17 @@ class Settings(BaseSettings):
 
 @cache
 def get_settings() -> Settings:
-    """Return the settings of this process, read from its environment once."""
+    """Return the settings of this process, read once from its environment."""
     return Settings()
 
 
 def signing_key(settings: Settings) -> bytes:
-    """Return the key that signs cursors: the one that is set, else one made once and kept in a private file.
+    """Return the key that signs cursors and webhooks: the `signing_secret`, or one generated once in a private file.
 
     Raises
     ------
     OSError
-        If the file can be neither read nor made.
+        If the file can be neither read nor written.
     """
     if settings.signing_secret is not None:
         return settings.signing_secret.get_secret_value().encode()
@@ -165,7 +165,7 @@ def signing_key(settings: Settings) -> bytes:
 
 
 def _keep_secret(path: Path) -> None:
-    """Write a random secret so that several processes at once agree on one: linking a finished file is atomic."""
+    """Write a random secret; linking a finished file is atomic, so several processes agree on one secret."""
     draft = path.with_name(f"{path.name}.{os.getpid()}.{secrets.token_hex(4)}")
     descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w") as file:
@@ -173,6 +173,6 @@ def _keep_secret(path: Path) -> None:
     try:
         path.hardlink_to(draft)
     except FileExistsError:
-        pass  # another process was first, and its secret is as good
+        pass  # another process was first; use its secret
     finally:
         draft.unlink()

@@ -1,4 +1,4 @@
-"""Traces by OpenTelemetry, for those who ask for them: a span for each request, and under it one for its job."""
+"""Optional OpenTelemetry traces: a span for each request, and under it a span for its job."""
 
 import threading
 from collections.abc import Iterator
@@ -13,12 +13,12 @@ _FLUSH_SECONDS = 2.0
 
 
 def configure(settings: Settings, process: str) -> None:
-    """Send this process's spans to the collector of `OTEL_EXPORTER_OTLP_ENDPOINT`, if the settings ask for it.
+    """Send this process's spans to the collector at `OTEL_EXPORTER_OTLP_ENDPOINT` if tracing is on.
 
     Raises
     ------
     ImportError
-        If they do, and the extra `galloping[opentelemetry]` is not installed.
+        If tracing is on and the extra `galloping[opentelemetry]` is not installed.
     """
     if not settings.opentelemetry:
         return
@@ -34,9 +34,9 @@ def configure(settings: Settings, process: str) -> None:
 
 
 def finish(**_: object) -> None:
-    """Send the spans that wait still, as a process ends; a collector that is away is waited for shortly."""
+    """Send the remaining spans before the process ends, waiting only briefly for an absent collector."""
     flush = getattr(trace.get_tracer_provider(), "force_flush", None)
-    if flush is not None:  # the library's own time for this is not kept to
+    if flush is not None:  # the library does not keep to its own timeout
         thread = threading.Thread(target=flush, name="last-spans", daemon=True)
         thread.start()
         thread.join(_FLUSH_SECONDS)
@@ -44,7 +44,7 @@ def finish(**_: object) -> None:
 
 @contextmanager
 def job_span(ids: Ids) -> Iterator[None]:
-    """Work on a job within a span under that of the request that made it; without a provider this does nothing."""
+    """Open a span for a job under the span of the request that created it; without a tracer, do nothing."""
     parent = propagate.extract({"traceparent": ids.trace_parent} if ids.trace_parent else {})
     known: dict[str, str | int] = {"job.id": ids.job_id or "", "job.attempt": ids.attempt or 0}
     with trace.get_tracer("galloping").start_as_current_span("job", parent, attributes=known):

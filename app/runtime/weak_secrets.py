@@ -1,4 +1,4 @@
-"""Secrets that anybody could guess: left out, short, or as an example has them. None of them may guard a deployment."""
+"""Find secrets that are easy to guess: missing, short, or copied from an example."""
 
 from collections.abc import Iterator
 from urllib.parse import SplitResult, urlsplit
@@ -13,9 +13,9 @@ _EXAMPLES = frozenset(
 
 
 def weak_secrets(database_url: str, broker_url: str, signing_secret: str | None) -> list[str]:
-    """Return in sentences what is weak; nothing for a service whose database and broker are on its own machine.
+    """Return a sentence for each weak secret; none if database and broker are on this machine.
 
-    That one is its operator's alone until it has keys, and makes its secret itself.
+    A service on one machine generates its own secret, and stays private to that machine until it has keys.
     """
     addresses = {"GALLOPING_DATABASE_URL": database_url, "GALLOPING_BROKER_URL": broker_url}
     remote = {name: parts for name, url in addresses.items() if (parts := _elsewhere(url)) is not None}
@@ -23,7 +23,7 @@ def weak_secrets(database_url: str, broker_url: str, signing_secret: str | None)
 
 
 def _elsewhere(url: str) -> SplitResult | None:
-    """Return the parts of an address on another machine; None for one on this, or in a file, or that is none."""
+    """Return the parts of an address on another machine; None for a local, file or malformed address."""
     try:
         parts = urlsplit(url)
     except ValueError:
@@ -35,13 +35,13 @@ def _elsewhere(url: str) -> SplitResult | None:
 def _weak_passwords(remote: dict[str, SplitResult]) -> Iterator[str]:
     for name, parts in remote.items():
         password = parts.password
-        # An address without a password leaves it to files, certificates or the network.
+        # Without a password in the address, a file, a certificate or the network must grant access.
         if password is not None and (password.lower() in _EXAMPLES or password == parts.username or not password):
-            yield f"{name} has a password that anybody could guess"
+            yield f"{name} has a password that is easy to guess"
 
 
 def _weak_signing_secret(secret: str | None) -> Iterator[str]:
     if secret is None:
-        yield "GALLOPING_SIGNING_SECRET must be set where database or broker are on another machine"
+        yield "GALLOPING_SIGNING_SECRET must be set when the database or the broker is on another machine"
     elif len(secret) < _SHORTEST or secret.lower() in _EXAMPLES:
         yield f"GALLOPING_SIGNING_SECRET must be a random text of at least {_SHORTEST} characters"

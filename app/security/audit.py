@@ -1,4 +1,4 @@
-"""The record of who changed what, written in the transaction of the change."""
+"""The audit record: who changed what, written in the transaction of the change."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -13,7 +13,7 @@ from app.storage.database import database_time, insert_rows
 from app.tables import AuditAction, AuditEvent
 
 OPERATOR = Caller("operator", frozenset())
-"""Who works on the machine itself, by the command line."""
+"""The caller on the command line of the service's own machine."""
 
 
 def record(
@@ -25,7 +25,7 @@ def record(
     *,
     at: datetime | None = None,
 ) -> None:
-    """Add what a caller does to the record; without a moment it is done now."""
+    """Add a caller's action to the audit record, at the given moment or now."""
     made_by = {"owner": caller.owner, "key_id": caller.key_id}
     session.add(
         AuditEvent(
@@ -35,7 +35,7 @@ def record(
 
 
 def record_all(session: Session, done: Sequence[tuple[Caller, AuditAction, UUID, datetime]]) -> None:
-    """Add what several callers did, each to a subject at a moment, in one statement."""
+    """Add the actions of several callers, each on a subject at a moment, in one statement."""
     events = [
         {"id": uuid7(), "at": at, "owner": caller.owner, "key_id": caller.key_id, "action": action, "subject": subject}
         for caller, action, subject, at in done
@@ -44,7 +44,7 @@ def record_all(session: Session, done: Sequence[tuple[Caller, AuditAction, UUID,
 
 
 def latest(session: Session, owner: str | None, since: datetime | None, limit: int) -> Sequence[AuditEvent]:
-    """Return the newest events, the newest first; of one owner, or since a moment, if these are given."""
+    """Return the newest events, newest first, optionally of one owner or since a moment."""
     statement = select(AuditEvent).order_by(AuditEvent.id.desc()).limit(limit)
     if owner is not None:
         statement = statement.where(AuditEvent.owner == owner)

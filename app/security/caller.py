@@ -1,4 +1,4 @@
-"""Who asks, and what they may do."""
+"""The caller of a request and the caller's scopes."""
 
 import re
 from dataclasses import dataclass
@@ -7,11 +7,11 @@ from typing import NamedTuple
 from uuid import UUID
 
 OWNER_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,63}")
-"""What the name of an owner looks like."""
+"""Pattern of an owner's name."""
 
 
 class Scope(StrEnum):
-    """What a key lets its bearer do with what belongs to its owner."""
+    """What a key allows its bearer to do with the owner's data."""
 
     READ = "read"
     SUBMIT = "submit"
@@ -20,7 +20,7 @@ class Scope(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """Who asks: the owner of everything that they see or make, their scopes, and their key if there are any."""
+    """The owner of the data, the scopes of the key, and the id of the key if there is one."""
 
     owner: str
     scopes: frozenset[Scope]
@@ -35,4 +35,4 @@ class Owned(NamedTuple):
 
 
 LOCAL = Caller("local", frozenset(Scope))
-"""The caller of a service without keys, which is open to its own machine only."""
+"""The caller while no key exists; the service then answers its own machine only."""

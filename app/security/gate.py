@@ -1,4 +1,4 @@
-"""The gate before the API: who asks, whether they may, and how often. What is not named as open needs a key."""
+"""Authentication, authorization and quotas for every request. Addresses not listed as open need a key."""
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -27,10 +27,10 @@ Headers = Mapping[bytes, bytes]
 
 
 class Gate:
-    """ASGI middleware: lets those through who have a key with the right scope and keep to their quota.
+    """ASGI middleware that admits requests with a valid key, the right scope and remaining quota.
 
-    A service without any key is open to its own machine, to nobody else, and meters nobody. Who came through stands in
-    the request's state as `caller`.
+    While no key exists, the service answers its own machine only, without quotas. The gate stores the caller in the
+    request's state as `caller`.
     """
 
     def __init__(
@@ -67,12 +67,12 @@ class Gate:
         await self.app(scope, receive, _with_quota_fields(standing, send) if standing is not None else send)
 
     async def _admit(self, scope: types.Scope) -> tuple[Caller, Standing | None]:
-        """Return who asks, and what is left of their quota if they have one.
+        """Return the caller, and what is left of the caller's quota if there is one.
 
         Raises
         ------
         ProblemError
-            401, 403 or 429 if they may not; 503 if the database does not tell.
+            401, 403 or 429 if the request is not allowed; 503 if the database does not answer.
         """
         try:
             caller = await self._caller(scope, dict(scope["headers"]))
@@ -80,8 +80,8 @@ class Gate:
             raise problems.database_fault(error) from error
         needed = _NEEDED.get(scope["method"])
         if needed is not None and needed not in caller.scopes:
-            said = f"The key lacks the scope {needed}."
-            raise _refused(ProblemKind.FORBIDDEN, said, error="insufficient_scope", scope=needed)
+            detail = f"The key lacks the scope {needed}."
+            raise _refused(ProblemKind.FORBIDDEN, detail, error="insufficient_scope", scope=needed)
         if caller.key_id is None:
             return caller, None
         return caller, await self._take(self._reads if needed is Scope.READ else self._changes, caller.owner)
@@ -89,26 +89,28 @@ class Gate:
     async def _caller(self, scope: types.Scope, headers: Headers) -> Caller:
         text = _bearer(headers)
         if text is None:
-            if _asks_from_here(scope, headers) and await self._unguarded.get(""):
+            if _is_from_this_machine(scope, headers) and await self._unguarded.get(""):
                 return LOCAL
-            said = "Send a key as Authorization: Bearer; a service without keys answers its own machine only."
-            raise _refused(ProblemKind.UNAUTHENTICATED, said)
+            detail = "Send a key as Authorization: Bearer; a service without keys answers its own machine only."
+            raise _refused(ProblemKind.UNAUTHENTICATED, detail)
         digest = keys.digest_of(text)
         if not self._callers.holds(digest):
-            # What is not remembered costs a look at the database, so whoever makes many of those is slowed down.
+            # An unfamiliar key costs a database query, so limit how many one client address may try.
             await self._take(self._strangers, str((scope.get("client") or ("",))[0]))
         caller = await self._callers.get(digest)
         if caller is None:
-            said = "The key is unknown, revoked or expired."
-            raise _refused(ProblemKind.UNAUTHENTICATED, said, error="invalid_token")
+            detail = "The key is unknown, revoked or expired."
+            raise _refused(ProblemKind.UNAUTHENTICATED, detail, error="invalid_token")
         return caller
 
     async def _take(self, quota: Quota, client: str) -> Standing:
         standing = await self._meter.take(quota, client)
         if standing.left is None:
-            said = f"{quota.most} requests of this kind a minute are allowed; go on in {standing.reset_seconds} s."
+            detail = (
+                f"{quota.most} requests of this kind a minute are allowed; try again in {standing.reset_seconds} s."
+            )
             headers = {"Retry-After": str(standing.reset_seconds), **standing.fields}
-            raise ProblemError(ProblemKind.TOO_MANY_REQUESTS, said, headers=headers)
+            raise ProblemError(ProblemKind.TOO_MANY_REQUESTS, detail, headers=headers)
         return standing
 
 
@@ -122,11 +124,11 @@ def _bearer(headers: Headers) -> str | None:
     return text.strip() if kind.lower() == "bearer" else None
 
 
-def _asks_from_here(scope: types.Scope, headers: Headers) -> bool:
-    """Tell whether a request comes from this machine and is meant for it.
+def _is_from_this_machine(scope: types.Scope, headers: Headers) -> bool:
+    """Tell whether a request comes from this machine and addresses it by a loopback name.
 
-    Neither a proxy on this machine may pass on what comes from elsewhere, nor a page in a browser on this machine reach
-    the service by a name of its own that leads here (rebinding of DNS names).
+    A proxy on this machine must not forward requests from elsewhere. A page in a local browser must not reach the
+    service through a name that resolves to this machine (DNS rebinding).
     """
     server, client = (str((scope.get(end) or ("",))[0]) for end in ("server", "client"))
     forwarded = any(name in headers for name in _FORWARDED)
@@ -140,14 +142,14 @@ def _host(headers: Headers) -> str:
         return ""
 
 
-def _refused(kind: ProblemKind, said: str, **parameters: str) -> ProblemError:
-    """Return the problem of a request that may not pass, with the challenge of RFC 6750."""
+def _refused(kind: ProblemKind, detail: str, **parameters: str) -> ProblemError:
+    """Return the problem for a request that is not allowed, with the challenge of RFC 6750."""
     challenge = ", ".join(f'{name}="{value}"' for name, value in {"realm": "galloping", **parameters}.items())
-    return ProblemError(kind, said, headers={"WWW-Authenticate": f"Bearer {challenge}"})
+    return ProblemError(kind, detail, headers={"WWW-Authenticate": f"Bearer {challenge}"})
 
 
 def _with_quota_fields(standing: Standing, send: types.Send) -> types.Send:
-    """Add the standing of a quota to the answer."""
+    """Return a `send` that adds the quota's header fields to the answer."""
     fields = [(name.lower().encode(), value.encode()) for name, value in standing.fields.items()]
 
     async def send_with_quota(message: types.Message) -> None:
@@ -160,9 +162,9 @@ def _with_quota_fields(standing: Standing, send: types.Send) -> types.Send:
 
 def _look_up(readers: sessionmaker[Session], writers: sessionmaker[Session], digest: str) -> Caller | None:
     with readers() as session:
-        caller, use_to_record = keys.present(session, digest)
+        caller, use_to_record = keys.look_up(session, digest)
     if use_to_record:
-        with suppress(SQLAlchemyError), writers.begin() as session:  # a database that is full still lets callers read
+        with suppress(SQLAlchemyError), writers.begin() as session:  # callers may read even if the database is full
             keys.record_use(session, digest)
     return caller
 

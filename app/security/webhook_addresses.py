@@ -1,7 +1,7 @@
-"""Where webhooks may go: https addresses whose every IP address is public, or of a private network if that is open.
+"""Check where webhooks may go: https addresses on the public internet and, if allowed, in private networks.
 
-A name is resolved here and the connection is made to what was vetted, so that it cannot resolve to something else
-between the look and the use.
+The service resolves a host name once and connects to the checked IP address. The name therefore cannot resolve to
+another address between the check and the connection.
 """
 
 import asyncio
@@ -24,29 +24,29 @@ Address = IPv4Address | IPv6Address
 
 
 class RefusedAddress(ValueError):
-    """Raised for an address to which nothing is sent; the text says why."""
+    """Raised for an address to which the service sends nothing; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A vetted address: where to connect, and the name that the other side must prove to have."""
+    """A checked address: where to connect, and the host name that the server must prove in its certificate."""
 
     url: httpx.URL
     address: Address
 
     @property
     def pinned(self) -> httpx.URL:
-        """Return the address with the vetted IP address in the place of the name."""
+        """Return the URL with the checked IP address in place of the host name."""
         return self.url.copy_with(host=str(self.address))
 
 
 async def vet(text: str, *, private: bool) -> Target:
-    """Return where to send something, resolved now; with `private` also in private networks.
+    """Resolve an address now and return where to connect; `private` also allows private networks.
 
     Raises
     ------
     RefusedAddress
-        If it is no https address, has no IP address in time, or any that nothing is sent to.
+        If it is not an https address, does not resolve in time, or resolves to an address that is not allowed.
     """
     url = _parsed(text)
     try:
@@ -55,15 +55,15 @@ async def vet(text: str, *, private: bool) -> Target:
     except (OSError, UnicodeError, TimeoutError) as error:
         raise RefusedAddress(f"the host {url.host!r} cannot be resolved") from error
     if not addresses:
-        raise RefusedAddress(f"the host {url.host!r} has no address")
+        raise RefusedAddress(f"the host {url.host!r} has no IP address")
     for address in addresses:
         if not is_open(address, private=private):
-            raise RefusedAddress(f"the host {url.host!r} is at an address to which nothing is sent")
+            raise RefusedAddress(f"the host {url.host!r} has an IP address to which webhooks are not sent")
     return Target(url, addresses[0])
 
 
 def is_open(address: Address, *, private: bool) -> bool:
-    """Tell whether something may be sent to an IP address, or to the one that it stands for."""
+    """Tell whether webhooks may go to an IP address, or to the IPv4 address embedded in it."""
     if isinstance(address, IPv6Address) and (inner := _inner(address)) is not None:
         return is_open(inner, private=private)
     if address in _METADATA or address.is_link_local or address.is_multicast or address.is_unspecified:
@@ -74,42 +74,42 @@ def is_open(address: Address, *, private: bool) -> bool:
 
 
 async def _resolved(host: str, port: int) -> list[Address]:
-    """Return the addresses of a host.
+    """Return the IP addresses of a host.
 
-    Each look-up has a thread of its own: it cannot be cut off, so that a few which hang would fill a pool for all, and
-    hold up the end of the process.
+    Each lookup runs in a thread of its own. A lookup cannot be cancelled, so a few that hang would fill a shared pool
+    and delay the end of the process.
 
     Raises
     ------
     OSError, UnicodeError
-        If it has none.
+        If the host cannot be resolved.
     """
     loop = asyncio.get_running_loop()
     answer: asyncio.Future[list[Address]] = loop.create_future()
 
     def settle(found: list[Address] | Exception) -> None:
-        if answer.done():  # who asked waits no longer
+        if answer.done():  # the caller no longer waits
             return
         if isinstance(found, Exception):
             answer.set_exception(found)
         else:
             answer.set_result(found)
 
-    def look_up() -> None:
+    def resolve() -> None:
         found: list[Address] | Exception
         try:
             found = [ip_address(entry[4][0]) for entry in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)]
         except (OSError, UnicodeError) as error:
             found = error
-        with suppress(RuntimeError):  # the loop has ended meanwhile
+        with suppress(RuntimeError):  # the loop has ended
             loop.call_soon_threadsafe(settle, found)
 
-    threading.Thread(target=look_up, name="resolver", daemon=True).start()
+    threading.Thread(target=resolve, name="resolver", daemon=True).start()
     return await answer
 
 
 def _inner(address: IPv6Address) -> IPv4Address | None:
-    """Return the IPv4 address that an address of IPv6 carries: mapped, translated or tunnelled."""
+    """Return the IPv4 address embedded in an IPv6 address (mapped, translated or tunnelled), otherwise None."""
     if address.is_loopback or address.is_unspecified:
         return None
     if any(address in network for network in _TRANSLATED):
@@ -121,9 +121,9 @@ def _parsed(text: str) -> httpx.URL:
     try:
         url = httpx.URL(text)
     except (httpx.InvalidURL, ValueError) as error:
-        raise RefusedAddress("is no address") from error
+        raise RefusedAddress("must be a valid address") from error
     if url.scheme != "https" or not url.host or len(text) > LONGEST:
         raise RefusedAddress(f"must be an https:// address of at most {LONGEST} characters")
     if url.userinfo or url.fragment:
-        raise RefusedAddress("must have neither a user nor a fragment")
+        raise RefusedAddress("must contain neither a user nor a fragment")
     return url

@@ -1,1 +1,1 @@
-"""The database: connections, migrations, stored results, counters. What a job may do is in `app.jobs`."""
+"""The database: connections, migrations, stored results, counters. The rules for jobs are in `app.jobs`."""

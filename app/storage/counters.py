@@ -1,8 +1,8 @@
-"""Totals for the metrics: each counts exactly what was committed, and outlives the rows that it was counted on.
+"""Totals for the metrics. They count exactly what was committed, and remain when the counted rows are deleted.
 
-A tally is added in the transaction in which what it counts happens, so that neither a killed process nor a late one
-can make it wrong. Rows are only added, never changed, since workers that share a row would wait for each other; a
-sweep puts many rows of a kind together into one.
+The transaction that does something also adds its counter row, so neither a killed process nor a late one can make a
+total wrong. Workers only insert rows and never update them, because workers that share a row would wait for each other.
+A sweep sums many rows into one.
 """
 
 from collections import defaultdict
@@ -18,7 +18,7 @@ _WORTH_FOLDING = 200
 
 
 class CounterName(StrEnum):
-    """What is counted: attempts that ended their job or chunk, leases that were lost, and attempts to tell somebody."""
+    """What is counted: finished jobs, finished chunks, lost leases, and attempts to send webhooks."""
 
     JOBS = "jobs"
     CHUNKS = "chunks"
@@ -27,7 +27,7 @@ class CounterName(StrEnum):
 
 
 def add(session: Session, name: CounterName, label: str, *, count: int = 1, seconds: float = 0.0) -> None:
-    """Count something that this transaction does; there must be few labels."""
+    """Count something that this transaction does; use only a few different labels."""
     session.add(CounterIncrement(name=name.value, label=label, count=count, seconds=seconds))
 
 
@@ -40,13 +40,13 @@ def add_end(
     count: int = 1,
     seconds: float = 0.0,
 ) -> None:
-    """Count the ends of jobs or chunks: in which state, of what failure, and after how many seconds of work."""
+    """Count the ends of jobs or chunks by state and kind of failure, with their seconds of work."""
     label = f"{status.value}/{failure.value}" if failure else status.value
     add(session, CounterName.CHUNKS if chunk else CounterName.JOBS, label, count=count, seconds=seconds)
 
 
 def totals(session: Session) -> dict[tuple[str, str], tuple[int, float]]:
-    """Return count and seconds by name and label."""
+    """Return count and seconds for each name and label."""
     sums = func.sum(CounterIncrement.count), func.sum(CounterIncrement.seconds)
     found = session.execute(
         select(CounterIncrement.name, CounterIncrement.label, *sums).group_by(
@@ -57,7 +57,10 @@ def totals(session: Session) -> dict[tuple[str, str], tuple[int, float]]:
 
 
 def fold(session: Session) -> int:
-    """Put rows of a kind together into one where there are many, and return how many were; any number may do so."""
+    """Sum rows of the same name and label into one if there are many; return how many rows were read.
+
+    Several processes may do this at once.
+    """
     wanted = select(
         CounterIncrement.id,
         CounterIncrement.name,

@@ -1,4 +1,4 @@
-"""Engines and sessions for SQLite and PostgreSQL, and the clock that both sides of a lease read."""
+"""Engines and sessions for SQLite and PostgreSQL, and the clock by which all processes judge leases."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -36,27 +36,27 @@ _BUSY_SECONDS = 30.0
 _THREADS = 40
 _IMPATIENT: dict[str, Any] = {"connect_timeout": 2, "options": "-c statement_timeout=2000"}
 _POSTGRESQL = make_url("postgresql+psycopg://").get_dialect()()
-_CLOCK = "time by the database's clock"
+_CLOCK = "database time of this transaction"
 
 
 def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
-    """Make an engine for the database of the settings; the directory of an SQLite file is made if it is missing.
+    """Create the engine for the configured database; create the directory of an SQLite file if it is missing.
 
     SQLite: write-ahead log, foreign keys, a busy timeout, and every transaction begins as a writer (`BEGIN IMMEDIATE`)
-    unless its session comes from `session_factory(..., read_only=True)`: a reader that turns into a writer midway
-    would fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use.
-    An impatient engine is for looks whether the database is there: it connects anew for each, and gives up soon.
+    unless its session comes from `session_factory(..., read_only=True)`. A reader that became a writer midway would
+    fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use. An impatient engine
+    serves health checks: it opens a new connection for each and gives up soon.
 
     Raises
     ------
     OSError
-        If the directory cannot be made.
+        If the directory cannot be created.
     """
     url = make_url(settings.database_url)
     if url.get_backend_name() != "sqlite":
         if impatient:
             return create_engine(url, poolclass=NullPool, connect_args=_IMPATIENT)
-        # Enough for every thread of the API: what overflows a pool is closed after each use and opened anew.
+        # One connection for each thread of the API: a connection above the pool size would be reopened for every use.
         pool = {"pool_size": _THREADS, "max_overflow": 0}
         return create_engine(url, pool_pre_ping=True, connect_args={"connect_timeout": 10}, **pool)
     if url.database:
@@ -68,24 +68,24 @@ def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
 
 
 def session_factory(engine: Engine, *, read_only: bool = False) -> sessionmaker[Session]:
-    """Make a factory of sessions whose objects stay readable after the commit.
+    """Return a factory of sessions whose objects stay readable after the commit.
 
-    A session that only reads should come from a `read_only` factory: on SQLite it then neither waits for a writer nor
-    holds one up, however long it streams; on PostgreSQL the server refuses writes in it.
+    A session that only reads should come from a `read_only` factory. On SQLite it then neither waits for a writer nor
+    blocks one, however long it streams; on PostgreSQL the server refuses writes in it.
     """
     bind = engine.execution_options(read_only=True, **_read_only_options(engine)) if read_only else engine
     return sessionmaker(bind, expire_on_commit=False)
 
 
 def database_time(session: Session) -> datetime:
-    """Return the time in UTC by the database's clock, which workers on machines with differing clocks share.
+    """Return the database server's time in UTC, so that workers with differing clocks agree.
 
-    A server is asked once a transaction, which is short.
+    The server is queried once for each transaction; transactions are short.
     """
     if session.get_bind().dialect.name != "postgresql":
         return datetime.now(UTC)
-    asked_in, moment = session.info.get(_CLOCK, (None, None))
-    if asked_in is None or asked_in is not session.get_transaction():
+    read_in, moment = session.info.get(_CLOCK, (None, None))
+    if read_in is None or read_in is not session.get_transaction():
         moment = session.execute(select(func.clock_timestamp(type_=UtcDateTime))).scalar_one()
         session.info[_CLOCK] = session.get_transaction(), moment
     found: datetime = moment
@@ -93,7 +93,7 @@ def database_time(session: Session) -> datetime:
 
 
 def database_moment(session: Session) -> datetime | ColumnElement[datetime]:
-    """Return `database_time` for a statement that writes it: a server reads its clock there and need not be asked."""
+    """Return `database_time` for a statement that writes it; a server evaluates its clock there without a query."""
     if session.get_bind().dialect.name != "postgresql":
         return database_time(session)
     return func.clock_timestamp(type_=UtcDateTime)
@@ -140,7 +140,7 @@ def _as_json(value: object) -> Json | None:
 
 @contextmanager
 def _as_sqlalchemy_errors() -> Iterator[None]:
-    """Let callers see one family of errors, whichever way the rows go."""
+    """Convert psycopg errors to SQLAlchemy errors, so that callers handle one kind only."""
     try:
         yield
     except psycopg.IntegrityError as error:
@@ -156,7 +156,7 @@ def _read_only_options(engine: Engine) -> dict[str, Any]:
 
 
 def _prepare_sqlite(connection: SQLiteConnection, _: object) -> None:
-    connection.isolation_level = None  # the driver must not begin transactions by itself: _begin_sqlite does
+    connection.isolation_level = None  # the driver must not begin transactions: _begin_sqlite does
     for pragma in ("journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON"):
         connection.execute(f"PRAGMA {pragma}").close()
 

@@ -1,4 +1,4 @@
-"""The database's schema: brought to the newest revision, and whether it has it."""
+"""Bring the database's schema to the newest revision, and tell whether it has it."""
 
 from alembic import command
 from alembic.config import Config
@@ -9,16 +9,16 @@ from sqlalchemy import Connection, text
 from app.runtime.settings import Settings
 from app.storage.database import make_engine
 
-_MIGRATION_LOCK = 4_105_912_717  # any number of our own, the same in every process
+_MIGRATION_LOCK = 4_105_912_717  # an arbitrary number, the same in every process
 
 
 def migrate(settings: Settings) -> int:
-    """Bring the database to the newest revision; several at once wait for each other. Returns 0.
+    """Bring the database to the newest revision and return 0; concurrent calls wait for each other.
 
     Raises
     ------
     sqlalchemy.exc.SQLAlchemyError
-        If the database cannot be reached or refuses.
+        If the database cannot be reached or refuses a statement.
     """
     engine = make_engine(settings)
     try:
@@ -31,7 +31,7 @@ def migrate(settings: Settings) -> int:
 
 
 def alembic_config(connection: Connection) -> Config:
-    """Make Alembic's configuration for our migrations on an open connection."""
+    """Return Alembic's configuration for our migrations on an open connection."""
     config = Config()
     config.set_main_option("script_location", "migrations:")
     config.attributes["connection"] = connection
@@ -39,12 +39,12 @@ def alembic_config(connection: Connection) -> Config:
 
 
 def is_newest(connection: Connection) -> bool:
-    """Tell whether a database has the newest schema."""
+    """Tell whether the database has the newest schema."""
     present = MigrationContext.configure(connection).get_current_heads()
     return set(present) == set(ScriptDirectory.from_config(alembic_config(connection)).get_heads())
 
 
 def _take_turns(connection: Connection) -> None:
-    # SQLite's transactions begin as writers already, so that only one of them is past this line.
+    # SQLite transactions begin as writers, so only one of them can pass this line.
     if connection.dialect.name == "postgresql":
         connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _MIGRATION_LOCK})

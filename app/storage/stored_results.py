@@ -1,4 +1,4 @@
-"""Results in SQL: one row a point, stored with the end of a job, unpacked into the flat rows of the contract."""
+"""Results in SQL: one row for each point, stored when its job ends and unpacked into the rows of the result tables."""
 
 import threading
 from collections.abc import Iterator, Sequence
@@ -21,12 +21,12 @@ STATIC = tuple(columns_of(StaticState))
 RANKING_FIGURES = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100
-_OWN = threading.local()
-_LEVEL = 1  # higher levels take longer and save nothing on rows of numbers
+_THREAD = threading.local()
+_LEVEL = 1  # higher levels take longer and do not shrink rows of numbers
 
 
 def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"], batch_id: UUID | None = None) -> None:
-    """Add everything that was found at these points of a job, or lines of a batch's chunk, in one statement.
+    """Insert the results of points of a job, or of lines of a batch's chunk, in one statement.
 
     Raises
     ------
@@ -40,26 +40,26 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"],
 
 
 def unpacked(packed: bytes | None) -> bytes:
-    """Return the JSON text of a packed column; that of tables without rows for a point that failed."""
+    """Return the JSON text of a packed column; for a point that failed, that of tables without rows."""
     return NO_TABLES if packed is None else _unpacker().decompress(packed)
 
 
 def _unpacker() -> zstandard.ZstdDecompressor:
-    """Return the unpacker of this thread: to make one for each text takes as long as to unpack it."""
-    if not hasattr(_OWN, "unpacker"):
-        _OWN.unpacker = zstandard.ZstdDecompressor()
-    unpacker: zstandard.ZstdDecompressor = _OWN.unpacker
+    """Return this thread's decompressor; creating one costs as much as decompressing a text."""
+    if not hasattr(_THREAD, "unpacker"):
+        _THREAD.unpacker = zstandard.ZstdDecompressor()
+    unpacker: zstandard.ZstdDecompressor = _THREAD.unpacker
     return unpacker
 
 
 def tables_of(packed: bytes | None) -> dict[str, list[dict[str, Any]]]:
-    """Return the rows that a packed column holds, by the name of their table."""
+    """Return the rows in a packed column by table name."""
     found: dict[str, list[dict[str, Any]]] = orjson.loads(unpacked(packed))
     return found
 
 
 def rows(session: Session, job_id: UUID, table: str) -> Iterator[dict[str, Any]]:
-    """Stream the rows of one table in the order of the points; the values of the study's axes come first in each."""
+    """Stream the rows of one table in the order of the points; each row begins with the values of the study's axes."""
     statement = select(PointRow.axes, PointRow.tables).where(PointRow.job_id == job_id).order_by(PointRow.point)
     for point_axes, packed in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):
         for row in tables_of(packed).get(table, ()):
@@ -67,7 +67,7 @@ def rows(session: Session, job_id: UUID, table: str) -> Iterator[dict[str, Any]]
 
 
 def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
-    """Stream the points: number, axes, static state, Den Hartog's coefficient, warnings, engine version, failure."""
+    """Stream the points: number, axes, static state, Den Hartog coefficient, warnings, engine version, failure."""
     static = [getattr(PointRow, name) for name in STATIC]
     hartog = PointRow.den_hartog_coefficient, PointRow.den_hartog_unstable
     said = PointRow.warnings, PointRow.engine_version, PointRow.failure
@@ -87,7 +87,7 @@ def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
 
 
 def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
-    """Stream the orbits: point, cycle (number of the row among the point's limit cycles), and Fourier coefficients."""
+    """Stream the orbits: point, cycle (row number among the point's limit cycles), and Fourier coefficients."""
     packed = PointRow.job_id == job_id, PointRow.orbits.is_not(None)
     statement = select(PointRow.point, PointRow.orbits).where(*packed).order_by(PointRow.point)
     for point, found in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):

@@ -1,4 +1,4 @@
-"""Totals of what has happened."""
+"""Counter increments, which the metrics sum into totals."""
 
 from sqlalchemy import BigInteger, Integer, String
 from sqlalchemy.orm import Mapped, mapped_column
@@ -7,7 +7,7 @@ from app.tables.base import Base
 
 
 class CounterIncrement(Base):
-    """So many things of a kind, and the seconds that they took; the total of a kind is the sum of its rows."""
+    """One addition to a total: how many, and the seconds that they took. A total is the sum of its rows."""
 
     __tablename__ = "tallies"
 

@@ -51,8 +51,8 @@ def test_what_cannot_be_done_with_keys_ends_with_2_and_a_sentence(tmp_path: Path
     assert "galloping migrate" in refused("keys", "create", "--owner", "acme", *place)
     assert galloping("migrate", *place).returncode == 0
     assert "--owner" in refused("keys", "create", "--owner", "a b", *place)
-    assert "no keys begin with" in refused("keys", "revoke", "galloping_0000", *place)
-    assert "there is no key yet" in refused("serve", "--host", "0.0.0.0", *place)
+    assert "no keys have the id or beginning" in refused("keys", "revoke", "galloping_0000", *place)
+    assert "no key exists" in refused("serve", "--host", "0.0.0.0", *place)
 
 
 def test_prune_counts_before_it_removes(own_settings: Settings, own_client: httpx.Client) -> None:

@@ -62,6 +62,6 @@ def test_no_process_of_a_deployment_starts_with_a_weak_secret(
     ended = subprocess.run(arguments, capture_output=True, text=True, timeout=60.0, check=False)
     assert ended.returncode == 2
     assert ended.stderr.splitlines() == [
-        "GALLOPING_DATABASE_URL has a password that anybody could guess; "
-        "GALLOPING_SIGNING_SECRET must be set where database or broker are on another machine"
+        "GALLOPING_DATABASE_URL has a password that is easy to guess; "
+        "GALLOPING_SIGNING_SECRET must be set when the database or the broker is on another machine"
     ]

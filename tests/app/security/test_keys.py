@@ -46,11 +46,11 @@ def test_a_key_is_looked_up_by_an_index_on_its_hash(sessions: sessionmaker[Sessi
 def test_a_good_key_says_whose_it_is(sessions: sessionmaker[Session]) -> None:
     key = make(sessions)
     with sessions() as session:
-        caller, use_to_record = keys.present(session, keys.digest_of(key))
+        caller, use_to_record = keys.look_up(session, keys.digest_of(key))
         assert caller is not None
         assert (caller.owner, caller.scopes) == ("acme", frozenset({Scope.READ, Scope.SUBMIT}))
         assert use_to_record
-        assert keys.present(session, keys.digest_of(key + "0")) == (None, False)
+        assert keys.look_up(session, keys.digest_of(key + "0")) == (None, False)
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def test_a_key_is_looked_up_in_the_same_way_whatever_it_is(sessions: sessionmake
     asked: dict[str, list[str]] = {}
     for key in (made.good, *made.refused()):
         with sessions() as session, counted() as statements:
-            caller, use_to_record = keys.present(session, keys.digest_of(key))
+            caller, use_to_record = keys.look_up(session, keys.digest_of(key))
         asked[key] = statements
         assert (caller is not None, use_to_record) == (key == made.good, False)
     assert {tuple(statements) for statements in asked.values()} == {tuple(asked[made.good])}
@@ -115,9 +115,9 @@ def test_use_is_recorded_now_and_then(sessions: sessionmaker[Session]) -> None:
     with sessions.begin() as session:
         keys.record_use(session, digest)
     with sessions.begin() as session:
-        assert keys.present(session, digest)[1] is False
+        assert keys.look_up(session, digest)[1] is False
         session.execute(text("UPDATE api_keys SET used_at = NULL"))
-        assert keys.present(session, digest)[1] is True
+        assert keys.look_up(session, digest)[1] is True
 
 
 def test_expired_and_revoked_keys_are_nobodys(sessions: sessionmaker[Session]) -> None:
@@ -126,7 +126,7 @@ def test_expired_and_revoked_keys_are_nobodys(sessions: sessionmaker[Session]) -
     with sessions.begin() as session:
         assert keys.revoke(session, revoked[:18]).revoked_at is not None
     with sessions() as session:
-        assert [keys.present(session, keys.digest_of(key))[0] for key in (expired, revoked)] == [None, None]
+        assert [keys.look_up(session, keys.digest_of(key))[0] for key in (expired, revoked)] == [None, None]
         assert keys.any_exist(session)
 
 
