@@ -1,7 +1,7 @@
-"""Batches as their owner sees them: received in parts, counted, listed, cancelled, resubmitted.
+"""Batches from their owner's side: receive in parts, list, cancel, resubmit.
 
-The lines of a batch are worked on in chunks, and a chunk is a job. What state a line is in follows from its chunk and
-from its result, and is written nowhere else. The caller commits the transaction.
+Workers compute a batch in chunks, and each chunk is a job. The state of a line follows from its chunk and its result,
+and is stored nowhere else. The caller commits the transaction.
 """
 
 import hashlib
@@ -30,7 +30,7 @@ _ABANDONED = timedelta(hours=6)
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """Lines of a batch that one message carries: how many there are, and which part of the batch they are."""
+    """The lines of a batch in one message: their number, and which part of the batch they are."""
 
     id: UUID
     part: int
@@ -38,7 +38,7 @@ class Chunk:
 
 
 def begin(session: Session, caller: Caller, analysis: dict[str, Any]) -> UUID:
-    """Add a batch that nobody sees until `accept` is called, and return its id."""
+    """Add a batch that stays invisible until `accept` is called, and return its id."""
     batch = Batch(id=uuid7(), owner=caller.owner, created_at=database_time(session), analysis=analysis)
     session.add(batch)
     session.flush()
@@ -60,9 +60,9 @@ def accept(
     *,
     anew: bool = False,
 ) -> None:
-    """Make a batch visible whose lines are all stored, with its chunks waiting for workers.
+    """Make a batch visible whose lines are all stored, and queue its chunks for workers.
 
-    With `anew` they are computed even if their results are stored already.
+    With `anew`, workers compute the lines even if their results are stored.
     """
     now = database_time(session)
     received = update(Batch).where(Batch.id == batch_id).values(received_at=now, rejected_lines=rejected_lines)
@@ -78,19 +78,19 @@ def discard(session: Session, batch_id: UUID) -> None:
 
 
 def discard_abandoned(session: Session) -> int:
-    """Remove batches whose receiver died hours ago, and return how many there were."""
+    """Remove batches whose receiving process died hours ago, and return their number."""
     abandoned = Batch.created_at < database_time(session) - _ABANDONED
     statement = delete(Batch).where(Batch.received_at.is_(None), abandoned).returning(Batch.id)
     return len(session.scalars(statement).all())
 
 
 def get(session: Session, owner: str, batch_id: UUID) -> Batch | None:
-    """Return a batch that is wholly received, or None if the owner has none of that id."""
+    """Return a completely received batch, or None if the owner has no batch of that id."""
     return session.scalars(_of(owner, batch_id)).one_or_none()
 
 
 def page(session: Session, owner: str, after: tuple[datetime, UUID] | None, limit: int) -> list[Batch]:
-    """Return the owner's newest batches, or those that follow `after`, the (created_at, id) of the last."""
+    """Return the owner's newest batches, or those after `after`, the (created_at, id) of the last one seen."""
     statement = select(Batch).where(Batch.owner == owner, Batch.received_at.is_not(None))
     if after is not None:
         statement = statement.where(tuple_(Batch.created_at, Batch.id) < after)
@@ -98,14 +98,14 @@ def page(session: Session, owner: str, after: tuple[datetime, UUID] | None, limi
 
 
 def outcome(session: Session, batch_id: UUID) -> str:
-    """Return what the results of a batch that has ended depend on: its chunks, and how each of them ended."""
+    """Return a fingerprint of a finished batch, for its ETag."""
     columns = Job.id, Job.status, Job.engine_version, Job.finished_at, Job.lines, Job.failed_lines
     statement = select(*columns).where(Job.batch_id == batch_id).order_by(Job.id)
     return hashlib.sha256(repr(session.execute(statement).all()).encode()).hexdigest()
 
 
 def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
-    """End what is queued at once and ask what is running to stop; remove a batch that has ended, with its results."""
+    """End queued chunks at once and ask running ones to stop; remove a finished batch with its results."""
     if _locked(session, caller.owner, batch_id) is None:
         return CancelOutcome.MISSING
     before = batch_progress.counts(session, [batch_id])[batch_id]
@@ -114,7 +114,7 @@ def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
         session.execute(delete(Batch).where(Batch.id == batch_id))
         audit.record(session, caller, AuditAction.BATCH_REMOVED, batch_id)
         return CancelOutcome.REMOVED
-    # Locked first, so that no chunk can pass from one state to the other between the two changes.
+    # Lock the chunks first, so that none changes state between the two updates.
     still_open = Job.batch_id == batch_id, Job.status.in_((JobStatus.ACCEPTED, JobStatus.RUNNING))
     session.execute(select(Job.id).where(*still_open).order_by(Job.id).with_for_update())
     _dismiss_waiting(session, batch_id)
@@ -124,9 +124,9 @@ def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
 
 
 def resubmit(session: Session, caller: Caller, batch_id: UUID, chunk_lines: int) -> list[UUID]:
-    """Put the lines that failed into new chunks, and return the ids of these; none if nothing has failed.
+    """Put the failed lines into new chunks, and return the ids of these; empty if no line failed.
 
-    Their numbers stay, and what an earlier attempt has stored of the others is not touched.
+    The lines keep their numbers. The results of all other lines stay untouched.
     """
     if _locked(session, caller.owner, batch_id) is None:
         return []
@@ -149,7 +149,7 @@ def resubmit(session: Session, caller: Caller, batch_id: UUID, chunk_lines: int)
 
 
 def lines_of_chunk(session: Session, job_id: UUID, batch_id: UUID) -> tuple[dict[str, Any], list[NumberedLine]]:
-    """Return what a worker needs for a chunk: the analysis of the batch, and the lines by number."""
+    """Return the analysis of the batch and the numbered lines of a chunk, for a worker."""
     analysis = session.scalars(select(Batch.analysis).where(Batch.id == batch_id)).one()
     statement = select(BatchItem.number, BatchItem.document).where(BatchItem.chunk_id == job_id)
     rows = session.execute(statement.order_by(BatchItem.number))
@@ -161,7 +161,7 @@ def _of(owner: str, batch_id: UUID) -> Select[Batch]:
 
 
 def _locked(session: Session, owner: str, batch_id: UUID) -> Batch | None:
-    """Return a batch and lock its row, so that two changes of the whole wait for each other."""
+    """Return a batch with its row locked, so that two changes of the whole batch wait for each other."""
     return session.scalars(_of(owner, batch_id).with_for_update()).one_or_none()
 
 
@@ -171,7 +171,7 @@ def _has_failures(batch_id: UUID) -> tuple[ColumnElement[bool], ...]:
 
 
 def _failed_numbers(session: Session, batch_id: UUID) -> list[int]:
-    """Return the numbers of the lines whose chunk has ended without a result of theirs."""
+    """Return the numbers of the lines that have no result although their chunk has ended."""
     solved = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number, PointRow.failure.is_(None))
     statement = (
         select(BatchItem.number)

@@ -1,4 +1,4 @@
-"""What came of the lines of a batch, streamed in the order of their numbers, a bounded number in memory at a time."""
+"""Results of a batch's lines, streamed in the order of their numbers with few lines in memory at a time."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -26,7 +26,7 @@ def columns(table: str) -> list[str]:
 
 
 def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a table; the summary has one for every line, the others those of the lines that have any."""
+    """Yield the rows of a table: one for every line in the summary, otherwise the rows of each line's results."""
     for item in _lines(session, batch_id, unpacking=table != "summary"):
         if table == "summary":
             yield _summary(item)
@@ -37,15 +37,15 @@ def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any
 
 
 def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
-    """Yield one JSON object a line, with its end, that has everything found of it, or why there is nothing."""
+    """Yield for each line a JSON object, with a line end, that holds all its results or its failure."""
     for item in _lines(session, batch_id, unpacking=True):
-        # The packed tables are a JSON object already: it is joined to the other members as it stands.
+        # The packed tables are JSON already; splice them into the object without parsing.
         head = orjson.dumps({**_labels(item), **_state(item), **_point(item)})
         yield b"%b,%b\n" % (head[:-1], unpacked(item.tables if _is_solved(item) else None)[1:])
 
 
 def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterator[dict[str, Any]]:
-    """Yield what is wrong with rejected lines: number, reference, and pointer, code and sentence of each fault."""
+    """Yield the faults of rejected lines: number, reference, and pointer, code and sentence of each fault."""
     wanted = BatchItem.number, BatchItem.reference, BatchItem.faults
     rejected = BatchItem.batch_id == batch_id, BatchItem.chunk_id.is_(None)
     statement = select(*wanted).where(*rejected).order_by(BatchItem.number).limit(most)
@@ -55,7 +55,7 @@ def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterato
 
 
 def _lines(session: Session, batch_id: UUID, *, unpacking: bool) -> Iterator[Row[Any]]:
-    """Yield the lines with the state of their chunk and their point, some in memory at a time."""
+    """Yield the lines with the state of their chunk and their result, reading a page at a time."""
     of_line = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number)
     names = (
         *STATIC,
@@ -101,7 +101,7 @@ def _labels(item: Row[Any]) -> dict[str, Any]:
 
 
 def _state(item: Row[Any]) -> dict[str, Any]:
-    """Return status and failure of a line, which follow from its chunk and its point."""
+    """Return the status and the failure of a line, from its chunk and its result."""
     if item.chunk_id is None:
         sentence = "; ".join(f"{fault['pointer'] or '/'}: {fault['detail']}" for fault in item.faults)
         return {"status": "rejected", "failure": {"kind": FailureKind.INPUT.value, "detail": sentence}}

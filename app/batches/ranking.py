@@ -1,4 +1,4 @@
-"""Lines of a batch in the order of one figure, a page at a time, read along the index of that figure."""
+"""Rank the lines of a batch by one figure, a page at a time, along that figure's index."""
 
 import struct
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ _PLACE = struct.Struct(">dqq")
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """The figure that decides, one of `RANKING_FIGURES`, and whether the largest comes first."""
+    """The figure to rank by, one of `RANKING_FIGURES`, and whether the largest comes first."""
 
     figure: str
     descending: bool
@@ -26,7 +26,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a page ended: value of the figure, number and rank of its last line."""
+    """The end of a page: the figure, the number and the rank of its last line."""
 
     value: float
     number: int
@@ -34,7 +34,10 @@ class Place:
 
 
 def page(session: Session, batch_id: UUID, order: Order, after: Place | None, limit: int) -> Sequence[Row[Any]]:
-    """Return number, reference, asset_id and `RANKING_FIGURES` of the lines that follow a place and have the figure."""
+    """Return number, reference, asset_id and `RANKING_FIGURES` of the lines after a place, in order.
+
+    Lines without the figure are left out.
+    """
     figure = getattr(PointRow, order.figure)
     key = tuple_(figure, PointRow.point)
     of_line = (
@@ -59,17 +62,17 @@ def page(session: Session, batch_id: UUID, order: Order, after: Place | None, li
 
 
 def encode(key: bytes, batch_id: UUID, order: Order, place: Place) -> str:
-    """Return the cursor of a place, which holds for this batch and order only."""
+    """Return the cursor of a place, valid for this batch and order only."""
     return paging.seal(_own(key, batch_id, order), _PLACE.pack(place.value, place.number, place.rank))
 
 
 def decode(key: bytes, batch_id: UUID, order: Order, cursor: str) -> Place:
-    """Return the place of a cursor.
+    """Return the place in a cursor.
 
     Raises
     ------
     app.http.paging.BadCursor
-        If it was not made by `encode` with this key, batch and order.
+        If `encode` did not create it with this key, batch and order.
     """
     return Place(*_PLACE.unpack(paging.unseal(_own(key, batch_id, order), cursor)))
 

@@ -1,1 +1,1 @@
-"""The life of a job: submitted, dispatched, leased, reused, concluded, and reported to its webhooks."""
+"""The life of a job: submit, dispatch, lease, reuse, finish, and send its webhooks."""

@@ -1,4 +1,4 @@
-"""How many lines of a batch are in which state, counted from its chunks."""
+"""Count the lines of a batch by state, from its chunks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from app.tables import Job, JobStatus
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How many lines of a batch are in which state, how much of the work is done, and when it began and ended.
+    """The lines of a batch by state, the share of work done, and the times of its first start and last end.
 
-    reused are those of the successful that were stored before.
+    `reused` counts the successful lines whose results were stored before.
     """
 
     accepted: int = 0
@@ -30,12 +30,12 @@ class Counts:
 
     @property
     def lines(self) -> int:
-        """Return how many lines there are apart from those that were rejected."""
+        """Return the number of lines, rejected ones excluded."""
         return self.accepted + self.running + self.successful + self.failed + self.dismissed
 
     @property
     def status(self) -> JobStatus:
-        """Return the state of the whole: a batch that has ended is successful if any line is."""
+        """Return the state of the batch; a finished batch is successful if any of its lines is."""
         if self.accepted + self.running:
             begun = self.accepted < self.lines
             return JobStatus.RUNNING if begun else JobStatus.ACCEPTED

@@ -1,8 +1,8 @@
-"""Keys under which a POST is done once: the first answer is kept beside what it made, and given to who asks again.
+"""Idempotency keys: perform a POST once, store its answer under the key, and return it to later requests with that key.
 
-The row of a key is written in the transaction that makes the rest, so that there is both or neither. A body that comes
-in over several transactions holds its key meanwhile, as a lease that its process renews: one that dies holds up nobody
-for long, and one that comes back late finds its key with another. The caller commits the transaction.
+The row of a key is written in the transaction that creates what the POST asks for, so both exist or neither does. A
+body received over several transactions holds its key under a lease that its process renews. If the process dies, the
+key is soon free; if it returns late, it finds the key with another request. The caller commits the transaction.
 """
 
 import hashlib
@@ -23,12 +23,12 @@ KEPT = timedelta(hours=24)
 
 
 class KeyTaken(Exception):
-    """Raised to undo a transaction whose key belongs to an earlier request, or by now to a later one."""
+    """Raised to undo a transaction whose key an earlier request uses, or a later one has taken over."""
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key of an owner, as one request holds it."""
+    """An owner's key as one request holds it."""
 
     owner: str
     value: str
@@ -37,7 +37,7 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What is given again: status, headers that matter, and the text of the body."""
+    """The stored answer: status, relevant headers, and the text of the body."""
 
     status: int
     headers: Mapping[str, str]
@@ -45,18 +45,18 @@ class Answer:
 
 
 def new_key(owner: str, value: str) -> Key:
-    """Return a key for a request that has just come in."""
+    """Return a key for a request that has just arrived."""
     return Key(owner, value, uuid4())
 
 
 def fingerprint(*parts: str) -> str:
-    """Return the SHA-256 by which a request is known again, from what makes it that request."""
+    """Return the SHA-256 that identifies a request, from the parts that define it."""
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What is to be kept under a key: the fingerprint of the request, and its answer."""
+    """What to store under a key: the fingerprint of the request and its answer."""
 
     key: Key
     request: str
@@ -64,11 +64,10 @@ class Kept:
 
 
 def keep(session: Session, kept: Sequence[Kept]) -> set[UUID]:
-    """Keep answers for as long as keys are kept, and return the holders of the keys that were free.
+    """Store answers for as long as keys are kept; return the holders of the keys that were free.
 
-    A key that is in use stays as it is, and of two equal ones the first gets it. On PostgreSQL this waits for a
-    transaction that is about to use a key; the keys are taken in order, so that two such groups never wait for each
-    other.
+    A key in use stays unchanged; of two equal keys the first wins. On PostgreSQL this waits for a transaction that is
+    about to use a key. The keys are locked in a fixed order, so two such groups never deadlock.
     """
     first = {(item.key.owner, item.key.value): item for item in reversed(kept)}
     ordered = [first[place] for place in sorted(first)]
@@ -78,7 +77,7 @@ def keep(session: Session, kept: Sequence[Kept]) -> set[UUID]:
 
 
 def hold(session: Session, key: Key, lease: timedelta) -> None:
-    """Reserve a key whose answer comes in a later transaction; it is free again after the lease unless that is renewed.
+    """Reserve a key whose answer follows in a later transaction; the reservation ends with the lease unless renewed.
 
     Raises
     ------
@@ -91,35 +90,35 @@ def hold(session: Session, key: Key, lease: timedelta) -> None:
 
 
 def renew(session: Session, key: Key, lease: timedelta) -> None:
-    """Go on holding a key for another lease.
+    """Extend the reservation of a key by another lease.
 
     Raises
     ------
     KeyTaken
-        If another has taken it meanwhile.
+        If another request has taken the key.
     """
     _change(session, key, {"expires_at": database_time(session) + lease})
 
 
 def finish(session: Session, key: Key, request: str, answer: Answer) -> None:
-    """Keep the answer under a key that is held.
+    """Store the answer under a reserved key.
 
     Raises
     ------
     KeyTaken
-        If another has taken it meanwhile.
+        If another request has taken the key.
     """
     end = database_time(session) + KEPT
     _change(session, key, {"expires_at": end, "fingerprint": request, **_columns(answer)})
 
 
 def release(session: Session, key: Key) -> None:
-    """Give up a key that is held, since nothing was made under it."""
+    """Free a reserved key, because nothing was created under it."""
     session.execute(delete(IdempotencyKey).where(*_held(key)))
 
 
 def find(session: Session, key: Key) -> tuple[str, Answer] | None:
-    """Return fingerprint and answer under a key, None if there is no answer yet."""
+    """Return the fingerprint and the answer under a key, None if there is no answer yet."""
     statement = select(IdempotencyKey).where(IdempotencyKey.owner == key.owner, IdempotencyKey.key == key.value)
     row = session.scalars(statement).one_or_none()
     if row is None or row.fingerprint is None or row.status is None or row.body is None:
@@ -128,20 +127,17 @@ def find(session: Session, key: Key) -> tuple[str, Answer] | None:
 
 
 def forget_expired(session: Session) -> None:
-    """Remove the keys whose time is over; one without an answer stays longer, for a sender who is only slow."""
+    """Delete expired keys; keep a key without an answer longer, for a sender that is only slow."""
     now = database_time(session)
     over = and_(IdempotencyKey.expires_at <= now, IdempotencyKey.status.is_not(None))
     session.execute(delete(IdempotencyKey).where(or_(over, IdempotencyKey.expires_at <= now - KEPT)))
 
 
-def _take(session: Session, lasting: timedelta, wanted: Sequence[tuple[Key, Mapping[str, object]]]) -> set[UUID]:
-    """Insert the rows of keys, or put them in the place of some whose time is over; return the holders of those taken.
-
-    That is one statement, however many there are.
-    """
+def _take(session: Session, lifetime: timedelta, wanted: Sequence[tuple[Key, Mapping[str, object]]]) -> set[UUID]:
+    """Insert keys, or take over expired ones, in one statement; return the holders of the keys taken."""
     now = database_time(session)
     rows = [
-        {"owner": key.owner, "key": key.value, "holder": key.holder, "expires_at": now + lasting, **values}
+        {"owner": key.owner, "key": key.value, "holder": key.holder, "expires_at": now + lifetime, **values}
         for key, values in wanted
     ]
     insert = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert

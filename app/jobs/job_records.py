@@ -1,4 +1,4 @@
-"""Jobs as their owner sees them: made, looked up, listed, cancelled. The caller opens and commits the transaction."""
+"""Jobs from their owner's side: create, look up, list, cancel. The caller opens and commits the transaction."""
 
 import hashlib
 import json
@@ -35,9 +35,9 @@ class CancelOutcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class JobFilters:
-    """Which jobs a list holds; None or empty means any, and every tag must match.
+    """Filters for a list of jobs; None or empty matches any job, and every tag must match.
 
-    Chunks are only in the list of their batch.
+    Chunks appear only in the list of their batch.
     """
 
     status: JobStatus | None = None
@@ -49,7 +49,7 @@ class JobFilters:
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """A job that is asked for: by whom, what is to be computed, under which labels, and the ids of the request."""
+    """A requested job: the caller, the document to compute, its labels, and the ids of the request."""
 
     caller: Caller
     document: Mapping[str, Any]
@@ -68,7 +68,7 @@ class Tag(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A job that waits for a worker, before it is stored; the names are those of `Job`."""
+    """A job before it is stored, with the attribute names of `Job`."""
 
     id: UUID
     owner: str
@@ -96,8 +96,8 @@ class Draft:
 _COLUMNS = tuple(field.name for field in fields(Draft) if field.name != "tags")
 
 
-def draft(asked: Submission, now: datetime) -> Draft:
-    """Return the job of a submission.
+def draft(submission: Submission, now: datetime) -> Draft:
+    """Return the job for a submission.
 
     Raises
     ------
@@ -106,20 +106,20 @@ def draft(asked: Submission, now: datetime) -> Draft:
     """
     return Draft(
         id=uuid7(),
-        owner=asked.caller.owner,
+        owner=submission.caller.owner,
         created_at=now,
-        name=asked.name,
-        asset_id=asked.asset_id,
-        document=asked.document,
-        input_hash=input_hash(asked.document),
-        request_id=asked.ids.request_id,
-        trace_parent=asked.ids.trace_parent,
-        tags=[Tag(*tag) for tag in sorted(asked.tags.items())],
+        name=submission.name,
+        asset_id=submission.asset_id,
+        document=submission.document,
+        input_hash=input_hash(submission.document),
+        request_id=submission.ids.request_id,
+        trace_parent=submission.ids.trace_parent,
+        tags=[Tag(*tag) for tag in sorted(submission.tags.items())],
     )
 
 
 def insert(session: Session, made: Sequence[tuple[Caller, Draft]]) -> None:
-    """Store jobs with their tags, their first event and the record of who made them: a statement a table.
+    """Insert jobs with their tags, first events and audit records, one statement for each table.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def insert(session: Session, made: Sequence[tuple[Caller, Draft]]) -> None:
 
 
 def input_hash(document: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of what a document asks, whatever the order of its fields and the labels of its line.
+    """Return the SHA-256 of a request document, independent of the order of fields and of the line's labels.
 
     Raises
     ------
@@ -146,12 +146,12 @@ def input_hash(document: Mapping[str, Any]) -> str:
         If the document holds NaN or an infinity.
     """
     line = {name: value for name, value in document.get("line", {}).items() if name not in LABELS}
-    asked = {**document, "line": line} if line else document
-    return hashlib.sha256(canonical(asked).encode()).hexdigest()
+    unlabelled = {**document, "line": line} if line else document
+    return hashlib.sha256(canonical(unlabelled).encode()).hexdigest()
 
 
 def canonical(document: Mapping[str, Any]) -> str:
-    """Return a document as the one text that all its forms have.
+    """Return the canonical JSON text of a document: equal documents have equal texts.
 
     Raises
     ------
@@ -162,7 +162,7 @@ def canonical(document: Mapping[str, Any]) -> str:
 
 
 def get(session: Session, owner: str, job_id: UUID) -> Job | None:
-    """Return a job with its tags, or None if the owner has none of that id."""
+    """Return a job with its tags, or None if the owner has no job of that id."""
     return session.scalars(_of(owner, job_id)).one_or_none()
 
 
@@ -178,7 +178,7 @@ def look_up(sessions: sessionmaker[Session], wanted: Sequence[Owned]) -> list[Jo
 def page(
     session: Session, owner: str, filters: JobFilters, after: tuple[datetime, UUID] | None, limit: int
 ) -> list[Job]:
-    """Return the owner's newest jobs that pass the filters, or those after the (created_at, id) of another."""
+    """Return the owner's newest jobs that match the filters, or those after the (created_at, id) of another job."""
     statement = select(Job).where(Job.owner == owner, *_conditions(filters))
     if after is not None:
         statement = statement.where(tuple_(Job.created_at, Job.id) < after)
@@ -188,9 +188,9 @@ def page(
 def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
     """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows.
 
-    A chunk that is removed takes its lines out of its batch.
+    Removing a chunk removes its lines from the batch.
     """
-    # The row is locked, so that a claim or an end of the job cannot slip in between the look and the change.
+    # Lock the row, so that no worker claims or finishes the job between the query and the change.
     job = session.scalars(_of(caller.owner, job_id).with_for_update()).one_or_none()
     if job is None:
         return CancelOutcome.MISSING
@@ -213,7 +213,7 @@ def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
 
 
 def record(session: Session, job_id: UUID, kind: JobEventKind, *, attempt: int = 0, detail: str | None = None) -> None:
-    """Add what happened to a job to its events, in the transaction in which it happens."""
+    """Add an event to a job's history, in the transaction in which it happens."""
     session.add(JobEvent(job_id=job_id, at=database_time(session), kind=kind, attempt=attempt, detail=detail))
 
 

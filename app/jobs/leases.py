@@ -1,9 +1,9 @@
-"""Jobs as workers see them: claimed under a lease, kept alive, ended once. The caller commits the transaction.
+"""Jobs from the worker's side: claim under a lease, keep alive, finish once. The caller commits the transaction.
 
-A chunk of a batch is a job like any other, whose points are lines.
+A chunk of a batch is a job whose points are lines.
 
-Every change by a worker is guarded by the number of its attempt: once a job was released and claimed anew, whatever
-the earlier worker still says about it finds no row and is dropped, with its results.
+Every change by a worker is guarded by its attempt number. Once a job is released and claimed again, writes of the
+earlier worker match no row, and its results are dropped.
 """
 
 from collections.abc import Iterator, Sequence
@@ -31,7 +31,7 @@ _JOBS_A_SWEEP = 200
 
 
 class Beat(StrEnum):
-    """What a heartbeat learns: go on, stop because a cancel was asked for, or stop because the job is another's now."""
+    """The answer to a heartbeat: go on, stop for a requested cancel, or stop because another worker has the job."""
 
     GO_ON = "go_on"
     CANCEL = "cancel"
@@ -40,7 +40,7 @@ class Beat(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """The right to work on a job: its attempt number fences off every earlier worker; its ids go into the logs."""
+    """The right to work on a job: the attempt number fences off earlier workers, and the ids go into the logs."""
 
     job_id: UUID
     attempt: int
@@ -53,14 +53,14 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """Why a job failed: the kind and a sentence for its owner."""
+    """Why a job failed: the kind, and a sentence for its owner."""
 
     kind: FailureKind
     detail: str
 
 
 def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> Claim | None:
-    """Take an accepted job by compare-and-set; None if it is running, ended or gone, as after a second delivery."""
+    """Claim an accepted job by compare-and-set; None if it is running, ended or gone, as after a repeated message."""
     now = database_time(session)
     statement = (
         update(Job)
@@ -87,7 +87,7 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
 
 
 def heartbeat(session: Session, held: Claim, lease_seconds: float, progress: float, step: str) -> Beat:
-    """Renew the lease, write how far the job is, and tell whether to go on."""
+    """Renew the lease, store the progress, and tell whether to go on."""
     end = database_time(session) + timedelta(seconds=lease_seconds)
     statement = (
         update(Job)
@@ -103,27 +103,27 @@ def heartbeat(session: Session, held: Claim, lease_seconds: float, progress: flo
 
 
 def finish(session: Session, held: Claim, points: Sequence["PointResult"]) -> bool:
-    """Store the results and end the job as successful; False, with nothing stored, if the job is another's now."""
+    """Store the results and end the job as successful; return False and store nothing if another worker has the job."""
     version = points[-1].engine_version if points else None
     return _end(session, held, points, {"status": JobStatus.SUCCESSFUL, "progress": 1.0, "engine_version": version})
 
 
 def fail(session: Session, held: Claim, failure: Failure, points: Sequence["PointResult"] = ()) -> bool:
-    """End the job as failed and keep the rows that there are; False, with nothing stored, if it is another's now."""
+    """End the job as failed and keep its finished points; return False and store nothing if another worker has it."""
     version = points[-1].engine_version if points else None
     return _end(session, held, points, {**_failed(failure), "engine_version": version}, failure.detail)
 
 
 def dismiss(session: Session, held: Claim) -> bool:
-    """End a running job whose cancel was asked for; False if it is another's now."""
+    """End a running job whose cancel was requested; return False if another worker has the job."""
     return _end(session, held, (), {"status": JobStatus.DISMISSED})
 
 
 def release_expired(session: Session, settings: Settings, owner: str | None = None) -> int:
-    """Give back the jobs whose lease ran out, or all of an owner that is known to be dead; return how many there were.
+    """Release jobs whose lease expired, or all jobs of an owner that is known to be dead; return their number.
 
-    A job goes back to the queue, undispatched, until its attempts are used up: then it fails as lost with its workers.
-    One whose cancel was asked for is dismissed, and one that ran past the hard time limit fails by it.
+    A released job returns to the queue until its attempts are used up; then it fails because its workers were lost. A
+    job with a requested cancel is dismissed, and one that exceeded the hard time limit fails for that reason.
     """
     now = database_time(session)
     lost = Job.lease_owner == owner if owner else Job.lease_expires_at <= now
@@ -137,7 +137,7 @@ def release_expired(session: Session, settings: Settings, owner: str | None = No
 
 
 def holds_jobs(session: Session, owner: str) -> bool:
-    """Tell whether an owner has running jobs."""
+    """Tell whether a worker has running jobs."""
     held = select(Job.id).where(Job.status == JobStatus.RUNNING, Job.lease_owner == owner)
     return session.execute(held.limit(1)).first() is not None
 
@@ -145,10 +145,10 @@ def holds_jobs(session: Session, owner: str) -> bool:
 def take_undispatched(
     session: Session, settings: Settings, *, queue_is_empty: bool, chunks: bool = False
 ) -> list[UUID]:
-    """Mark jobs, or chunks, that wait for a message as dispatched, and return their ids for sending after the commit.
+    """Mark jobs, or chunks, that need a message as dispatched, and return their ids to send after the commit.
 
-    The oldest come first. These are the jobs never sent (after a moment's grace for the sender that made them), those
-    released, and those whose message must be lost: sent a while ago, still unclaimed, and the queue is empty.
+    The oldest come first. They are jobs never sent (after a short grace for the process that created them), released
+    jobs, and jobs whose message must be lost: sent a while ago, still unclaimed, and the queue is empty.
     """
     now = database_time(session)
     never_sent = and_(
@@ -166,12 +166,12 @@ def take_undispatched(
 
 
 def mark_dispatched(session: Session, job_ids: Sequence[UUID]) -> None:
-    """Note that these jobs' messages are with the broker."""
+    """Record that the broker has the messages of these jobs."""
     _set_dispatched(session, job_ids, database_moment(session))
 
 
 def mark_undispatched(session: Session, job_ids: Sequence[UUID]) -> None:
-    """Note that these jobs' messages could not be sent, for the next sweep."""
+    """Record that the messages of these jobs could not be sent, for the next sweep."""
     _set_dispatched(session, job_ids, None)
 
 
@@ -183,7 +183,7 @@ def _set_dispatched(
 
 
 def time_limit_sentence(settings: Settings) -> str:
-    """Say which limit a job ran into."""
+    """Return the sentence that names the time limit."""
     return f"The job ran longer than the limit of {settings.soft_time_limit_seconds:g} s."
 
 
@@ -205,7 +205,9 @@ def _end(
     detail: str | None = None,
 ) -> bool:
     if changes["status"] is not JobStatus.DISMISSED:
-        changes["failed_lines"] = Job.lines - sum(point.failure is None for point in points)  # null but for a chunk
+        changes["failed_lines"] = Job.lines - sum(
+            point.failure is None for point in points
+        )  # null unless it is a chunk
         changes["reused_lines"] = sum(point.reused for point in points) if held.batch_id is not None else None
     now = database_time(session)
     over = {"finished_at": now, "lease_owner": None, "lease_expires_at": None, "step": ""}
@@ -226,7 +228,7 @@ def _count_end(session: Session, held: Claim, changes: dict[str, Any], now: date
 
 
 def _release(session: Session, job: Job, settings: Settings, now: datetime) -> None:
-    """Give back one locked job."""
+    """Release one locked job."""
     kind, failure = _verdict(job, settings, now)
     job.lease_owner = job.lease_expires_at = None
     job.step = ""
@@ -248,6 +250,6 @@ def _verdict(job: Job, settings: Settings, now: datetime) -> tuple[JobEventKind,
     if job.started_at is not None and job.started_at + limit <= now:
         return JobEventKind.FAILED, Failure(FailureKind.TIME_LIMIT, time_limit_sentence(settings))
     if job.attempt >= settings.max_attempts:
-        sentence = f"The worker was lost in each of {job.attempt} attempts, so the job was given up."
+        sentence = f"The service gave up the job because its worker was lost in each of {job.attempt} attempts."
         return JobEventKind.FAILED, Failure(FailureKind.WORKER_LOST, sentence)
     return JobEventKind.RELEASED, None

@@ -1,8 +1,8 @@
-"""What is stored already is not computed again: results of the same input and engine are copied for the same owner.
+"""Reuse stored results: copy results of the same input and engine version to the owner's new job.
 
-They are copied rather than referred to, so that each job keeps its own when another is removed. A job is looked up as
-it is posted, the lines of a batch as a worker takes their chunk. A line by itself is found by what is asked of it,
-whether it was a job or in a batch; a study or a search for places as a whole, by its job.
+Copies stay when another job is removed. A job is looked up when it is posted, the lines of a batch when a worker takes
+their chunk. A single line is found by its input, whether it was a job or part of a batch. A study or a search for
+placements is found as a whole, by its job.
 """
 
 import hashlib
@@ -27,40 +27,42 @@ _LINE_ALONE = {"line", "analysis"}
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Results that are stored: those of a job, or those of one line of a batch under its number in a chunk."""
+    """Stored results: those of a job, or of one line of a batch by its number in a chunk."""
 
     job_id: UUID
     line_number: int | None = None
 
 
-def find(session: Session, asked: Sequence[tuple[str, Mapping[str, Any]]], engine_version: str) -> list[Source | None]:
-    """Return for each owner and document stored results of the same input, labels aside, by this engine version.
+def find(
+    session: Session, requests: Sequence[tuple[str, Mapping[str, Any]]], engine_version: str
+) -> list[Source | None]:
+    """Return for each owner and document the stored results of the same input by this engine version, labels ignored.
 
-    That is one statement for many lines, and one more for each that is found; studies and placements are one each.
-    What is to be copied is locked until the end of the transaction, so that nobody removes it.
+    Many lines cost one query, and one more for each that is found; each study or placement costs one. The rows to copy
+    are locked until the transaction ends, so that nobody removes them.
     """
-    hashes = [hash_of(owner, document) for owner, document in asked]
+    hashes = [hash_of(owner, document) for owner, document in requests]
     wanted = {line_hash for line_hash in hashes if line_hash is not None}
     known = _known(session, wanted, engine_version) if len(wanted) > 1 else wanted
     lines = {line_hash: _found_line(session, line_hash, engine_version) for line_hash in known}
     return [
         _found_whole(session, owner, document, engine_version) if line_hash is None else lines.get(line_hash)
-        for line_hash, (owner, document) in zip(hashes, asked, strict=True)
+        for line_hash, (owner, document) in zip(hashes, requests, strict=True)
     ]
 
 
 def _known(session: Session, hashes: Collection[str], engine_version: str) -> Collection[str]:
-    """Return those of these hashes under which something is stored; SQLite, in this process, is asked one by one."""
+    """Return the hashes with stored results; on SQLite, which runs in this process, return all and query one by one."""
     if session.get_bind().dialect.name != "postgresql":
         return hashes
     listed = bindparam("hashes", list(hashes), type_=ARRAY(String))
-    each = func.unnest(listed).column_valued("asked")
+    each = func.unnest(listed).column_valued("input_hash")
     there = exists().where(PointRow.input_hash == each, *_usable(engine_version))
     return set(session.scalars(select(each).where(there)))
 
 
 def _found_line(session: Session, line_hash: str, engine_version: str) -> Source | None:
-    # Whichever is found first: to ask for an order would lead the database from the index on the input to another.
+    # Any match will do: an ORDER BY would make the database choose another index than the one on the input.
     statement = select(PointRow.job_id, PointRow.point, PointRow.batch_id).where(
         PointRow.input_hash == line_hash, *_usable(engine_version)
     )
@@ -77,7 +79,7 @@ def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engi
 
 
 def adopt(job: Draft, source: Source, engine_version: str) -> Draft:
-    """Return a job that ends with the results of another, or of a line; `copy` gives it those once it is stored."""
+    """Return a job that ends with stored results; after it is stored, `copy` copies the results to it."""
     return replace(
         job,
         status=JobStatus.SUCCESSFUL,
@@ -90,31 +92,31 @@ def adopt(job: Draft, source: Source, engine_version: str) -> Draft:
 
 
 def copy(session: Session, job_id: UUID, source: Source) -> None:
-    """Give a job that has adopted results their copy, and note its end."""
+    """Copy stored results to a job that adopted them, and record its end."""
     table = cast(Table, PointRow.__table__)
-    copied, said = [table.c.job_id == source.job_id], f"results of job {source.job_id}"
+    copied, detail = [table.c.job_id == source.job_id], f"results of job {source.job_id}"
     own: dict[str, ColumnElement[Any]] = {"job_id": literal(job_id, table.c.job_id.type)}
     if source.line_number is not None:
         copied.append(table.c.point == source.line_number)
-        said = f"results of line {source.line_number} of a batch, in its chunk {source.job_id}"
+        detail = f"results of line {source.line_number} of a batch, in its chunk {source.job_id}"
         alone: dict[str, Any] = {"point": 0, "axes": {}, "batch_id": None}
         own |= {name: literal(value, table.c[name].type) for name, value in alone.items()}
     others = {column.name: column for column in table.columns}
     columns = {**others, **own}
     session.execute(insert(table).from_select(list(columns), select(*columns.values()).where(*copied)))
-    job_records.record(session, job_id, JobEventKind.SUCCESSFUL, detail=said)
+    job_records.record(session, job_id, JobEventKind.SUCCESSFUL, detail=detail)
     counters.add_end(session, JobStatus.SUCCESSFUL, chunk=False)
 
 
 def hash_of(owner: str, document: Mapping[str, Any]) -> str | None:
-    """Return what the line of a request is found by; None if more is asked than the analysis of one line."""
+    """Return the hash by which the line of a request is found; None if the request has a study or a placement."""
     if document.keys() != _LINE_ALONE:
         return None
     return _hashing(owner, document["analysis"])(document["line"])
 
 
 def hashes(owner: str, analysis: Mapping[str, Any], lines: Sequence[NumberedLine]) -> dict[int, str]:
-    """Return what each line of an owner is found by, by its number: what is asked of it, labels aside."""
+    """Return the hash of each line's input by the number of the line, labels ignored."""
     of = _hashing(owner, analysis)
     return {line.number: of(line.document) for line in lines}
 
@@ -123,9 +125,9 @@ def _hashing(owner: str, analysis: Mapping[str, Any]) -> Callable[[Mapping[str, 
     common = hashlib.sha256(orjson.dumps([owner, analysis], option=orjson.OPT_SORT_KEYS))
 
     def of(line: Mapping[str, Any]) -> str:
-        asked = {name: value for name, value in line.items() if name not in job_records.LABELS}
+        unlabelled = {name: value for name, value in line.items() if name not in job_records.LABELS}
         whole = common.copy()
-        whole.update(orjson.dumps(asked, option=orjson.OPT_SORT_KEYS))
+        whole.update(orjson.dumps(unlabelled, option=orjson.OPT_SORT_KEYS))
         return whole.hexdigest()
 
     return of
@@ -136,9 +138,9 @@ def _usable(engine_version: str) -> tuple[ColumnElement[bool], ...]:
 
 
 def stored(session: Session, wanted: Mapping[int, str], engine_version: str) -> list[PointResult]:
-    """Return the results of those of these lines that this version of the engine has computed, under their numbers.
+    """Return the stored results of these lines by this engine version, under the lines' numbers.
 
-    A line that is asked for again and again has as many copies, of which one is read.
+    A line computed several times has several copies; one of them is read.
     """
     same = PointRow.input_hash.in_(set(wanted.values()))
     place = func.row_number().over(partition_by=PointRow.input_hash).label("place")

@@ -16,7 +16,7 @@ from app.tables import ENDED, Batch, Job, JobEvent, JobEventKind, JobStatus
 
 @dataclass(frozen=True, slots=True)
 class Happening:
-    """One thing that happened to a job."""
+    """One event in a job's history."""
 
     id: int
     at: datetime
@@ -38,7 +38,7 @@ class JobSeen:
 
     @property
     def ended(self) -> bool:
-        """Tell whether nothing will happen to it any more."""
+        """Tell whether the state is final."""
         return self.status in ENDED
 
 
@@ -51,7 +51,7 @@ class BatchSeen:
 
     @property
     def ended(self) -> bool:
-        """Tell whether nothing runs or waits; failed lines may be resubmitted."""
+        """Tell whether no line waits or runs; failed lines may still be resubmitted."""
         return self.counts.status in ENDED
 
 
@@ -79,7 +79,7 @@ def _stage(job: JobSeen | None) -> tuple[object, ...]:
 
 
 def _of(before: JobSeen | None, events: tuple[Happening, ...] | None) -> tuple[Happening, ...]:
-    """Return the events of a job as they were read, else those from before."""
+    """Return a job's events as just read, otherwise the earlier ones."""
     return events if events is not None else before.events if before is not None else ()
 
 

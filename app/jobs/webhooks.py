@@ -1,4 +1,4 @@
-"""Messages to receivers when jobs and batches end (Standard Webhooks), with a log. The caller commits."""
+"""Webhooks: signed messages (Standard Webhooks) when jobs and batches end, and their log. The caller commits."""
 
 import base64
 import hashlib
@@ -25,14 +25,14 @@ from app.storage.counters import CounterName
 from app.storage.database import database_time
 from app.tables import ENDED, Batch, DeliveryState, Job, WebhookDelivery
 
-_ROWS_A_LOOK = 200
+_ROWS_A_QUERY = 200
 _GROWTH = 5.0
 _GONE = 410
 GIVEN_UP = "given_up"
 
 
 class Outcome(StrEnum):
-    """What comes of an attempt: the receiver takes it, answers something else, or does not answer."""
+    """The outcome of an attempt: the receiver accepts, refuses, or does not answer."""
 
     DELIVERED = "delivered"
     REFUSED = "refused"
@@ -41,19 +41,19 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """What came of sending once: the status of the answer, or why there is none."""
+    """One attempt to send a message: the status of the answer, or why there is none."""
 
     status_code: int | None
     error: str | None = None
 
     @property
     def arrived(self) -> bool:
-        """Tell whether the receiver has taken it."""
+        """Tell whether the receiver accepted the message."""
         return self.outcome is Outcome.DELIVERED
 
     @property
     def outcome(self) -> "Outcome":
-        """Return the kind of the answer."""
+        """Return the outcome of the attempt."""
         if self.status_code is None:
             return Outcome.NO_ANSWER
         return Outcome.DELIVERED if 200 <= self.status_code < 300 else Outcome.REFUSED
@@ -61,7 +61,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """What is to be sent, and where."""
+    """A message to send, and its receiver."""
 
     id: UUID
     owner: str
@@ -72,7 +72,7 @@ class Message:
 
 
 class Share:
-    """How many messages are under way, of all, of each owner and to each receiver, and how many may be."""
+    """Counts messages in progress, in total, by owner and by receiver, and limits them."""
 
     def __init__(self, most: int, an_owner: int, a_receiver: int) -> None:
         """Take the limits."""
@@ -82,16 +82,16 @@ class Share:
 
     @property
     def room(self) -> int:
-        """Return how many more may be under way."""
+        """Return how many more messages may be in progress."""
         return self._most - self._owners.total()
 
     def full(self) -> tuple[list[str], list[str]]:
-        """Return the owners and the receivers that may have no more."""
+        """Return the owners and the receivers that have reached their limit."""
         owners = [owner for owner, count in self._owners.items() if count >= self._an_owner]
         return owners, [receiver for receiver, count in self._receivers.items() if count >= self._a_receiver]
 
     def add(self, owner: str, receiver: str) -> bool:
-        """Count a message unless its owner or its receiver has enough; tell which."""
+        """Count a message and return True, or return False if its owner or its receiver has reached the limit."""
         if self._owners[owner] >= self._an_owner or self._receivers[receiver] >= self._a_receiver:
             return False
         self._owners[owner] += 1
@@ -99,32 +99,32 @@ class Share:
         return True
 
     def copy(self) -> "Share":
-        """Return another that begins with the same counts."""
+        """Return a copy with the same counts."""
         other = Share(self._most, self._an_owner, self._a_receiver)
         other._owners.update(self._owners)
         other._receivers.update(self._receivers)
         return other
 
     def remove(self, owner: str, receiver: str) -> None:
-        """Count a message no longer."""
+        """Stop counting a message."""
         self._owners[owner] -= 1
         self._receivers[receiver] -= 1
 
 
 def secret(settings: Settings, owner: str) -> str:
-    """Return the secret of an owner's webhooks, which follows from the operator's secret (`signing_secret`).
+    """Return the secret of an owner's webhooks, derived from the operator's `signing_secret`.
 
     Raises
     ------
     OSError
-        If the operator's secret can be neither read nor made.
+        If the operator's secret can be neither read nor written.
     """
     key = hmac.digest(signing_key(settings), b"webhooks\0" + owner.encode(), hashlib.sha256)
     return "whsec_" + base64.b64encode(key).decode()
 
 
 def signed_headers(settings: Settings, message: Message, moment: datetime) -> dict[str, str]:
-    """Return the headers by which a receiver knows a message and its sender."""
+    """Return the headers by which a receiver verifies a message and its sender."""
     name = f"msg_{message.id.hex}"
     return {
         "Content-Type": "application/json",
@@ -138,7 +138,7 @@ def signed_headers(settings: Settings, message: Message, moment: datetime) -> di
 def register(
     session: Session, owner: str, url: str, *, job_id: UUID | None = None, batch_id: UUID | None = None
 ) -> None:
-    """Note whom to tell when a job or a batch ends."""
+    """Store a webhook to send when a job or a batch ends."""
     place = httpx.URL(url)
     session.add(
         WebhookDelivery(
@@ -163,7 +163,7 @@ def of(session: Session, *, job_id: UUID | None = None, batch_id: UUID | None = 
 
 
 def send_again(session: Session, deliveries: Sequence[WebhookDelivery]) -> None:
-    """Let messages whose time has come be sent once more, with all their attempts before them; the log stays."""
+    """Queue messages that were due for another round of attempts; keep their log."""
     for delivery in deliveries:
         if delivery.payload is not None:
             delivery.state, delivery.attempts = DeliveryState.PENDING.value, 0
@@ -171,15 +171,15 @@ def send_again(session: Session, deliveries: Sequence[WebhookDelivery]) -> None:
 
 
 def enlist(session: Session) -> int:
-    """Write the messages of the jobs and batches that have ended, and return how many there are."""
+    """Write the messages of jobs and batches that have ended, and return their number."""
     waiting = select(WebhookDelivery).where(WebhookDelivery.state == DeliveryState.WAITING.value)
-    ended = waiting.join(Job, Job.id == WebhookDelivery.job_id).where(Job.status.in_(ENDED)).limit(_ROWS_A_LOOK)
+    ended = waiting.join(Job, Job.id == WebhookDelivery.job_id).where(Job.status.in_(ENDED)).limit(_ROWS_A_QUERY)
     found = list(session.scalars(ended.with_for_update(of=WebhookDelivery, skip_locked=True)))
     for delivery in found:
         job = session.get_one(Job, delivery.job_id)
         _write(session, delivery, "job", _of_job(job))
-    whole = waiting.join(Batch, Batch.id == WebhookDelivery.batch_id).where(Batch.received_at.is_not(None))
-    for delivery in session.scalars(whole.with_for_update(of=WebhookDelivery, skip_locked=True)).all():
+    received = waiting.join(Batch, Batch.id == WebhookDelivery.batch_id).where(Batch.received_at.is_not(None))
+    for delivery in session.scalars(received.with_for_update(of=WebhookDelivery, skip_locked=True)).all():
         assert delivery.batch_id is not None
         counts = batch_progress.counts(session, [delivery.batch_id])[delivery.batch_id]
         if counts.status in ENDED:
@@ -192,9 +192,9 @@ def enlist(session: Session) -> int:
 
 
 def take_due(session: Session, share: Share, lease_seconds: float) -> list[Message]:
-    """Take messages whose time has come, the oldest first, as far as the share allows beside what is under way.
+    """Take due messages, oldest first, within the limits that `share` sets together with those in progress.
 
-    When the lease is over, others take what was not noted by then.
+    When the lease ends, other processes take the messages whose outcome was not recorded.
     """
     now, taken, count = database_time(session), [], share.copy()
     while count.room > 0 and (found := _oldest_due(session, now, count)):
@@ -207,7 +207,7 @@ def take_due(session: Session, share: Share, lease_seconds: float) -> list[Messa
 
 
 def _oldest_due(session: Session, now: datetime, share: Share) -> Sequence[WebhookDelivery]:
-    """Return the oldest messages of those that may be sent: each look passes over who has had enough by the last."""
+    """Return the oldest due messages, skipping owners and receivers that have reached their limit."""
     owners, receivers = share.full()
     due = WebhookDelivery.state == DeliveryState.PENDING.value, WebhookDelivery.next_attempt_at <= now
     free = WebhookDelivery.owner.not_in(owners), WebhookDelivery.receiver.not_in(receivers)
@@ -216,7 +216,7 @@ def _oldest_due(session: Session, now: datetime, share: Share) -> Sequence[Webho
 
 
 def note(session: Session, settings: Settings, message: Message, attempt: Attempt) -> None:
-    """Write what came of an attempt into the log, say when the next one is due, if there is one, and count it."""
+    """Log an attempt, count it, and schedule the next one if there is one."""
     counters.add(session, CounterName.WEBHOOKS, attempt.outcome.value)
     delivery = session.get(WebhookDelivery, message.id, with_for_update=True)
     if delivery is None:  # removed with its job

@@ -1,1 +1,1 @@
-"""Data that ships with the service: conductors, the source's lines and its studies."""
+"""Data that ships with the service: conductors, and the lines and studies of the source."""

@@ -1,4 +1,4 @@
-"""The catalogue of bare conductors: published figures, each row with its source, as they were printed (app/data)."""
+"""The catalogue of bare conductors: published figures as printed, each row with its source (app/data)."""
 
 import csv
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ _TEXTS = ("name", "designation", "type", "stranding")
 
 
 def search(text: str) -> list[dict[str, Any]]:
-    """Return the conductors whose name, designation, type or stranding hold every word of a text, in any case."""
+    """Return the conductors whose name, designation, type or stranding contain every word of a text, ignoring case."""
     words = text.casefold().split()
     return [row for row in _rows() if all(word in _searched(row) for word in words)]
 

@@ -12,8 +12,8 @@ _ARRANGEMENTS: dict[str, tuple[str, dict[str, Any]]] = {
 
 EXAMPLE_NAMES = tuple(_ARRANGEMENTS)
 
-# Young's modulus times the iced area: with the bare area the bundles' torsional frequencies of Table 2 are missed by
-# 3 to 7 %, with this one all are met (theory.md section 9).
+# Young's modulus times the iced area. It reproduces the bundles' torsional frequencies of Table 2; the bare area is
+# off by 3 to 7 % (theory.md section 9).
 _AXIAL_RIGIDITY_N = 4.78033e10 * 594.48e-6
 
 
@@ -44,7 +44,7 @@ def example(name: str, static_angle_deg: int = 40) -> dict[str, Any]:
     Raises
     ------
     KeyError
-        If there is no such example, or no coefficients at this angle.
+        If there is no such example, or it has no coefficients at this angle.
     """
     title, bundle = _ARRANGEMENTS[name]
     return {
@@ -71,7 +71,7 @@ def example(name: str, static_angle_deg: int = 40) -> dict[str, Any]:
 
 
 def _ice(static_angle_deg: int) -> dict[str, Any]:
-    """Turn the mass of the ice with its shape: Table 1 gives its place at 40 degrees only (theory.md section 9)."""
+    """Rotate the ice mass with its shape; Table 1 gives the mass centre at 40 degrees only (theory.md section 9)."""
     turn = math.radians(static_angle_deg - 40)
     up, downwind = _ECCENTRICITY_M
     return {

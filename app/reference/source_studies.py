@@ -14,7 +14,7 @@ _LENGTH = "span.length_m"
 
 
 def _damping_axis(lowest: float, highest: float) -> dict[str, Any]:
-    """Vary both translational damping ratios, from one share of the source's to another, in 15 steps."""
+    """Vary both translational damping ratios in 15 steps between two multiples of the source's ratio."""
     shares = (lowest + (highest - lowest) * i / 14 for i in range(15))
     values = [round(_DAMPING_RATIO * share, 9) for share in shares]
     return {"parameter": "damping.vertical_ratio", "also": ["damping.horizontal_ratio"], "values": values}
@@ -22,7 +22,7 @@ def _damping_axis(lowest: float, highest: float) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class _Preset:
-    """What a study asks: axes of the line, angle of the ice [deg], numbers of loops and wind speeds [m/s]."""
+    """What a study varies: axes of the line, angle of the ice [deg], numbers of loops and wind speeds [m/s]."""
 
     axes: list[dict[str, Any]] = field(default_factory=list)
     static_angle_deg: int = 40
@@ -49,9 +49,9 @@ STUDY_NAMES = tuple(_PRESETS)
 
 
 def study_request(name: str, line: str) -> dict[str, Any]:
-    """Return the request document of one of `STUDY_NAMES` on one of the source's lines; the hybrid model answers it.
+    """Return the request document of one of `STUDY_NAMES` for one of the source's lines, with the hybrid model only.
 
-    The studies over wind speed (Figures 6 and 7) vary no field of the line: their wind speeds stand in the analysis.
+    The studies over wind speed (Figures 6 and 7) vary no field of the line; the analysis lists their wind speeds.
 
     Raises
     ------

@@ -138,7 +138,9 @@ _FAULTS = {
         Fault("/line/span/length_m", "greater_than_equal", "input should be greater than or equal to 1"),
         Fault("/line/conductor/colour", "unknown_field", "unknown field"),
     ],
-    ProblemKind.INVALID_PARAMETER: [Fault("/query/cursor", "invalid", "the cursor is not one that this service issued")],
+    ProblemKind.INVALID_PARAMETER: [
+        Fault("/query/cursor", "invalid", "the cursor is not one that this service issued")
+    ],
 }
 
 UNCHANGED: dict[int | str, dict[str, Any]] = {

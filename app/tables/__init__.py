@@ -1,4 +1,4 @@
-"""The tables: jobs with tags and events, batches, results, keys, audit, workers. One schema for both databases."""
+"""The SQL tables: jobs with tags and events, batches, results, keys, audit, workers. One schema for both databases."""
 
 from app.tables.access import ApiKey, AuditAction, AuditEvent
 from app.tables.base import ENDED, Base, FailureKind, JobEventKind, JobStatus, UtcDateTime

@@ -1,4 +1,4 @@
-"""API keys, and the record of who changed what."""
+"""API keys, and the audit record of who changed what."""
 
 from datetime import datetime
 from enum import StrEnum
@@ -11,7 +11,7 @@ from app.tables.base import Base
 
 
 class AuditAction(StrEnum):
-    """What is recorded."""
+    """The actions that the audit record holds."""
 
     KEY_CREATED = "key_created"
     KEY_REVOKED = "key_revoked"
@@ -26,12 +26,12 @@ class AuditAction(StrEnum):
     PRUNED = "pruned"
 
 
-# Words without a CHECK constraint: a new action is no reason to make the largest table of SQLite anew.
+# No CHECK constraint: a new action would force SQLite to rebuild its largest table.
 _ACTION = Enum(AuditAction, native_enum=False, length=32, values_callable=lambda kind: [word.value for word in kind])
 
 
 class ApiKey(Base):
-    """A key by the SHA-256 of its text, which is kept nowhere; `prefix` is what may be shown of it."""
+    """A key, stored as the SHA-256 of its text; `prefix` is the part that may be shown."""
 
     __tablename__ = "api_keys"
 
@@ -48,9 +48,9 @@ class ApiKey(Base):
 
 
 class AuditEvent(Base):
-    """One change and who made it; it outlives what was changed and the key, and so refers to neither.
+    """One change and who made it. It remains when its subject or the key is deleted, so it references neither.
 
-    The ids are in the order of time. key_id is null for the operator and for the caller of a service without keys.
+    The ids follow the order of time. key_id is null for the operator and for a caller without a key.
     """
 
     __tablename__ = "audit_events"

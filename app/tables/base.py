@@ -1,4 +1,4 @@
-"""What all tables share: the words of their states, moments in UTC, named constraints."""
+"""What all tables share: state names, UTC times, named constraints."""
 
 from datetime import UTC, datetime
 from enum import StrEnum
@@ -24,7 +24,7 @@ ENDED = frozenset({JobStatus.SUCCESSFUL, JobStatus.FAILED, JobStatus.DISMISSED})
 
 
 class FailureKind(StrEnum):
-    """Whose fault a failure is: the first three are of the input or the model, the others of the service."""
+    """Kinds of failure: the first three come from the input or the model, the others from the service."""
 
     INPUT = "input"
     NO_CONVERGENCE = "no_convergence"
@@ -34,7 +34,7 @@ class FailureKind(StrEnum):
 
 
 class JobEventKind(StrEnum):
-    """What can happen to a job."""
+    """Kinds of events in a job's history."""
 
     ACCEPTED = "accepted"
     RUNNING = "running"
@@ -46,30 +46,30 @@ class JobEventKind(StrEnum):
 
 
 class UtcDateTime(TypeDecorator[datetime]):
-    """A moment in UTC: aware in Python on both databases, though SQLite keeps no time zone."""
+    """A time in UTC, timezone-aware in Python on both databases, though SQLite stores no time zone."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """Turn an aware moment into UTC.
+        """Convert an aware time to UTC.
 
         Raises
         ------
         ValueError
-            If the moment is naive.
+            If the time is naive.
         """
         if value is not None and value.tzinfo is None:
-            raise ValueError(f"a moment needs a time zone, got {value!r}")
+            raise ValueError(f"a time needs a time zone, got {value!r}")
         return value and value.astimezone(UTC)
 
     def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """Give the moment its time zone."""
+        """Attach the time zone."""
         return value and (value.astimezone(UTC) if value.tzinfo else value.replace(tzinfo=UTC))
 
 
 def _words(kind: type[StrEnum], name: str) -> Enum:
-    """Make a column type of an enum's words with a CHECK constraint of this name."""
+    """Return a column type for an enum's words, with a CHECK constraint of this name."""
     words = [member.value for member in kind]
     return Enum(
         kind, name=name, native_enum=False, create_constraint=True, length=32, values_callable=lambda _: list(words)
@@ -77,7 +77,7 @@ def _words(kind: type[StrEnum], name: str) -> Enum:
 
 
 class Base(DeclarativeBase):
-    """Base of all tables; constraints have names, so that migrations can speak of them on both databases."""
+    """Base of all tables; constraints have names, so that migrations can refer to them on both databases."""
 
     metadata = MetaData(
         naming_convention={
@@ -88,7 +88,7 @@ class Base(DeclarativeBase):
             "uq": "uq_%(table_name)s_%(column_0_N_name)s",
         }
     )
-    type_annotation_map = {  # noqa: RUF012 - SQLAlchemy's own way of declaring it
+    type_annotation_map = {  # noqa: RUF012 - SQLAlchemy expects a class attribute
         datetime: UtcDateTime,
         float: Double,
         int: Integer,

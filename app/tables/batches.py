@@ -11,9 +11,9 @@ from app.tables.base import Base
 
 
 class Batch(Base):
-    """Many lines under one analysis; their states are those of the chunks (jobs with this batch_id) that hold them.
+    """Many lines under one analysis. Its chunks, the jobs with this batch_id, hold the lines and their states.
 
-    received_at is null while the lines are still coming in; nobody sees the batch before.
+    received_at is null while the lines arrive; the batch is invisible until then.
     """
 
     __tablename__ = "batches"
@@ -28,9 +28,9 @@ class Batch(Base):
 
 
 class BatchItem(Base):
-    """One line of a batch: its document and the chunk that it belongs to, or what is wrong with it and neither.
+    """One line of a batch: its document and its chunk, or its faults if it was rejected.
 
-    chunk_id has no foreign key: lines are stored while they come in, and their chunks at the end, all at once.
+    chunk_id has no foreign key: lines are stored as they arrive, their chunks all together at the end.
     """
 
     __tablename__ = "batch_items"

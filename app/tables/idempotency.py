@@ -1,4 +1,4 @@
-"""Keys under which a POST is done once."""
+"""Idempotency keys."""
 
 from datetime import datetime
 from typing import Any
@@ -11,9 +11,10 @@ from app.tables.base import Base
 
 
 class IdempotencyKey(Base):
-    """A key of an owner, and the first answer under it; who holds it while there is none yet.
+    """An owner's key and the first answer under it; `holder` is the request that holds the key until then.
 
-    expires_at is the end of the key once it is answered, and before that the moment from which another may take it.
+    expires_at is the end of an answered key. Before the answer it is the time from which another request may take the
+    key.
     """
 
     __tablename__ = "idempotency_keys"

@@ -12,11 +12,11 @@ from app.tables.base import Base, FailureKind, JobEventKind, JobStatus
 
 
 class Job(Base):
-    """One request, or a chunk of a batch: the document, the state, and who works on it until when.
+    """One request, or a chunk of a batch: the document, the state, and the worker's lease.
 
-    batch_id, lines, failed_lines and reused_lines are those of a chunk, and null for a job of its own. request_id and
-    trace_parent are those of the request that made it. reused_from is the job or chunk whose results it was given; that
-    may be gone since.
+    batch_id, lines, failed_lines and reused_lines belong to a chunk and are null for any other job. request_id and
+    trace_parent come from the request that created the job. reused_from is the job or chunk whose results were copied;
+    it may have been deleted since.
     """
 
     __tablename__ = "jobs"
@@ -75,7 +75,7 @@ class JobTag(Base):
 
 
 class JobEvent(Base):
-    """One thing that happened to a job, in the order of the ids."""
+    """One event in a job's history, ordered by id."""
 
     __tablename__ = "job_events"
     __table_args__ = (Index(None, "job_id", "id"),)

@@ -1,4 +1,4 @@
-"""What was found, one row a point: what filters, rankings and summaries need as columns, everything else packed."""
+"""Results, one row for each point: columns for filters, rankings and summaries, and everything else packed."""
 
 from typing import Any
 from uuid import UUID
@@ -10,11 +10,11 @@ from app.tables.base import Base
 
 
 class PointRow(Base):
-    """One point of a study, or one line of a chunk under its number; a job without a study has the one point 0.
+    """One point of a study, or one line of a chunk under its number; a job without a study has the single point 0.
 
-    tables and orbits are JSON compressed by Zstandard (`app.storage.stored_results`), null for a point that failed.
-    Lines of a batch are ranked by what stands in an index with it. The result of a line is found again by input_hash
-    (`app.jobs.reuse`); it is null for points of a study.
+    tables and orbits are JSON compressed by Zstandard (`app.storage.stored_results`), null for a point that failed. The
+    indexed figures rank the lines of a batch. input_hash finds the result of a line again (`app.jobs.reuse`); it is
+    null for points of a study.
     """
 
     __tablename__ = "results"

@@ -1,4 +1,4 @@
-"""Webhooks: what is to be told, and what came of telling it."""
+"""Webhook messages and the log of their attempts."""
 
 from datetime import datetime
 from enum import StrEnum
@@ -12,7 +12,7 @@ from app.tables.base import Base
 
 
 class DeliveryState(StrEnum):
-    """States of a delivery: the job or batch has not ended, it is to be sent, it has arrived, or it was given up."""
+    """States of a delivery: its job or batch still runs, it is to be sent, it arrived, or the service gave it up."""
 
     WAITING = "waiting"
     PENDING = "pending"
@@ -21,9 +21,9 @@ class DeliveryState(StrEnum):
 
 
 class WebhookDelivery(Base):
-    """One message for one receiver; log has an entry for every attempt.
+    """One message for one receiver; log has an entry for each attempt.
 
-    While it is being sent, next_attempt_at is the end of the sender's lease.
+    While a sender holds the message, next_attempt_at is the end of its lease.
     """
 
     __tablename__ = "webhook_deliveries"

@@ -1,4 +1,4 @@
-"""Workers that are there."""
+"""Running workers."""
 
 from datetime import datetime
 
@@ -9,7 +9,7 @@ from app.tables.base import Base
 
 
 class Worker(Base):
-    """A worker under the name that its leases carry, and when it last said that it is there."""
+    """A worker under the name in its leases, with the time of its last report."""
 
     __tablename__ = "workers"
 

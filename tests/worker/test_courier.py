@@ -212,7 +212,7 @@ def test_the_address_is_vetted_again_at_each_delivery(
     closed = open_settings.model_copy(update={"webhook_private_networks": False})
     with courier(sessions, closed):
         told = wait_for(client, address, "failed")
-    assert ["nothing is sent" in entry["error"] for entry in told["attempts"]] == [True] * 3
+    assert ["webhooks are not sent" in entry["error"] for entry in told["attempts"]] == [True] * 3
     assert received[0].got == []
 
 

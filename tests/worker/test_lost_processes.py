@@ -128,7 +128,7 @@ def test_job_that_loses_all_its_workers_fails_with_the_sentence(
         assert wait_for_end(deployed, job_id) is JobStatus.FAILED
     job = look(deployed, job_id)
     assert (job.failure_kind, job.attempt) == (FailureKind.WORKER_LOST, 2)
-    assert job.failure_detail == "The worker was lost in each of 2 attempts, so the job was given up."
+    assert job.failure_detail == "The service gave up the job because its worker was lost in each of 2 attempts."
     assert job.document == long_request(POINTS)
 
 

@@ -1,4 +1,4 @@
-"""Batches as they come in: bodies taken apart as a stream, lines checked one by one and stored block by block."""
+"""Receive batches: read bodies as streams, check lines one by one, and store them in blocks."""
 
 from app.batches.intake.body_formats import BodyTooLarge, Incoming, gunzipped, read_csv, read_json, read_ndjson
 from app.batches.intake.receive import Receipt, lines_a_chunk, receive

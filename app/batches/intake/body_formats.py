@@ -1,4 +1,4 @@
-"""Pieces of a body -> an analysis and its lines, one after another, however large the body is."""
+"""Convert the pieces of a body to an analysis and its lines, one after another, however large the body is."""
 
 import codecs
 import csv
@@ -16,14 +16,14 @@ _KNOWN = frozenset({"lines", "analysis", "webhook_url"})
 
 
 class BodyTooLarge(Exception):
-    """Raised when a body, or one line of it, is larger than it may be; the text says what and how much."""
+    """Raised when a body, or one line of it, is too large; the text names it and the limit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Incoming:
-    """An analysis document, and the documents of the lines; a `BadInput` stands for a line that cannot be read.
+    """An analysis document and the documents of the lines; a `BadInput` stands for an unreadable line.
 
-    With `anew` the lines are computed even if their results are stored already.
+    With `anew`, workers compute the lines even if their results are stored.
     """
 
     analysis: object
@@ -33,27 +33,27 @@ class Incoming:
 
 
 def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
-    """Yield what compressed pieces stand for, in small parts, so that a bomb is noticed before it takes memory.
+    """Yield decompressed pieces in small parts, so that a decompression bomb is noticed before it takes memory.
 
     Raises
     ------
     BodyTooLarge
-        If more comes out than is allowed.
+        If the decompressed body exceeds the limit.
     BadInput
-        If it is no gzip, or ends too early.
+        If the body is not gzip, or ends too early.
     """
     inflater, taken = zlib.decompressobj(_GZIP_WINDOW), 0
     try:
         for piece in pieces:
-            rest = piece
-            while rest:
-                if inflater.eof:  # files that are compressed one by one and joined are one file by RFC 1952
+            remaining = piece
+            while remaining:
+                if inflater.eof:  # RFC 1952 allows several compressed members in one file
                     inflater = zlib.decompressobj(_GZIP_WINDOW)
-                part = inflater.decompress(rest, _INFLATED_A_STEP)
-                rest = inflater.unconsumed_tail or inflater.unused_data
+                part = inflater.decompress(remaining, _INFLATED_A_STEP)
+                remaining = inflater.unconsumed_tail or inflater.unused_data
                 taken += len(part)
                 if taken > most_bytes:
-                    raise BodyTooLarge(f"The body is larger than {most_bytes} bytes when it is decompressed.")
+                    raise BodyTooLarge(f"The decompressed body is larger than {most_bytes} bytes.")
                 yield part
     except zlib.error as error:
         raise BadInput([Fault("", "gzip_invalid", f"not valid gzip: {error}")]) from error
@@ -62,20 +62,20 @@ def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
 
 
 def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
-    """Read `{"lines": [...], "analysis": {...}}` whole.
+    """Read a whole body `{"lines": [...], "analysis": {...}}`.
 
     Raises
     ------
     BodyTooLarge
-        If it is larger than may be held in memory.
+        If the body is larger than `most_bytes`, the limit for bodies held in memory.
     BadInput
-        If it is not such an object.
+        If the body is not such an object.
     """
     body = bytearray()
     for piece in pieces:
         body += piece
         if len(body) > most_bytes:
-            raise BodyTooLarge(f"A JSON batch may have {most_bytes} bytes; send NDJSON or CSV, which may have more.")
+            raise BodyTooLarge(f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV.")
     document = parse_json(bytes(body))
     if not isinstance(document, dict):
         raise BadInput([Fault("", "not_an_object", "must be an object with lines and analysis")])
@@ -88,14 +88,14 @@ def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
 
 
 def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
-    """Read `{"analysis": {...}}` and then one line document a text line; empty text lines are passed over.
+    """Read `{"analysis": {...}}` and then one line document on each line of text; skip blank lines.
 
     Raises
     ------
     BodyTooLarge
-        If a text line is too long, now or as the lines are taken.
+        If a line of text is too long; raised now or while the lines are read.
     BadInput
-        If the first object is another one.
+        If the first object is not of this form.
     """
     texts = (text for text in _text_lines(pieces, most_line_bytes) if not text.isspace())
     first = parse_json(next(texts, b"{}"))
@@ -105,7 +105,7 @@ def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
                 Fault(
                     "",
                     "missing",
-                    'the first object must be {"analysis": {...}}, perhaps with a webhook_url',
+                    'the first object must be {"analysis": {...}}, optionally with a webhook_url',
                 )
             ]
         )
@@ -113,14 +113,14 @@ def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
 
 
 def read_csv(pieces: Iterable[bytes], analysis: object, most_line_bytes: int) -> Incoming:
-    """Read a table whose header holds dotted field names; cells that are empty are absent.
+    """Read a table whose header holds dotted field names; an empty cell means an absent field.
 
     Raises
     ------
     BodyTooLarge
-        If a text line is too long, now or as the lines are taken.
+        If a line of text is too long; raised now or while the lines are read.
     BadInput
-        If the header is missing or at fault, or, as the lines are taken, the text is no UTF-8 or no CSV.
+        If the header is missing or wrong, or if, while the lines are read, the text is not UTF-8 or not CSV.
     """
     rows = _rows(csv.reader(_decoded(_text_lines(pieces, most_line_bytes)), strict=True))
     columns = Columns.of(next(rows, []))
@@ -135,16 +135,16 @@ def _parsed(text: bytes) -> Any:
 
 
 def _text_lines(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
-    """Yield text lines with their ends."""
-    rest = b""
+    """Yield lines of text with their line ends."""
+    remaining = b""
     for piece in pieces:
-        *whole, rest = (rest + piece).split(b"\n")
-        for text in whole:
+        *complete, remaining = (remaining + piece).split(b"\n")
+        for text in complete:
             yield text + b"\n"
-        if len(rest) > most_bytes:
+        if len(remaining) > most_bytes:
             raise BodyTooLarge(f"A line is longer than {most_bytes} bytes.")
-    if rest:
-        yield rest
+    if remaining:
+        yield remaining
 
 
 def _decoded(texts: Iterable[bytes]) -> Iterator[str]:

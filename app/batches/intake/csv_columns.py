@@ -1,4 +1,4 @@
-"""CSV columns with dotted field names -> line documents: `span.length_m`, `ice.aerodynamics.vertical.0`, `tags.kv`."""
+"""Convert CSV columns with dotted field names to line documents: `span.length_m`, `ice.aerodynamics.vertical.0`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,21 +16,21 @@ Path = tuple[str | int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Where the cell of each column belongs in the document of a line."""
+    """The place of each column's cells in a line document."""
 
     paths: tuple[Path, ...]
 
     @classmethod
     def of(cls, header: Sequence[str]) -> "Columns":
-        """Take the names in the header.
+        """Read the names in the header.
 
         Raises
         ------
         BadInput
-            If there is none, or one is empty, comes twice, or lies within another.
+            If there is no name, or a name is empty, appears twice, or lies within another.
         """
         if not 1 <= len(header) <= _MOST_COLUMNS:
-            detail = f"a header of 1 to {_MOST_COLUMNS} field names is needed, got {len(header)}"
+            detail = f"the header must have 1 to {_MOST_COLUMNS} field names, got {len(header)}"
             raise BadInput([Fault("/header", "csv_header", detail)])
         paths = [_path(name.strip()) for name in header]
         faults = [_fault(place, header[place], why) for place, why in enumerate(_wrong(paths)) if why]
@@ -39,9 +39,9 @@ class Columns:
         return cls(tuple(paths))
 
     def document(self, row: Sequence[str]) -> Any:
-        """Return the document of a row, or a `BadInput` if it has other columns than the header."""
+        """Return the document of a row, or a `BadInput` if its number of cells differs from the header."""
         if len(row) != len(self.paths):
-            detail = f"the row has {len(row)} cells, the header {len(self.paths)}"
+            detail = f"the row has {len(row)} cells, but the header has {len(self.paths)}"
             return BadInput([Fault("", "csv_row", detail)])
         document: dict[str | int, Any] = {}
         for path, cell in zip(self.paths, row, strict=True):
@@ -52,13 +52,13 @@ class Columns:
 
 def _path(name: str) -> Path:
     tokens = name.split(".")
-    if tokens[0] == "tags":  # a key of a tag may hold dots
+    if tokens[0] == "tags":  # a tag's key may contain dots
         return ("tags", name.partition(".")[2])
     return tuple(int(token) if token.isdecimal() and token.isascii() else token for token in tokens)
 
 
 def _wrong(paths: Sequence[Path]) -> list[str]:
-    """Say of each column what is wrong with its name; an empty text if nothing is."""
+    """Return for each column what is wrong with its name, an empty text if nothing is."""
     seen: dict[Path, int] = {}
     for path in paths:
         seen[path] = seen.get(path, 0) + 1
@@ -68,12 +68,12 @@ def _wrong(paths: Sequence[Path]) -> list[str]:
 
 def _why(path: Path, times: int, holds_others: bool) -> str:
     if "" in path or isinstance(path[0], int) or len(path) > _MOST_TOKENS:
-        return "is no dotted field name"
+        return "is not a dotted field name"
     if any(isinstance(token, int) and token >= _MOST_ITEMS for token in path):
         return f"names an item beyond the {_MOST_ITEMS}th"
     if times > 1:
-        return "comes twice"
-    return "is given whole and in parts" if holds_others else ""
+        return "appears twice"
+    return "is given both as a whole and in parts" if holds_others else ""
 
 
 def _fault(place: int, name: str, why: str) -> Fault:
@@ -87,7 +87,7 @@ def _put(document: dict[str | int, Any], path: Path, value: object) -> None:
 
 
 def _value(path: Path, cell: str) -> object:
-    """Return a text as it is; what else is JSON as its value; a word, or what is neither, for the schema to judge."""
+    """Return the text of a text field as it is, otherwise its JSON value; the schema judges a cell that is not JSON."""
     if path[0] in _TEXTS:
         return cell
     try:
@@ -97,7 +97,7 @@ def _value(path: Path, cell: str) -> object:
 
 
 def _with_lists(node: Any) -> Any:
-    """Turn what is named by numbers into lists; an item that is left out is null."""
+    """Convert objects whose keys are numbers to lists; a missing item is null."""
     if not isinstance(node, dict):
         return node
     inner = {key: _with_lists(value) for key, value in node.items()}

@@ -1,6 +1,6 @@
-"""Lines are checked one by one and stored block by block; the batch is seen by others when the last one is stored.
+"""Check lines one by one and store them in blocks; the batch becomes visible when the last line is stored.
 
-No transaction lasts longer than a block, so that a slow sender holds up nobody.
+No transaction lasts longer than one block, so a slow sender blocks nobody.
 """
 
 from collections.abc import Callable, Iterator
@@ -31,7 +31,7 @@ _LABEL: TypeAdapter[str] = TypeAdapter(Label)
 
 @dataclass(frozen=True, slots=True)
 class Receipt:
-    """An accepted batch, and its chunks to be sent to the workers."""
+    """An accepted batch, and its chunks to send to the workers."""
 
     batch_id: UUID
     chunk_ids: tuple[UUID, ...]
@@ -39,7 +39,7 @@ class Receipt:
 
 @dataclass(slots=True)
 class _Draft:
-    """What is known of a batch while its lines come in."""
+    """A batch whose lines are still arriving."""
 
     batch_id: UUID
     analysis: schemas.Analysis
@@ -52,7 +52,7 @@ class _Draft:
 
 
 def _nothing(*_: object) -> None:
-    """Take no part."""
+    """Do nothing when the batch is accepted."""
 
 
 def receive(
@@ -64,18 +64,18 @@ def receive(
     *,
     atomic: bool,
 ) -> Receipt:
-    """Check and store the lines of a batch, and accept it if any of them can be run; an atomic one only if all can.
+    """Check and store the lines of a batch; accept it if any line can run, or, if atomic, only if all can.
 
-    `on_accept` takes part in the transaction that accepts the batch; if it raises, the batch is removed.
+    `on_accept` runs in the transaction that accepts the batch; if it raises, the batch is removed.
 
     Raises
     ------
     BadInput
-        If the analysis is at fault, or no line can be run, or one of an atomic batch; nothing is kept then.
+        If the analysis is wrong, if no line can run, or if a line of an atomic batch cannot; nothing is stored then.
     BodyTooLarge
-        As the lines raise it; nothing is kept then.
+        If reading the lines raises it; nothing is stored then.
     sqlalchemy.exc.SQLAlchemyError
-        If the database fails; what was stored is removed now or by a later sweep.
+        If the database fails; stored lines are removed now or by a later sweep.
     """
     analysis = convert.read_analysis(incoming.analysis)
     with sessions.begin() as session:
@@ -97,16 +97,16 @@ def receive(
 
 
 def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:
-    """Return how many lines one message shall carry: about the wanted time of work, and whole stacks of the engine."""
+    """Return the number of lines for one chunk: about the configured time of work, and whole stacks of the engine."""
     lines = max(1, min(settings.most_chunk_lines, round(settings.chunk_seconds / convert.seconds_a_line(analysis))))
     return lines - lines % convert.STACK if lines > convert.STACK else lines
 
 
 def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Iterator[list[dict[str, Any]]]:
-    """Yield the rows of the lines, some at a time, until there is no use in going on."""
+    """Yield the rows of the lines in blocks; stop early if an atomic batch has too many faults."""
     while block := list(islice(lines, _LINES_A_BLOCK)):
         if draft.taken + len(block) > settings.max_batch_lines:
-            raise BadInput([Fault("/lines", "too_long", f"a batch may have {settings.max_batch_lines} lines")])
+            raise BadInput([Fault("/lines", "too_long", f"a batch may have at most {settings.max_batch_lines} lines")])
         items = [_item(draft, document) for document in block]
         if draft.atomic and len(draft.faults) >= MOST_FAULTS:
             return
@@ -118,8 +118,8 @@ def _item(draft: _Draft, document: object) -> dict[str, Any]:
     reference, faults = None, []
     line: schemas.Line | None = None
     try:
-        reference, rest = _split(document)
-        line = convert.read_line(rest, draft.analysis)
+        reference, fields = _split(document)
+        line = convert.read_line(fields, draft.analysis)
     except BadInput as error:
         faults = list(error.faults[:_FAULTS_A_LINE])
     if line is None:
@@ -140,18 +140,18 @@ def _item(draft: _Draft, document: object) -> dict[str, Any]:
 
 
 def _split(document: object) -> tuple[str | None, object]:
-    """Take the caller's reference from beside the fields of the line.
+    """Separate the caller's reference from the fields of the line.
 
     Raises
     ------
     BadInput
-        If the line could not be read, or the reference is no label.
+        If the line could not be read, or the reference is not a valid label.
     """
     if isinstance(document, BadInput):
         raise document
     if not isinstance(document, dict) or document.get("reference") is None:
-        rest = {k: v for k, v in document.items() if k != "reference"} if isinstance(document, dict) else document
-        return None, rest
+        fields = {k: v for k, v in document.items() if k != "reference"} if isinstance(document, dict) else document
+        return None, fields
     try:
         reference = _LABEL.validate_python(document["reference"], strict=True)
     except ValidationError as error:
@@ -161,7 +161,7 @@ def _split(document: object) -> tuple[str | None, object]:
 
 
 def _chunk_id(draft: _Draft) -> UUID:
-    """Return the chunk of the next line, a new one if the last is full."""
+    """Return the chunk for the next line; begin a new one if the last is full."""
     if not draft.chunks or draft.chunks[-1].lines == draft.chunk_lines:
         draft.chunks.append(Chunk(uuid7(), len(draft.chunks) + 1, 0))
     last = draft.chunks[-1]

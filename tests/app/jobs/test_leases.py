@@ -160,7 +160,7 @@ def test_three_lost_attempts_end_a_job(sessions: sessionmaker[Session], settings
         assert give_back(sessions, settings) == 1
     job = look(sessions, job_id)
     assert (job.status, job.failure_kind, job.attempt) == (JobStatus.FAILED, FailureKind.WORKER_LOST, 3)
-    assert job.failure_detail == "The worker was lost in each of 3 attempts, so the job was given up."
+    assert job.failure_detail == "The service gave up the job because its worker was lost in each of 3 attempts."
     assert [kind for kind, _ in history(sessions, job_id)].count("released") == 2
 
 

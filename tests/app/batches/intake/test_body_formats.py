@@ -107,7 +107,7 @@ def test_csv_cells_become_fields(size: int) -> None:
 def test_a_row_of_another_length_is_told_of_in_its_place() -> None:
     first, second = read_csv([b"a.b,c\n1,2\n1,2,3\n"], {}, 100).lines
     assert first == {"a": {"b": 1}, "c": 2}
-    assert isinstance(second, BadInput) and "3 cells, the header 2" in str(second)
+    assert isinstance(second, BadInput) and "3 cells, but the header has 2" in str(second)
 
 
 @pytest.mark.parametrize(
