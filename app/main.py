@@ -100,6 +100,7 @@ def create_app(settings: Settings | None = None) -> Service:
         redoc_url=None,
         telemetry={"tracing": settings.opentelemetry, "metrics": False, "logs": False, "operation_spans": False},
         redirect_slashes=False,
+        generate_unique_id_function=lambda route: route.name,
         responses={"default": documentation.ANY_PROBLEM},
     )
     _equip(app, settings, database)

@@ -1,1 +1,1 @@
-"""The addresses of the service, by what they are about."""
+"""The routes of the service, one module for each subject."""

@@ -1,4 +1,4 @@
-"""Aerodynamic coefficients of a line from what was measured."""
+"""Fit aerodynamic coefficients of a line to measured coefficients."""
 
 from typing import Annotated
 
@@ -19,6 +19,7 @@ router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route
 
 @router.post(
     "/fit",
+    summary="Fit measured coefficients",
     response_model=FitAnswer,
     responses={
         200: {
@@ -30,14 +31,14 @@ router = APIRouter(prefix=f"{PREFIX}/aerodynamics", tags=["aerodynamics"], route
         ),
     },
 )
-def fit(
+def fit_coefficients(
     document: Annotated[schemas.MeasuredCoefficients, Body(openapi_examples=reference_documentation.FIT_REQUESTS)],
     key: KeyOf,
     writers: Writers,
 ) -> Response:
-    """Fit cubics about the static angle to measured lift, drag and moment, as a line's `ice` takes them.
+    """Fit cubics about the static angle to measured lift, drag and moment, in the form of a line's `ice`.
 
-    Lift and drag are turned with the section: C_y = C_L cos a + C_D sin a, C_z = -C_L sin a + C_D cos a, and
+    Lift and drag are turned into the section's axes: C_y = C_L cos a + C_D sin a, C_z = -C_L sin a + C_D cos a, and
     C_theta = C_M, with a in radians from the static angle.
     """
     try:

@@ -1,4 +1,4 @@
-"""Examples of the bodies of batches for OpenAPI, and the three forms in which one comes in."""
+"""OpenAPI examples for batches, and the three forms of a batch's body."""
 
 import json
 from typing import Any
@@ -68,7 +68,7 @@ FINISHED: dict[str, Any] = {
 DISMISSED: dict[str, Any] = {**ACCEPTED, "status": "dismissed", "lines": {**_COUNTS, "accepted": 0, "dismissed": 2}}
 STOPPING: dict[str, Any] = {**ACCEPTED, "status": "running", "lines": {**_COUNTS, "accepted": 0, "running": 2}}
 ACCEPTED_ANSWER: dict[str, Any] = {
-    **documentation.body("Accepted; Location leads to its status", ("application/json", ACCEPTED)),
+    **documentation.body("Accepted; Location is the address of its status", ("application/json", ACCEPTED)),
     "headers": documentation.ACCEPTED_HEADERS,
 }
 PAGE: dict[str, Any] = {"batches": [_SUMMARY], "next": None}
@@ -86,7 +86,7 @@ RESULT: dict[str, Any] = {
     **convert.example_tables(),
 }
 RESULTS_ANSWER: dict[str, Any] = {
-    "description": "NDJSON with one object a line, or rows of a table",
+    "description": "NDJSON with one object for each line, or the rows of one table",
     "content": {
         "application/x-ndjson": {"schema": {"type": "string"}, "example": json.dumps(RESULT) + "\n"},
         "text/csv": {
@@ -99,7 +99,7 @@ RESULTS_ANSWER: dict[str, Any] = {
 
 
 def request_body() -> dict[str, Any]:
-    """Return OpenAPI's entry for the body of a batch, which is read as a stream and so not declared in Python."""
+    """Return the OpenAPI entry for the body of a batch; Python reads it as a stream and cannot declare it."""
     ndjson = "".join(json.dumps(item) + "\n" for item in ({"analysis": _ANALYSIS}, *_LINES))
     schema = BatchRequest.model_json_schema(by_alias=True, ref_template="#/components/schemas/{model}")
     own = schema.pop("$defs")
@@ -107,9 +107,9 @@ def request_body() -> dict[str, Any]:
     return {
         "requestBody": {
             "required": True,
-            "description": "JSON; NDJSON whose first object is the analysis; or CSV whose columns are dotted field "
-            "names such as `span.length_m`, with lists as JSON in a cell or item by item "
-            "(`ice.aerodynamics.vertical.0`), and the analysis in the query. With `Content-Encoding: gzip` if wanted.",
+            "description": "JSON; NDJSON whose first object is the analysis; or CSV with the analysis in the query. "
+            "CSV columns are dotted field names such as `span.length_m`; a list is JSON in one cell, or one column "
+            "for each item (`ice.aerodynamics.vertical.0`). `Content-Encoding: gzip` is accepted.",
             "content": {
                 "application/json": {"schema": schema, "example": {"lines": _LINES, "analysis": _ANALYSIS}},
                 "application/x-ndjson": {"schema": {"type": "string"}, "example": ndjson},

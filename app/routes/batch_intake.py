@@ -1,4 +1,4 @@
-"""Batches sent: a body of any size, read as it comes in."""
+"""Submit batches: bodies of any size, read as they arrive."""
 
 import hashlib
 from collections.abc import Iterator
@@ -38,7 +38,7 @@ _TYPES = ("application/json", "application/x-ndjson", "text/csv")
 
 
 def _limiter(request: Request) -> CapacityLimiter:
-    """Return what bounds the threads that take in batches, so that slow senders leave the others to other requests."""
+    """Return the limit on threads that receive batches, so that slow senders leave threads for other requests."""
     state = request.app.state
     if not hasattr(state, "batch_limiter"):
         state.batch_limiter = CapacityLimiter(state.settings.batches_at_once)
@@ -47,18 +47,21 @@ def _limiter(request: Request) -> CapacityLimiter:
 
 
 class IntakeQuery(BaseModel):
-    """How a batch is taken in."""
+    """How to receive a batch."""
 
-    atomic: bool = Field(default=False, description="Take all lines or, if any is at fault, none")
-    analysis: str | None = Field(default=None, max_length=20_000, description="Analysis of a CSV batch, as JSON")
+    atomic: bool = Field(default=False, description="Reject the whole batch if any line is wrong")
+    analysis: str | None = Field(default=None, max_length=20_000, description="The analysis of a CSV batch, as JSON")
     webhook_url: str | None = Field(
-        default=None, max_length=2000, description="https address that is told of the end, if the body names none"
+        default=None,
+        max_length=2000,
+        description="https address to which the service posts a signed message when the batch ends; an address in the "
+        "body takes precedence",
     )
 
 
 @dataclass(frozen=True, slots=True)
 class _Posted:
-    """A body that is still coming in, how it is to be taken, and the sum over what has come of both."""
+    """A body that is still arriving, how to receive it, and a running digest of the body."""
 
     request: Request
     settings: Settings
@@ -73,6 +76,7 @@ async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_re
 
 @router.post(
     "",
+    summary="Submit a batch",
     status_code=202,
     response_model=BatchDocument,
     responses={
@@ -83,17 +87,18 @@ async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_re
     },
     openapi_extra=batch_documentation.request_body(),
 )
-async def submit(
+async def submit_batch(
     posted: Annotated[_Posted, Depends(_posted)],
     caller: CallerOf,
     key: KeyOf,
     writers: Writers,
     sender: SenderOf,
 ) -> Response:
-    """Accept many lines under one analysis. Lines at fault are kept with their faults, the others run.
+    """Accept many lines under one analysis. Wrong lines are stored with their faults, and the other lines run.
 
-    Each line may hold a `reference` beside its own fields; it is given back with the results, as is `asset_id`. A line
-    whose results are stored already is given those, unless `Cache-Control: no-cache` asks for all to be computed.
+    Each line may have a `reference` beside its own fields; the results repeat it, as they repeat `asset_id`. If the
+    service has stored results of a line's input, the line gets those, unless `Cache-Control: no-cache` requests a new
+    computation.
     """
     made = await to_thread.run_sync(partial(_receive, writers, caller, key, posted), limiter=_limiter(posted.request))
     await to_thread.run_sync(partial(sender.send, made.job_ids, chunk=True))
@@ -118,7 +123,7 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
             webhooks.register(session, caller.owner, webhook_url, batch_id=batch_id)
         answers.append(accepted_batch(session, caller, batch_id))
         if key is not None:
-            idempotency.finish(session, key, _sum(posted), stored_answer(answers[0]))
+            idempotency.finish(session, key, _digest_so_far(posted), stored_answer(answers[0]))
 
     incoming = replace(_incoming(posted), anew=not posted.may_reuse)
     webhook_url = _webhook_url(posted, incoming)
@@ -131,20 +136,20 @@ def _webhook_url(posted: _Posted, incoming: Incoming) -> str | None:
     if url is None:
         return None
     if not isinstance(url, str):
-        raise BadInput([Fault("/webhook_url", "string_type", "must be an address")])
+        raise BadInput([Fault("/webhook_url", "string_type", "must be a text with an address")])
     from_thread.run(vet_webhook, posted.settings, url)
     return url
 
 
 def _fingerprint(posted: _Posted) -> str:
-    """Return the fingerprint of a body that nobody else reads."""
+    """Read the body to its end and return its fingerprint."""
     for _ in _inflated(posted):
         pass
-    return _sum(posted)
+    return _digest_so_far(posted)
 
 
-def _sum(posted: _Posted) -> str:
-    """Return the fingerprint of a body that was read to its end, as it was before it was compressed."""
+def _digest_so_far(posted: _Posted) -> str:
+    """Return the fingerprint of a body that was read to its end, taken before compression."""
     return idempotency.fingerprint(
         BATCHES, _media_type(posted), posted.how.model_dump_json(), posted.digest.hexdigest()
     )
@@ -157,19 +162,19 @@ def _media_type(posted: _Posted) -> str:
 def _incoming(posted: _Posted) -> Incoming:
     media_type, settings = _media_type(posted), posted.settings
     if media_type not in _TYPES:
-        said = f"The body is {media_type[:100]!r}, not one of {', '.join(_TYPES)}."
-        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Post": ", ".join(_TYPES)})
+        detail = f"The body is {media_type[:100]!r}, not one of {', '.join(_TYPES)}."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Post": ", ".join(_TYPES)})
     if posted.how.analysis is not None and media_type != "text/csv":
-        raise query_fault("analysis", "only a CSV batch has its analysis in the query")
+        raise query_fault("analysis", "is allowed for a CSV batch only; put the analysis into the body")
     pieces = _inflated(posted)
     if media_type == "application/json":
         return intake.read_json(pieces, settings.max_body_bytes)
     if media_type == "application/x-ndjson":
         return intake.read_ndjson(pieces, settings.max_batch_line_bytes)
-    return intake.read_csv(pieces, _asked(posted.how.analysis), settings.max_batch_line_bytes)
+    return intake.read_csv(pieces, _parsed_analysis(posted.how.analysis), settings.max_batch_line_bytes)
 
 
-def _asked(analysis: str | None) -> Any:
+def _parsed_analysis(analysis: str | None) -> Any:
     try:
         return parse_json((analysis or "{}").encode())
     except BadInput as error:
@@ -180,21 +185,21 @@ def _inflated(posted: _Posted) -> Iterator[bytes]:
     encoding = posted.request.headers.get("content-encoding", "identity").strip().lower()
     pieces = _pieces(posted.request)
     if encoding == "gzip":
-        return _summed(posted, intake.gunzipped(pieces, posted.settings.max_batch_bytes))
+        return _digested(posted, intake.gunzipped(pieces, posted.settings.max_batch_bytes))
     if encoding != "identity":
-        said = f"The content encoding {encoding[:100]!r} is not taken; gzip is."
-        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, said, headers={"Accept-Encoding": "gzip"})
-    return _summed(posted, pieces)
+        detail = f"The content encoding {encoding[:100]!r} is not supported; gzip is."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Encoding": "gzip"})
+    return _digested(posted, pieces)
 
 
-def _summed(posted: _Posted, pieces: Iterator[bytes]) -> Iterator[bytes]:
+def _digested(posted: _Posted, pieces: Iterator[bytes]) -> Iterator[bytes]:
     for piece in pieces:
         posted.digest.update(piece)
         yield piece
 
 
 def _pieces(request: Request) -> Iterator[bytes]:
-    """Yield the body in this thread as the event loop receives it: no piece is asked for before the last is used."""
+    """Yield the body in this thread as the event loop receives it; request a piece only when the last one is used."""
     stream = request.stream()
 
     async def following() -> bytes | None:
@@ -205,7 +210,7 @@ def _pieces(request: Request) -> Iterator[bytes]:
         while (piece := from_thread.run(following)) is not None:
             yield piece
     except ClientDisconnect as error:
-        raise ProblemError(ProblemKind.INVALID_DOCUMENT, "The body broke off.") from error  # only the log hears of it
+        raise ProblemError(ProblemKind.INVALID_DOCUMENT, "The body ended early.") from error  # seen in the log only
     except TimeoutError as error:
-        said = f"Nothing of the body came for {_SILENT_SECONDS:g} s."
-        raise ProblemError(ProblemKind.INVALID_DOCUMENT, said, headers={"Connection": "close"}) from error
+        detail = f"No part of the body arrived for {_SILENT_SECONDS:g} s."
+        raise ProblemError(ProblemKind.INVALID_DOCUMENT, detail, headers={"Connection": "close"}) from error

@@ -1,4 +1,4 @@
-"""Lines of a batch ranked: by amplitude, by margin of the critical wind speed, by clearance between phases."""
+"""Rank the lines of a batch by amplitude, by margin of the critical wind speed, or by clearance between phases."""
 
 from typing import Annotated, Any, Literal, Self
 from urllib.parse import urlencode
@@ -27,30 +27,31 @@ Spacing = Annotated[float | None, Field(gt=0.0, le=100.0)]
 
 
 class RankingQuery(BaseModel):
-    """By which figure the lines are ranked, and where the page begins."""
+    """The figure by which to rank the lines, and where the page begins."""
 
     model_config = ConfigDict(extra="forbid")
 
     by: Literal["amplitude", "critical-wind-margin", "clearance"] = Field(
         default="amplitude",
-        description="Largest vertical amplitude first; least margin of the critical wind speed first; least clearance "
-        "first",
+        description="`amplitude`: largest vertical amplitude first. `critical-wind-margin`: smallest margin of the "
+        "critical wind speed first. `clearance`: smallest clearance first",
     )
     design_wind_speed_m_per_s: Annotated[float | None, Field(ge=0.0, le=100.0)] = Field(
-        default=None, description="For the margin: critical less design wind speed [m/s]"
+        default=None, description="Required by the margin, which is the critical minus this design wind speed [m/s]"
     )
     vertical_spacing_m: Spacing = Field(
-        default=None, description="For the clearance: distance of two phases above each other [m]"
+        default=None, description="For the clearance: vertical distance between two phases [m]"
     )
     horizontal_spacing_m: Spacing = Field(
-        default=None, description="Or distance of two phases beside each other [m]; both gallop alike"
+        default=None,
+        description="For the clearance instead: horizontal distance between two phases, which gallop alike [m]",
     )
-    partial: bool = Field(default=False, description="Also while lines are waiting or running")
+    partial: bool = Field(default=False, description="Rank the lines finished so far, even if others still wait or run")
     limit: int = Field(default=50, ge=1, le=500, description="Lines on a page")
-    cursor: str | None = Field(default=None, max_length=200, description="Place that a `next` address holds")
+    cursor: str | None = Field(default=None, max_length=200, description="Cursor from a `next` address")
 
     def checked(self) -> Self:
-        """Return the query if it has what its figure needs, and nothing that belongs to another.
+        """Return the query if it has exactly the parameters that its figure needs.
 
         Raises
         ------
@@ -59,16 +60,14 @@ class RankingQuery(BaseModel):
         """
         spacings = (self.vertical_spacing_m is not None) + (self.horizontal_spacing_m is not None)
         if (self.design_wind_speed_m_per_s is not None) != (self.by == "critical-wind-margin"):
-            raise query_fault("design_wind_speed_m_per_s", "is given with by=critical-wind-margin, and only then")
+            raise query_fault("design_wind_speed_m_per_s", "must be given with by=critical-wind-margin, and only then")
         if spacings != (self.by == "clearance"):
-            rule = (
-                "exactly one of vertical_spacing_m and horizontal_spacing_m is given with by=clearance, and only then"
-            )
+            rule = "give exactly one of vertical_spacing_m and horizontal_spacing_m with by=clearance, and only then"
             raise query_fault("vertical_spacing_m", rule)
         return self
 
     def order(self) -> Order:
-        """Return the order that puts the line that needs care first."""
+        """Return the order that puts the most critical line first."""
         if self.by == "amplitude":
             return Order("largest_vertical_m", descending=True)
         if self.by == "critical-wind-margin":
@@ -78,20 +77,25 @@ class RankingQuery(BaseModel):
 
 @router.get(
     "/ranking",
+    summary="Rank the lines of a batch",
     response_model=RankingPage,
     responses={
         200: documentation.body("A page of lines", ("application/json", batch_documentation.RANKING)),
         **documentation.problems(ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_FOUND, ProblemKind.NOT_READY),
     },
 )
-def rank(
-    batch_id: UUID, asked: Annotated[RankingQuery, Query()], caller: CallerOf, readers: Readers, settings: SettingsOf
+def rank_lines(
+    batch_id: UUID,
+    ranking_query: Annotated[RankingQuery, Query()],
+    caller: CallerOf,
+    readers: Readers,
+    settings: SettingsOf,
 ) -> JSONResponse:
-    """Rank the lines, those that need care first, a page at a time; `next` is the address of the following page.
+    """Return one page of the lines, most critical first; `next` is the address of the next page.
 
-    Lines for which the figure is not known are left out: without a critical wind speed up to the limit, say.
+    Lines without the figure are left out, for example a line without a critical wind speed up to the limit.
     """
-    query, key = asked.checked(), signing_key(settings)
+    query, key = ranking_query.checked(), signing_key(settings)
     order = query.order()
     after = _place(key, batch_id, order, query.cursor)
     require_results(readers, caller, batch_id, partial=query.partial)
@@ -131,5 +135,5 @@ def _place(key: bytes, batch_id: UUID, order: Order, cursor: str | None) -> Plac
 
 
 def _next_address(batch_id: UUID, query: RankingQuery, cursor: str) -> str:
-    kept = query.model_dump(exclude_unset=True, exclude={"cursor"})
-    return f"{batch_address(batch_id)}/ranking?{urlencode({**kept, 'cursor': cursor})}"
+    parameters = query.model_dump(exclude_unset=True, exclude={"cursor"})
+    return f"{batch_address(batch_id)}/ranking?{urlencode({**parameters, 'cursor': cursor})}"

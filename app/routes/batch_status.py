@@ -1,4 +1,4 @@
-"""What the routes of batches share: finding one, its status document and its links."""
+"""What the routes of batches share: finding a batch, its status document and its links."""
 
 from typing import Any
 from uuid import UUID
@@ -25,7 +25,7 @@ def find_batch(session: Session, caller: Caller, batch_id: UUID) -> Batch:
     Raises
     ------
     ProblemError
-        404 if the owner has none of that id, whoever else may have one.
+        404 if the owner has no batch of that id, even if another owner has.
     """
     batch = batch_records.get(session, caller.owner, batch_id)
     if batch is None:
@@ -34,9 +34,9 @@ def find_batch(session: Session, caller: Caller, batch_id: UUID) -> Batch:
 
 
 def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UUID, *, partial: bool) -> str | None:
-    """See to it that a batch has results to show: all of them, or with partial what there is.
+    """Check that a batch has results to show: all of them or, with `partial`, those so far.
 
-    Returns what the results of a batch that has ended depend on, None if it has not.
+    Return a fingerprint of the results of a finished batch, None if the batch has not ended.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def require_results(readers: sessionmaker[Session], caller: Caller, batch_id: UU
         return None
     raise ProblemError(
         ProblemKind.NOT_READY,
-        f"The batch is {counts.status.value}, {counts.progress:.0%} done; ?partial=true takes what there is.",
+        f"The batch is {counts.status.value}, {counts.progress:.0%} done; ?partial=true returns the results so far.",
         links=[{"rel": "status", "href": batch_address(batch_id)}],
         headers={"Retry-After": RETRY_SECONDS},
     )
@@ -78,7 +78,7 @@ def batch_summary(batch: Batch, counts: Counts) -> dict[str, Any]:
 
 
 def line_counts(counts: Counts, rejected: int) -> dict[str, int]:
-    """Return how many lines of a batch are in which state."""
+    """Return the number of lines of a batch in each state."""
     return {
         "total": counts.lines + rejected,
         "accepted": counts.accepted,
@@ -92,13 +92,13 @@ def line_counts(counts: Counts, rejected: int) -> dict[str, int]:
 
 
 def batch_document(session: Session, batch: Batch, counts: Counts) -> dict[str, Any]:
-    """Return the status document of a batch, with the faults of the first lines that were rejected."""
+    """Return the status document of a batch, with the faults of the first rejected lines."""
     shown = list(line_results.errors(session, batch.id, _ERRORS_SHOWN)) if batch.rejected_lines else []
     return {**batch_summary(batch, counts), "errors": shown[:_ERRORS_SHOWN]}
 
 
 def accepted_batch(session: Session, caller: Caller, batch_id: UUID) -> JSONResponse:
-    """Return the answer to who has sent a batch, or sent it again."""
+    """Return the answer to a request that submitted or resubmitted a batch."""
     batch = find_batch(session, caller, batch_id)
     document = batch_document(session, batch, batch_progress.counts(session, [batch_id])[batch_id])
     return JSONResponse(document, 202, headers={"Location": batch_address(batch_id), "Retry-After": RETRY_SECONDS})

@@ -1,4 +1,4 @@
-"""Batches: looked at, listed, resubmitted, cancelled."""
+"""Read, list, resubmit and cancel batches."""
 
 from typing import Annotated
 from urllib.parse import urlencode
@@ -36,14 +36,15 @@ router = APIRouter(prefix=BATCHES, tags=["batches"])
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
 
 
-async def _waited(batch_id: UUID, caller: CallerOf, watch: BatchWatch, wait: Wait) -> int | None:
-    """Wait as long as is asked for, and return how long that is."""
+async def _wait_for_batch(batch_id: UUID, caller: CallerOf, watch: BatchWatch, wait: Wait) -> int | None:
+    """Wait as long as the client prefers, and return those seconds."""
     await wait_for_end(watch, Owned(caller.owner, batch_id), wait)
     return wait
 
 
 @router.get(
     "/{batch_id}",
+    summary="Get the status of a batch",
     response_model=BatchDocument,
     responses={
         200: {
@@ -53,12 +54,12 @@ async def _waited(batch_id: UUID, caller: CallerOf, watch: BatchWatch, wait: Wai
         **_COMMON,
     },
 )
-def status(
-    batch_id: UUID, caller: CallerOf, readers: Readers, wait: Annotated[int | None, Depends(_waited)]
+def batch_status(
+    batch_id: UUID, caller: CallerOf, readers: Readers, wait: Annotated[int | None, Depends(_wait_for_batch)]
 ) -> JSONResponse:
-    """Tell how far a batch is: its lines by state, and what is wrong with the first that were rejected.
+    """Return the progress of a batch: its lines by state, and the faults of the first rejected lines.
 
-    With `Prefer: wait=N` the answer comes at the end of the batch, or after N seconds.
+    With `Prefer: wait=N` the service answers when the batch ends, or after N seconds.
     """
     with readers() as session:
         batch = find_batch(session, caller, batch_id)
@@ -69,6 +70,7 @@ def status(
 
 @router.get(
     "",
+    summary="List batches",
     response_model=BatchPage,
     responses={
         200: documentation.body("A page of batches, newest first", ("application/json", batch_documentation.PAGE)),
@@ -79,10 +81,10 @@ def list_batches(
     settings: SettingsOf,
     caller: CallerOf,
     readers: Readers,
-    limit: Annotated[int, Query(ge=1, le=100, description="Batches on a page")] = 20,
-    cursor: Annotated[str | None, Query(max_length=200, description="Place that a `next` address holds")] = None,
+    limit: Annotated[int, Query(ge=1, le=100, description="Most batches on the page")] = 20,
+    cursor: Annotated[str | None, Query(max_length=200, description="Cursor from a `next` address")] = None,
 ) -> JSONResponse:
-    """List batches, newest first, a page at a time; `next` is the address of the following page."""
+    """Return one page of the batches, newest first; `next` is the address of the next page."""
     key = signing_key(settings)
     after = _place(key, cursor) if cursor else None
     with readers() as session:
@@ -99,6 +101,7 @@ def list_batches(
 
 @router.post(
     "/{batch_id}/resubmit",
+    summary="Resubmit the failed lines of a batch",
     status_code=202,
     response_model=BatchDocument,
     responses={
@@ -106,10 +109,10 @@ def list_batches(
         **documentation.problems(ProblemKind.NOT_FOUND, *KEY_PROBLEMS),
     },
 )
-def resubmit(
+def resubmit_failed_lines(
     batch_id: UUID, settings: SettingsOf, caller: CallerOf, key: KeyOf, writers: Writers, sender: SenderOf
 ) -> Response:
-    """Run the lines that failed once more, under their numbers; if none has failed nothing changes."""
+    """Run the failed lines again under their numbers; without failed lines, change nothing."""
 
     def make(session: Session) -> PostOutcome:
         batch = find_batch(session, caller, batch_id)
@@ -124,22 +127,23 @@ def resubmit(
 
 @router.delete(
     "/{batch_id}",
+    summary="Cancel or remove a batch",
     response_model=None,
     responses={
         200: {
-            **documentation.body("Nothing runs any more", ("application/json", batch_documentation.DISMISSED)),
+            **documentation.body("No line runs any more", ("application/json", batch_documentation.DISMISSED)),
             "model": BatchDocument,
         },
         202: {
-            **documentation.body("What runs will stop", ("application/json", batch_documentation.STOPPING)),
+            **documentation.body("Running lines will stop", ("application/json", batch_documentation.STOPPING)),
             "model": BatchDocument,
         },
-        204: {"description": "A batch that had ended is removed with its results"},
+        204: {"description": "The finished batch and its results are removed"},
         **_COMMON,
     },
 )
-def cancel(batch_id: UUID, caller: CallerOf, writers: Writers) -> Response:
-    """Cancel what has not ended of a batch, or remove one that has ended."""
+def cancel_batch(batch_id: UUID, caller: CallerOf, writers: Writers) -> Response:
+    """Cancel the lines of a batch that have not ended, or remove a finished batch."""
     with writers.begin() as session:
         batch = find_batch(session, caller, batch_id)
         outcome = batch_records.cancel(session, caller, batch_id)

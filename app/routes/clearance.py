@@ -22,41 +22,50 @@ Spacing = Annotated[float, Field(ge=-100.0, le=100.0)]
 
 
 class ClearanceQuery(BaseModel):
-    """Where the other phase hangs, and whose ellipse is held against the motions."""
+    """The position of the other phase, and the method whose ellipse to compare with the motions."""
 
     model_config = ConfigDict(extra="forbid")
 
-    vertical_spacing_m: Spacing = Field(default=0.0, description="How far the other phase lies above [m]")
-    horizontal_spacing_m: Spacing = Field(default=0.0, description="How far the other phase lies downwind [m]")
-    method: convert.EllipseMethodName = Field(default="cigre", description="Whose ellipse")
-    point: int = Field(default=0, ge=0, description="Point of a study")
+    vertical_spacing_m: Spacing = Field(default=0.0, description="Height of the other phase above this one [m]")
+    horizontal_spacing_m: Spacing = Field(
+        default=0.0, description="Distance of the other phase downwind of this one [m]"
+    )
+    method: convert.EllipseMethodName = Field(default="cigre", description="Method that gives the ellipse")
+    point: int = Field(default=0, ge=0, description="Number of the study's point, from 0")
 
 
 @router.get(
     "/clearance",
+    summary="Get the clearance between two phases",
     response_model=Clearance,
     responses={
-        200: documentation.body("What is left", ("application/json", example_of(Clearance))),
+        200: documentation.body("The clearances", ("application/json", example_of(Clearance))),
         **documentation.UNCHANGED,
         **documentation.problems(
             ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED
         ),
     },
 )
-def clearance(finished: FinishedJob, asked: Annotated[ClearanceQuery, Query()], readers: Readers) -> JSONResponse:
-    """Tell how near two phases come that gallop alike, each anywhere in its envelope: motion by motion, and by ellipse.
+def clearance_between_phases(
+    finished: FinishedJob, query: Annotated[ClearanceQuery, Query()], readers: Readers
+) -> JSONResponse:
+    """Return the clearance between two phases that gallop alike, for each motion and for an ellipse of design practice.
 
-    The envelope is the convex hull of the paths of all sub-conductors; conductors are taken as lines.
+    Each phase may be anywhere in its envelope, the convex hull of the paths of all sub-conductors. Conductors have no
+    thickness here.
     """
     job, headers = finished.job, finished.headers("json")
-    offset = asked.vertical_spacing_m, asked.horizontal_spacing_m
+    offset = query.vertical_spacing_m, query.horizontal_spacing_m
     if offset == (0.0, 0.0):
-        raise query_fault("vertical_spacing_m", "the other phase cannot hang in the same place")
+        raise query_fault(
+            "vertical_spacing_m",
+            "must differ from 0 unless horizontal_spacing_m does: two phases cannot hang at the same place",
+        )
     with readers() as session:
-        found = point_rows(session, job.id, asked.point)
+        found = point_rows(session, job.id, query.point)
         points = stored_results.points(session, job.id)
-        found["static"] = [p["static"] for p in points if p["point"] == asked.point and p["static"]]
-        request = request_of_point(session, job, asked.point)
+        found["static"] = [p["static"] for p in points if p["point"] == query.point and p["static"]]
+        request = request_of_point(session, job, query.point)
     if not found["static"]:
-        raise ProblemError(ProblemKind.NOT_FOUND, f"The job has no results at point {asked.point}.")
-    return JSONResponse(convert.clearances(request, found, offset, asked.method), headers=headers)
+        raise ProblemError(ProblemKind.NOT_FOUND, f"The job has no results at point {query.point}.")
+    return JSONResponse(convert.clearances(request, found, offset, query.method), headers=headers)

@@ -1,4 +1,4 @@
-"""Deliveries of webhooks: their log, sending them again, and the secret that signs them."""
+"""Webhooks: the log of their deliveries, sending them again, and the secret that signs them."""
 
 from typing import Any
 from uuid import UUID
@@ -44,25 +44,38 @@ def _document(delivery: WebhookDelivery) -> dict[str, Any]:
     }
 
 
-@router.get("/jobs/{job_id}/deliveries", response_model=DeliveryLog, responses=_READ)
-def of_job(job_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
-    """Tell what came of the webhooks of a job, attempt by attempt."""
+@router.get(
+    "/jobs/{job_id}/deliveries", summary="Get the webhook log of a job", response_model=DeliveryLog, responses=_READ
+)
+def job_deliveries(job_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
+    """Return the webhooks of a job with every attempt to send them."""
     with readers() as session:
         find_job(session, caller, job_id)
         return _made(webhooks.of(session, job_id=job_id), 200)
 
 
-@router.get("/batches/{batch_id}/deliveries", response_model=DeliveryLog, responses=_READ)
-def of_batch(batch_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
-    """Tell what came of the webhooks of a batch, attempt by attempt."""
+@router.get(
+    "/batches/{batch_id}/deliveries",
+    summary="Get the webhook log of a batch",
+    response_model=DeliveryLog,
+    responses=_READ,
+)
+def batch_deliveries(batch_id: UUID, caller: CallerOf, readers: Readers) -> JSONResponse:
+    """Return the webhooks of a batch with every attempt to send them."""
     with readers() as session:
         find_batch(session, caller, batch_id)
         return _made(webhooks.of(session, batch_id=batch_id), 200)
 
 
-@router.post("/jobs/{job_id}/deliveries", status_code=202, response_model=DeliveryLog, responses=_SEND)
-def send_of_job_again(job_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
-    """Send the webhooks of a job that has ended once more, under the ids that they had."""
+@router.post(
+    "/jobs/{job_id}/deliveries",
+    summary="Send the webhooks of a job again",
+    status_code=202,
+    response_model=DeliveryLog,
+    responses=_SEND,
+)
+def resend_job_webhooks(job_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
+    """Send the webhooks of a finished job again, with unchanged ids."""
 
     def make(session: Session) -> PostOutcome:
         find_job(session, caller, job_id)
@@ -73,9 +86,15 @@ def send_of_job_again(job_id: UUID, caller: CallerOf, key: KeyOf, writers: Write
     return run_once(writers, key, lambda: idempotency.fingerprint(job_address(job_id), "deliveries"), make).answer
 
 
-@router.post("/batches/{batch_id}/deliveries", status_code=202, response_model=DeliveryLog, responses=_SEND)
-def send_of_batch_again(batch_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
-    """Send the webhooks of a batch that has ended once more, under the ids that they had."""
+@router.post(
+    "/batches/{batch_id}/deliveries",
+    summary="Send the webhooks of a batch again",
+    status_code=202,
+    response_model=DeliveryLog,
+    responses=_SEND,
+)
+def resend_batch_webhooks(batch_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
+    """Send the webhooks of a finished batch again, with unchanged ids."""
 
     def make(session: Session) -> PostOutcome:
         find_batch(session, caller, batch_id)
@@ -88,9 +107,10 @@ def send_of_batch_again(batch_id: UUID, caller: CallerOf, key: KeyOf, writers: W
 
 @router.get(
     "/webhooks/secret",
+    summary="Get the secret that signs webhooks",
     response_model=WebhookSecret,
     responses={200: documentation.body("The secret", ("application/json", example_of(WebhookSecret)))},
 )
-def secret(caller: CallerOf, settings: SettingsOf) -> JSONResponse:
-    """Return the secret with which a receiver of the caller's owner verifies signatures (Standard Webhooks)."""
+def webhook_secret(caller: CallerOf, settings: SettingsOf) -> JSONResponse:
+    """Return the secret with which the owner's receivers verify signatures (Standard Webhooks)."""
     return JSONResponse({"secret": webhooks.secret(settings, caller.owner)})

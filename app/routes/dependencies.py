@@ -1,4 +1,4 @@
-"""What routes take from the request: settings, sessions, the caller, and whether stored results will do."""
+"""FastAPI dependencies of the routes: settings, sessions, the caller, and whether stored results may be reused."""
 
 from typing import Annotated
 
@@ -17,7 +17,7 @@ PREFIX = "/v1"
 RETRY_SECONDS = "1"
 
 
-# The dependencies are coroutines, since a plain function would be called in a thread of its own at every request.
+# The dependencies are coroutines: FastAPI would call a plain function in a thread for every request.
 async def _settings(request: Request) -> Settings:
     settings: Settings = request.app.state.settings
     return settings
@@ -39,7 +39,7 @@ async def _sender(request: Request) -> Sender:
 
 
 async def _caller(request: Request) -> Caller:
-    caller: Caller = request.state.caller  # the gate lets nobody through without
+    caller: Caller = request.state.caller  # set by app.security.gate
     return caller
 
 
@@ -52,7 +52,11 @@ CallerOf = Annotated[Caller, Depends(_caller)]
 
 async def _may_reuse(
     cache_control: Annotated[
-        str, Header(description="`no-cache` computes even what is stored already", examples=["no-cache"])
+        str,
+        Header(
+            description="`no-cache` computes everything anew, even if results of the same input are stored",
+            examples=["no-cache"],
+        ),
     ] = "",
 ) -> bool:
     return "no-cache" not in cache_control.lower()
@@ -62,12 +66,12 @@ MayReuse = Annotated[bool, Depends(_may_reuse)]
 
 
 async def vet_webhook(settings: Settings, url: str) -> None:
-    """See to it that a webhook may be sent to an address.
+    """Check that webhooks may go to an address.
 
     Raises
     ------
     ProblemError
-        422 if nothing is sent there.
+        422 if they may not.
     """
     try:
         await webhook_addresses.vet(url, private=settings.webhook_private_networks)

@@ -1,4 +1,4 @@
-"""Server-sent events: what happens to a job or a batch, as it happens."""
+"""Server-sent events: changes of a job or a batch, as they happen."""
 
 import re
 from collections.abc import AsyncIterator
@@ -25,14 +25,18 @@ from app.tables import ENDED, JobEvent, JobEventKind
 router = APIRouter(prefix=PREFIX)
 
 _NUMBER = re.compile(r"[0-9]{1,18}")
-_TOLD = frozenset({JobEventKind.FAILED, JobEventKind.RELEASED})
+_KINDS_WITH_DETAIL = frozenset({JobEventKind.FAILED, JobEventKind.RELEASED})
 _LastId = Annotated[
     str | None,
-    Header(alias="Last-Event-ID", description="The last id that has arrived; what follows it is sent", examples=["17"]),
+    Header(
+        alias="Last-Event-ID",
+        description="Id of the last event received; the stream continues after it",
+        examples=["17"],
+    ),
 ]
 _STREAM: dict[int | str, dict[str, Any]] = {
     200: {
-        "description": "Events until the final state; a comment every 15 s shows that the connection lives",
+        "description": "Events until the final state; a comment every 15 s keeps the connection alive",
         "content": {
             "text/event-stream": {
                 "schema": {"type": "string"},
@@ -41,20 +45,20 @@ _STREAM: dict[int | str, dict[str, Any]] = {
             }
         },
     },
-    204: {"description": "Everything was sent before; a browser then asks no more"},
+    204: {"description": "The client has all events; a browser then stops reconnecting"},
     **documentation.problems(ProblemKind.NOT_FOUND),
 }
 
 
-def _event_of_job(job_id: UUID, caller: CallerOf, readers: Readers, last_event_id: _LastId = None) -> int:
-    """Return the id of the last event that has arrived, 0 if none has.
+def _last_job_event(job_id: UUID, caller: CallerOf, readers: Readers, last_event_id: _LastId = None) -> int:
+    """Return the id of the last event that the client received, 0 if none.
 
     Raises
     ------
     ProblemError
         404 if there is no such job.
     Bodiless
-        204 if the job has ended, and its last event has arrived.
+        204 if the job has ended and the client received its last event.
     """
     last = int(last_event_id) if last_event_id and _NUMBER.fullmatch(last_event_id) else 0
     with readers() as session:
@@ -65,8 +69,8 @@ def _event_of_job(job_id: UUID, caller: CallerOf, readers: Readers, last_event_i
     return last
 
 
-def _event_of_batch(batch_id: UUID, caller: CallerOf, readers: Readers, last_event_id: _LastId = None) -> str:
-    """Return the id of the last event that has arrived; 404 and 204 as for jobs."""
+def _last_batch_event(batch_id: UUID, caller: CallerOf, readers: Readers, last_event_id: _LastId = None) -> str:
+    """Return the id of the last event that the client received; 404 and 204 as for jobs."""
     with readers() as session:
         find_batch(session, caller, batch_id)
         counts = batch_progress.counts(session, [batch_id])[batch_id]
@@ -75,51 +79,64 @@ def _event_of_batch(batch_id: UUID, caller: CallerOf, readers: Readers, last_eve
     return last_event_id or ""
 
 
-@router.get("/jobs/{job_id}/events", response_class=EventSourceResponse, responses=_STREAM, tags=["jobs"])
+@router.get(
+    "/jobs/{job_id}/events",
+    summary="Follow a job",
+    response_class=EventSourceResponse,
+    responses=_STREAM,
+    tags=["jobs"],
+)
 async def job_events(
-    job_id: UUID, caller: CallerOf, watch: JobWatch, last: Annotated[int, Depends(_event_of_job)]
+    job_id: UUID, caller: CallerOf, watch: JobWatch, last: Annotated[int, Depends(_last_job_event)]
 ) -> AsyncIterator[ServerSentEvent]:
-    """Send what happens to a job: an event with an id for every change of its state, and its progress between them.
+    """Stream the events of a job: one with an id for each change of state, and its progress in between.
 
-    A client that comes back with `Last-Event-ID` gets what it has missed. The stream ends with the final state.
+    A client that reconnects with `Last-Event-ID` receives the events that it missed. The stream ends with the final
+    state.
     """
     async with aclosing(watch.follow(Owned(caller.owner, job_id))) as states:
         async for job in states:
             for happening in job.events:
                 if happening.id > last:
                     last = happening.id
-                    yield _happened(happening)
+                    yield _job_event(happening)
             if job.ended:
                 return
             if job.progress:
                 yield ServerSentEvent(event="progress", data={"progress": job.progress, "step": job.step})
 
 
-@router.get("/batches/{batch_id}/events", response_class=EventSourceResponse, responses=_STREAM, tags=["batches"])
+@router.get(
+    "/batches/{batch_id}/events",
+    summary="Follow a batch",
+    response_class=EventSourceResponse,
+    responses=_STREAM,
+    tags=["batches"],
+)
 async def batch_events(
-    batch_id: UUID, caller: CallerOf, watch: BatchWatch, last: Annotated[str, Depends(_event_of_batch)]
+    batch_id: UUID, caller: CallerOf, watch: BatchWatch, last: Annotated[str, Depends(_last_batch_event)]
 ) -> AsyncIterator[ServerSentEvent]:
-    """Send the state of a batch and the counts of its lines whenever they change, until nothing waits or runs."""
+    """Stream the state of a batch and its lines by state at every change, until no line waits or runs."""
     async with aclosing(watch.follow(Owned(caller.owner, batch_id))) as states:
         async for batch in states:
             if _batch_event_id(batch.counts) != last:
-                yield _counted(batch)
+                yield _batch_event(batch)
             if batch.ended:
                 return
 
 
-def _happened(happening: Happening) -> ServerSentEvent:
+def _job_event(happening: Happening) -> ServerSentEvent:
     data = {
         "status": happening.kind.value,
         "at": happening.at.isoformat(),
         "attempt": happening.attempt,
-        # What is noted of other events concerns the operator alone.
-        "detail": happening.detail if happening.kind in _TOLD else None,
+        # The details of other events concern the operator only.
+        "detail": happening.detail if happening.kind in _KINDS_WITH_DETAIL else None,
     }
     return ServerSentEvent(id=str(happening.id), event=happening.kind.value, data=data)
 
 
-def _counted(batch: BatchSeen) -> ServerSentEvent:
+def _batch_event(batch: BatchSeen) -> ServerSentEvent:
     counts = batch.counts
     lines = line_counts(counts, batch.rejected_lines)
     data = {"status": counts.status.value, "progress": counts.progress, "lines": lines}
@@ -127,6 +144,6 @@ def _counted(batch: BatchSeen) -> ServerSentEvent:
 
 
 def _batch_event_id(counts: batch_progress.Counts) -> str:
-    """Return what two equal states of a batch have in common."""
+    """Return an id that equal states of a batch share."""
     lines = counts.accepted, counts.running, counts.successful, counts.failed, counts.dismissed
     return "-".join(map(str, (*lines, f"{counts.progress:.6f}")))

@@ -1,4 +1,4 @@
-"""The page on which the interface is read and tried, with its script and style sheet from here alone."""
+"""The interactive page for the API, with its script and style sheet served from here."""
 
 from fastapi import APIRouter, Request
 from fastapi.openapi.docs import get_swagger_ui_html
@@ -12,13 +12,13 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/docs")
 def docs(request: Request) -> HTMLResponse:
-    """Return the page, also behind a proxy that puts a path before every address."""
-    before = request.scope.get("root_path", "").rstrip("/")
+    """Return the page, also behind a proxy that adds a prefix to every path."""
+    prefix = request.scope.get("root_path", "").rstrip("/")
     return get_swagger_ui_html(
-        openapi_url=f"{before}/openapi.json",
+        openapi_url=f"{prefix}/openapi.json",
         title="Galloping of iced conductors",
-        swagger_js_url=f"{before}{ASSETS}/swagger-ui-bundle.js",
-        swagger_css_url=f"{before}{ASSETS}/swagger-ui.css",
+        swagger_js_url=f"{prefix}{ASSETS}/swagger-ui-bundle.js",
+        swagger_css_url=f"{prefix}{ASSETS}/swagger-ui.css",
         swagger_favicon_url="data:,",
         swagger_ui_parameters={"validatorUrl": None},
     )

@@ -1,4 +1,4 @@
-"""The gate to results and pictures: a job that has ended, and what of it the client has already."""
+"""The dependency of results and pictures: a finished job, and the entity tags that the client has."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -13,24 +13,25 @@ from app.routes.job_status import find_job, job_address
 from app.tables import Job, JobStatus
 
 KnownTags = Annotated[
-    str, Header(alias="If-None-Match", description="Entity tags of what the client has", examples=['"4f1d"'])
+    str,
+    Header(alias="If-None-Match", description="Entity tags of the answers that the client has", examples=['"4f1d"']),
 ]
 
 
 @dataclass(frozen=True, slots=True)
 class _FinishedJob:
-    """A job that has ended, and the tags of the answers about it that the client has."""
+    """A finished job, and the entity tags of the answers that the client has."""
 
     job: Job
     known: str
 
     def headers(self, form: str) -> dict[str, str]:
-        """Return the headers of an answer in this form.
+        """Return the headers of an answer in this format.
 
         Raises
         ------
         Bodiless
-            304 if the client has it.
+            304 if the client has this answer.
         """
         job = self.job
         return unless_known(self.known, strong_tag(job.input_hash, job.engine_version, job.status, form))

@@ -1,4 +1,4 @@
-"""Whether the service lives, whether it can take work, and the pages that problem types lead to."""
+"""Health checks, metrics, and the pages that explain problem types."""
 
 from collections.abc import Callable
 from functools import partial
@@ -29,50 +29,53 @@ _PATIENCE_SECONDS = 3.0
 
 @router.get(
     "/health/live",
+    summary="Check that the service is alive",
     response_model=Health,
-    responses={200: documentation.body("Alive", ("application/json", {"status": "ok", "checks": {}}))},
+    responses={200: documentation.body("The process answers", ("application/json", {"status": "ok", "checks": {}}))},
 )
-def live() -> JSONResponse:
-    """Say that the process answers."""
+def check_live() -> JSONResponse:
+    """Answer that the process is alive."""
     return JSONResponse({"status": "ok", "checks": {}})
 
 
 @router.get(
     "/health/ready",
+    summary="Check that the service is ready",
     response_model=Health,
     responses={
-        200: documentation.body("Can take work", ("application/json", _OK)),
-        503: {**documentation.body("Cannot", ("application/json", _DOWN)), "model": Health},
+        200: documentation.body("The service is ready", ("application/json", _OK)),
+        503: {**documentation.body("The service is not ready", ("application/json", _DOWN)), "model": Health},
     },
 )
-async def ready(request: Request, settings: SettingsOf) -> JSONResponse:
-    """Say whether the database is there and migrated, and the broker is there; 503 if not, within three seconds.
+async def check_ready(request: Request, settings: SettingsOf) -> JSONResponse:
+    """Check that the database is reachable and migrated and the broker is reachable; answer 503 if not, within 3 s.
 
-    Work is accepted without the broker too, and is done when it is back.
+    Without the broker the service still accepts work, and does it when the broker is back.
     """
     checks = dict.fromkeys(_OK["checks"], "does not answer in time")
 
-    async def look(check: Callable[[], dict[str, str]]) -> None:
+    async def run_check(check: Callable[[], dict[str, str]]) -> None:
         checks.update(await to_thread.run_sync(check, abandon_on_cancel=True))
 
     with move_on_after(_PATIENCE_SECONDS):
-        async with create_task_group() as looks:
-            looks.start_soon(look, partial(_database_checks, request.app.state.prober))
-            looks.start_soon(look, partial(_broker_check, settings))
+        async with create_task_group() as running:
+            running.start_soon(run_check, partial(_database_checks, request.app.state.prober))
+            running.start_soon(run_check, partial(_broker_check, settings))
     good = all(value == "ok" for value in checks.values())
     return JSONResponse({"status": "ok" if good else "unavailable", "checks": checks}, 200 if good else 503)
 
 
 @router.get(
     "/problems/{slug}",
+    summary="Explain a problem type",
     response_model=ProblemPage,
     responses={
-        200: documentation.body("What the problem means", ("application/json", documentation.PROBLEM_PAGE)),
+        200: documentation.body("The meaning of the problem type", ("application/json", documentation.PROBLEM_PAGE)),
         **documentation.problems(ProblemKind.NOT_FOUND),
     },
 )
 def problem_page(slug: str) -> ProblemPage:
-    """Explain a type of problem."""
+    """Explain a problem type."""
     for kind in ProblemKind:
         if kind.slug == slug:
             return ProblemPage(slug=slug, status=kind.status, title=kind.title, description=kind.description)
@@ -81,13 +84,14 @@ def problem_page(slug: str) -> ProblemPage:
 
 @router.get(
     "/metrics",
+    summary="Get the metrics",
     response_class=Response,
     responses={200: documentation.body("Metrics for Prometheus", ("text/plain", "galloping_jobs_waiting 0.0"))},
 )
-def show_metrics(request: Request, readers: Readers) -> Response:
-    """Tell requests, queues, ended jobs and lost leases in Prometheus' format; the same in every process."""
-    told, media_type = metrics.text(request.app.state.requests, readers, request.headers.get("accept", ""))
-    return Response(told, media_type=media_type)
+def prometheus_metrics(request: Request, readers: Readers) -> Response:
+    """Return requests, queues, finished jobs and lost leases in Prometheus format; every process returns the same."""
+    text, media_type = metrics.text(request.app.state.requests, readers, request.headers.get("accept", ""))
+    return Response(text, media_type=media_type)
 
 
 def _database_checks(prober: Engine) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""A POST under an `Idempotency-Key` is done once; the same request under it gets the first answer again."""
+"""Perform a POST under an `Idempotency-Key` once; answer a repetition with the first answer."""
 
 import logging
 import threading
@@ -36,8 +36,8 @@ async def _key(
             min_length=1,
             max_length=255,
             pattern=r"^[\x20-\x7e]+$",
-            description="The same request under the same key is done once within 24 hours and gets the first answer "
-            "again. The same key with another request is 422, and 409 while the first is still at work.",
+            description="Within 24 hours the service performs a request with this key once, and answers a repetition "
+            "with the first answer. Another request with this key gets 422; while the first is in progress, 409.",
             examples=["5e2f1c6e-6f0f-4d3a-9a53-0f4b8d2a7c11"],
         ),
     ] = None,
@@ -50,7 +50,7 @@ KeyOf = Annotated[Key | None, Depends(_key)]
 
 @dataclass(frozen=True, slots=True)
 class PostOutcome:
-    """The answer to a POST, and the jobs that it made, to be sent to the workers after the commit."""
+    """The answer to a POST, and the jobs that it created, to send to the workers after the commit."""
 
     answer: Response
     job_ids: Sequence[UUID] = ()
@@ -62,12 +62,13 @@ def run_once(
     fingerprint: Callable[[], str],
     make: Callable[[Session], PostOutcome],
 ) -> PostOutcome:
-    """Make something and keep the answer in one transaction; under a key that is in use, give its answer again.
+    """Create something and store the answer in one transaction; under a key in use, replay its answer.
 
     Raises
     ------
     ProblemError
-        As `make` raises it, then with nothing kept; 409 if a request at work holds the key, 422 if it is another's.
+        If `make` raises it, with nothing stored; 409 if a request in
+        progress holds the key, 422 if another one used it.
     """
     try:
         with writers.begin() as session:
@@ -89,12 +90,12 @@ def run_holding_key(
     work: Callable[[], PostOutcome],
     lease_seconds: float,
 ) -> PostOutcome:
-    """Do what takes several transactions while the key is held under a lease; the last of them finishes it.
+    """Do work that takes several transactions while holding the key under a lease; the last one stores the answer.
 
     Raises
     ------
     ProblemError
-        As `work` raises it, then with the key given up; else as from `run_once`.
+        If `work` raises it, with the key freed; otherwise as in `run_once`.
     """
     if key is None:
         return work()
@@ -116,9 +117,9 @@ def run_holding_key(
 
 @contextmanager
 def _key_renewed(writers: sessionmaker[Session], key: Key, lease_seconds: float) -> Iterator[None]:
-    """Renew the lease of a key in a thread, so that it lasts however slow the work is, and ends with the process.
+    """Renew the lease of a key in a thread, so that it outlasts slow work and ends with the process.
 
-    Who has lost it to another learns so when the work finishes the key.
+    If another request takes over the key, the work learns so when it stores its answer.
     """
     ended = threading.Event()
 
@@ -130,7 +131,7 @@ def _key_renewed(writers: sessionmaker[Session], key: Key, lease_seconds: float)
             except KeyTaken:
                 return
             except SQLAlchemyError as error:
-                _logger.warning("the lease of a key is not renewed: %s", error)
+                _logger.warning("could not renew the lease of an idempotency key: %s", error)
 
     thread = threading.Thread(target=copy_context().run, args=(run,), name="key-lease", daemon=True)
     thread.start()
@@ -142,12 +143,12 @@ def _key_renewed(writers: sessionmaker[Session], key: Key, lease_seconds: float)
 
 
 def replayed_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Callable[[], str]) -> Response:
-    """Return the first answer under a key; the fingerprint of the request is only asked for if there is one.
+    """Return the first answer under a key; compute the request's fingerprint only if there is one.
 
     Raises
     ------
     ProblemError
-        409 if there is none yet, 422 if it is another request's.
+        409 if there is no answer yet, 422 if another request used the key.
     """
     with sessions() as session:
         found = idempotency.find(session, key)
@@ -161,11 +162,11 @@ def replayed_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Call
 
 
 def stored_answer(answer: Response) -> Answer:
-    """Return what is kept of an answer."""
+    """Return the parts of an answer to store under a key."""
     headers = {name: value for name, value in answer.headers.items() if name not in _OF_THE_BODY}
     return Answer(answer.status_code, headers, bytes(answer.body).decode())
 
 
 def _in_flight() -> ProblemError:
-    detail = "A request with this Idempotency-Key is still at work."
+    detail = "A request with this Idempotency-Key is still in progress."
     return ProblemError(ProblemKind.REQUEST_IN_FLIGHT, detail, headers={"Retry-After": RETRY_SECONDS})

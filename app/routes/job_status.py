@@ -18,12 +18,12 @@ _PLOT_LINKS = ("amplitude", "orbit", "modes", "study")
 
 
 async def find_status(statuses: Groups[Owned, Job | None], caller: Caller, job_id: UUID) -> Job:
-    """Return a job of the caller's owner with all but its document.
+    """Return a job of the caller's owner without its document.
 
     Raises
     ------
     ProblemError
-        404 if the owner has none of that id, whoever else may have one.
+        404 if the owner has no job of that id, even if another owner has.
     """
     job = await statuses.ask(Owned(caller.owner, job_id))
     if job is None:
@@ -37,7 +37,7 @@ def find_job(session: Session, caller: Caller, job_id: UUID) -> Job:
     Raises
     ------
     ProblemError
-        404 if the owner has none of that id, whoever else may have one.
+        404 if the owner has no job of that id, even if another owner has.
     """
     job = job_records.get(session, caller.owner, job_id)
     if job is None:
@@ -55,7 +55,7 @@ def job_address(job_id: UUID) -> str:
 
 
 def failure_of(job: Job | Draft) -> dict[str, Any] | None:
-    """Return kind and sentence of a job's failure, None if it has not failed."""
+    """Return the kind and the sentence of a job's failure, None if it has not failed."""
     return {"kind": job.failure_kind.value, "detail": job.failure_detail} if job.failure_kind else None
 
 

@@ -1,4 +1,4 @@
-"""What helps to write a request and to read a result: conductors, input fields, and result tables."""
+"""Reference data for requests and results: the conductor catalogue, the input fields and the result tables."""
 
 from typing import Annotated
 
@@ -18,36 +18,39 @@ router = APIRouter(prefix=PREFIX, tags=["reference"])
 
 @router.get(
     "/conductors",
+    summary="Search the conductor catalogue",
     response_model=ConductorList,
     responses={
-        200: documentation.body("The rows found", ("application/json", reference_documentation.CONDUCTORS)),
+        200: documentation.body("The conductors found", ("application/json", reference_documentation.CONDUCTORS)),
         **documentation.problems(ProblemKind.INVALID_PARAMETER),
     },
 )
 def list_conductors(
     search: Annotated[
-        str, Query(max_length=100, description="Words that name, designation, type or stranding hold, in any case")
+        str, Query(max_length=100, description="Words to find in name, designation, type or stranding, ignoring case")
     ] = "",
 ) -> JSONResponse:
-    """List bare conductors of the catalogue with published figures, each row with its source."""
+    """List bare conductors of the catalogue with published figures; each row names its source."""
     return JSONResponse({"conductors": conductors.search(search)})
 
 
 @router.get(
     "/fields",
+    summary="List the input fields",
     response_model=FieldList,
     responses={200: documentation.body("The fields", ("application/json", reference_documentation.FIELDS))},
 )
 def list_fields() -> JSONResponse:
-    """List every field of a request with unit, bounds, default and description, made from the schemas themselves."""
+    """List every field of a request with unit, bounds, default and description, generated from the schemas."""
     return JSONResponse({"fields": field_table.input_fields()})
 
 
 @router.get(
     "/tables",
+    summary="List the result tables",
     response_model=TableList,
     responses={200: documentation.body("The tables", ("application/json", reference_documentation.TABLES))},
 )
 def list_tables() -> JSONResponse:
-    """List every table of a result with the unit and description of each column, made from their declarations."""
+    """List every result table with the unit and the description of each column, generated from the declarations."""
     return JSONResponse({"tables": all_tables()})

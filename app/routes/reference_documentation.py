@@ -1,4 +1,4 @@
-"""Examples for OpenAPI of what needs no job: fits, conductors, input fields."""
+"""OpenAPI examples of fits, conductors and input fields."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Answers that are read from the database while they are sent."""
+"""Stream answers from the database while they are sent."""
 
 from collections.abc import Callable, Generator, Iterator, Mapping
 
@@ -8,7 +8,7 @@ from starlette.types import Receive, Scope, Send
 
 
 class _ClosedStream(StreamingResponse):
-    """A stream whose generator is closed when the answer ends, also where the client leaves before its end."""
+    """A streaming response that closes its generator at the end, even if the client leaves early."""
 
     def __init__(self, pieces: Generator[str | bytes, None, None], media_type: str, headers: Mapping[str, str]) -> None:
         """Take the generator of the pieces."""
@@ -16,7 +16,7 @@ class _ClosedStream(StreamingResponse):
         self._pieces = pieces
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send the pieces, and let go of what they hold."""
+        """Send the pieces, then close the generator."""
         try:
             await super().__call__(scope, receive, send)
         finally:
@@ -29,7 +29,7 @@ def streamed(
     media_type: str,
     headers: Mapping[str, str],
 ) -> StreamingResponse:
-    """Answer with pieces that are read from the database while they are sent, in one session that is closed after."""
+    """Stream pieces that one database session reads while they are sent; close the session afterwards."""
 
     def stream() -> Generator[str | bytes, None, None]:
         with readers() as session:

@@ -1,4 +1,4 @@
-"""Waiting for the end of a job or a batch: `Prefer: wait=` (RFC 7240), bounded, without a thread or a connection."""
+"""Wait for the end of a job or a batch: `Prefer: wait=` (RFC 7240), bounded, without holding a thread or connection."""
 
 import re
 from contextlib import aclosing
@@ -14,7 +14,7 @@ from app.security.caller import Owned
 _WAIT = re.compile(r'(?:^|,)\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=[,;]|$)', re.IGNORECASE)
 APPLIED_HEADER: dict[str, Any] = {
     "Preference-Applied": {
-        "description": "`wait=` with the seconds that were waited at most, if waiting was asked for",
+        "description": "`wait=` and the most seconds that the service waited, if the client asked it to wait",
         "schema": {"type": "string"},
         "example": "wait=10",
     }
@@ -33,9 +33,9 @@ async def _batch_watch(request: Request) -> SharedWatch[Owned, BatchSeen]:
 
 async def _wait(
     request: Request,
-    prefer: Annotated[  # read below from all headers of the name, of which there may be several
+    prefer: Annotated[  # the code below reads all headers of this name
         str | None,
-        Header(description="`wait=N` answers at the end, or after N seconds if it has not come by then"),
+        Header(description="`wait=N` delays the answer until the end, for at most N seconds"),
     ] = None,
 ) -> int | None:
     found = _WAIT.search(", ".join(request.headers.getlist("prefer")))
@@ -48,7 +48,7 @@ Wait = Annotated[int | None, Depends(_wait)]
 
 
 def applied(wait: int | None) -> dict[str, str]:
-    """Return the header that says that a preference was heeded."""
+    """Return the header that confirms the client's preference."""
     return {"Preference-Applied": f"wait={wait}"} if wait is not None else {}
 
 
