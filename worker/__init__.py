@@ -1,1 +1,1 @@
-"""Workers: Celery processes that run jobs, and the sweeper that repairs what was lost."""
+"""Workers: Celery processes that run jobs, and the sweeper that recovers lost ones."""

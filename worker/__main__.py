@@ -21,13 +21,13 @@ from worker.presence import presence
 from worker.sweep import release, sweep
 from worker.tasks import OWNER
 
-_LOOK_SECONDS = 0.2
+_POLL_SECONDS = 0.2
 
 _logger = logging.getLogger(__name__)
 
 
 def main() -> int:
-    """Run until SIGTERM or SIGINT; a pool that dies is replaced, and its jobs go back to the queue at once."""
+    """Run until SIGTERM or SIGINT arrives; replace a pool that dies, and return its jobs to the queue at once."""
     processes.end_with_parent()
     settings = get_settings()
     logs.configure(settings)
@@ -48,26 +48,26 @@ def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) 
         pool = _start_pool(settings, owner)
         while not wait(settings.sweep_seconds):
             if pool.poll() is not None:
-                _logger.warning("the pool ended with code %s and is started again", pool.returncode)
+                _logger.warning("the pool exited with code %s; starting it again", pool.returncode)
                 _repair(sessions, settings, owner)
                 pool = _start_pool(settings, owner)
             _repair(sessions, settings)
             show_presence()
         _drain(sessions, settings, owner, pool)
         _repair(sessions, settings, owner)
-        _repair(sessions, settings)  # sends what was given back, so that another worker need not find it first
+        _repair(sessions, settings)  # sends the released jobs now, before another worker's sweep finds them
 
 
 def _drain(sessions: sessionmaker[Session], settings: Settings, owner: str, pool: processes.Child) -> None:
-    """Let the pool end its jobs, but take no more; what takes too long is cut off, for the caller to give back.
+    """Let the pool finish its jobs without taking more; kill it after the time limit, for the caller to release them.
 
-    An idle pool is not waited for: Celery takes seconds to end one, and there is nothing that it could lose.
+    Do not wait for an idle pool: Celery takes seconds to end one, and it has nothing to lose.
     """
     pool.send_signal(signal.SIGTERM)
     deadline = time.monotonic() + settings.shutdown_seconds
-    time.sleep(_LOOK_SECONDS)  # for a job whose message has arrived but is not claimed yet
+    time.sleep(_POLL_SECONDS)  # for a job whose message arrived but which is not claimed yet
     while pool.poll() is None and time.monotonic() < deadline and _holds_jobs(sessions, owner):
-        time.sleep(_LOOK_SECONDS)
+        time.sleep(_POLL_SECONDS)
     processes.stop([pool], signal.SIGKILL, settings.shutdown_seconds)
 
 
@@ -91,7 +91,7 @@ def _repair(sessions: sessionmaker[Session], settings: Settings, owner: str | No
         else:
             release(sessions, settings, owner)
     except SQLAlchemyError as error:
-        _logger.warning("the database failed, to be tried again: %s", error)
+        _logger.warning("the database failed; the next sweep tries again: %s", error)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The courier sends webhooks in a thread of its own, many at once, so that a receiver that hangs holds up nobody."""
+"""The courier sends webhooks in its own thread, many at once, so that one hanging receiver delays no others."""
 
 import asyncio
 import logging
@@ -22,14 +22,14 @@ from app.security.webhook_addresses import RefusedAddress
 _AT_ONCE = 64
 _AN_OWNER = 16
 _A_RECEIVER = 4
-_LOOK_SECONDS = 0.5
+_POLL_SECONDS = 0.5
 
 _logger = logging.getLogger(__name__)
 
 
 @contextmanager
 def courier(sessions: sessionmaker[Session], settings: Settings) -> Iterator[None]:
-    """Send what is due for as long as the context lasts; what is under way then is sent again by another courier."""
+    """Send due webhooks while the context lasts; another courier resends those still in progress at its end."""
     stopped = threading.Event()
     rounds = _Rounds(sessions, settings)
     thread = threading.Thread(target=asyncio.run, args=(rounds.run(stopped),), name="courier", daemon=True)
@@ -39,11 +39,11 @@ def courier(sessions: sessionmaker[Session], settings: Settings) -> Iterator[Non
     finally:
         stopped.set()
         rounds.wake()
-        thread.join(2.0 * _LOOK_SECONDS)
+        thread.join(2.0 * _POLL_SECONDS)
 
 
 async def send(settings: Settings, message: Message, context: ssl.SSLContext) -> Attempt:
-    """Send a message once to the address that its host has now; nothing of the answer but the status is read."""
+    """Send a message once, to the current address of its host; read only the status of the answer."""
     try:
         with anyio.fail_after(settings.webhook_timeout_seconds):
             target = await webhook_addresses.vet(message.url, private=settings.webhook_private_networks)
@@ -66,58 +66,58 @@ async def send(settings: Settings, message: Message, context: ssl.SSLContext) ->
 
 
 class _Rounds:
-    """What is being sent."""
+    """Repeated rounds of taking and sending due messages."""
 
     def __init__(self, sessions: sessionmaker[Session], settings: Settings) -> None:
         self._sessions, self._settings = sessions, settings
-        self._under_way = Share(_AT_ONCE, _AN_OWNER, _A_RECEIVER)
+        self._in_progress = Share(_AT_ONCE, _AN_OWNER, _A_RECEIVER)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._changed = asyncio.Event()
 
     def wake(self) -> None:
-        """Look at once, from any thread."""
+        """Start the next round at once; callable from any thread."""
         if self._loop is not None:
-            with suppress(RuntimeError):  # it has ended by itself
+            with suppress(RuntimeError):  # the loop has ended already
                 self._loop.call_soon_threadsafe(self._changed.set)
 
     async def run(self, stopped: threading.Event) -> None:
-        """Look for what is due until it is stopped."""
+        """Send due messages until stopped."""
         self._loop = asyncio.get_running_loop()
         context = ssl.create_default_context(cafile=self._settings.webhook_ca_file)
         tasks: set[asyncio.Task[None]] = set()
         while not stopped.is_set():
             try:
                 for message in await asyncio.to_thread(self._take):
-                    self._under_way.add(message.owner, message.receiver)
+                    self._in_progress.add(message.owner, message.receiver)
                     task = asyncio.create_task(self._deliver(message, context))
                     tasks.add(task)
                     task.add_done_callback(tasks.discard)
             except SQLAlchemyError as error:
-                _logger.warning("the database failed, webhooks wait: %s", error)
+                _logger.warning("the database failed; webhooks wait: %s", error)
             await self._pause()
         for task in tasks:
             task.cancel()
 
     async def _pause(self) -> None:
-        """Wait for the next look, or until something was sent: its owner and its receiver have room for another."""
+        """Wait for the next round, or until a message was sent, which frees a place for its owner and receiver."""
         with suppress(TimeoutError):
-            async with asyncio.timeout(_LOOK_SECONDS):
+            async with asyncio.timeout(_POLL_SECONDS):
                 await self._changed.wait()
         self._changed.clear()
 
     def _take(self) -> list[Message]:
         with self._sessions.begin() as session:
             webhooks.enlist(session)
-            return webhooks.take_due(session, self._under_way, 2.0 * self._settings.webhook_timeout_seconds)
+            return webhooks.take_due(session, self._in_progress, 2.0 * self._settings.webhook_timeout_seconds)
 
     async def _deliver(self, message: Message, context: ssl.SSLContext) -> None:
         try:
             attempt = await send(self._settings, message, context)
             await asyncio.to_thread(self._note, message, attempt)
         except SQLAlchemyError as error:
-            _logger.warning("what came of a webhook is not noted, it is sent again: %s", error)
+            _logger.warning("could not store the outcome of a webhook; it will be sent again: %s", error)
         finally:
-            self._under_way.remove(message.owner, message.receiver)
+            self._in_progress.remove(message.owner, message.receiver)
             self._changed.set()
 
     def _note(self, message: Message, attempt: Attempt) -> None:

@@ -1,4 +1,4 @@
-"""One job from claim to end: runs the engine under a lease, and stores what came of it in one transaction."""
+"""Run one job from claim to end: compute it under a lease, and store its results in one transaction."""
 
 import itertools
 import logging
@@ -30,12 +30,12 @@ _logger = logging.getLogger(__name__)
 
 
 def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, owner: str) -> None:
-    """Claim a job, compute it, and end it; do nothing if it is not to be had, as after a second delivery.
+    """Claim a job, compute it, and end it; do nothing if it cannot be claimed, as after a repeated message.
 
     Raises
     ------
     sqlalchemy.exc.SQLAlchemyError
-        If the database fails at the claim or at the end; the lease then runs out and the job is run again.
+        If the database fails at the claim or at the end; the lease then expires, and the job runs again.
     """
     with sessions.begin() as session:
         held = leases.claim(session, job_id, owner, settings.lease_seconds)
@@ -59,16 +59,16 @@ def _work(
     with sessions.begin() as session:
         ended = _conclude(session, held, pulse.verdict, failure, points)
     if not ended:
-        _logger.warning("the job was taken from this attempt, whose results are dropped")
+        _logger.warning("another worker has the job; the results of this attempt are dropped")
         return
     facts = {"verdict": pulse.verdict.value, "failure": failure and failure.kind.value, "points": len(points)}
     _logger.info("job ends", extra={**facts, "engine_seconds": round(seconds, 3)})
 
 
 class Pulse:
-    """A thread that renews the lease and writes the progress, however long a step of the engine takes.
+    """A thread that renews the lease and stores the progress, however long a step of the engine takes.
 
-    `verdict` tells what the last heartbeat learned.
+    `verdict` is the answer to the last heartbeat.
     """
 
     def __init__(self, sessions: sessionmaker[Session], held: Claim, settings: Settings) -> None:
@@ -80,18 +80,18 @@ class Pulse:
         self._thread = threading.Thread(target=copy_context().run, args=(self._run,), name="heartbeat", daemon=True)
 
     def report(self, advance: Advance) -> None:
-        """Note how far the job is, for the next heartbeat."""
+        """Set the progress for the next heartbeat."""
         self._latest = advance
 
     def __enter__(self) -> Self:
-        """Start beating."""
+        """Start the heartbeats."""
         self._thread.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Stop beating, before the end of the job is written."""
+        """Stop the heartbeats, before the end of the job is written."""
         self._stopped.set()
         self._thread.join()
 
@@ -100,7 +100,7 @@ class Pulse:
             try:
                 self._beat()
             except SQLAlchemyError as error:
-                _logger.warning("the job misses a heartbeat: %s", error)
+                _logger.warning("the job missed a heartbeat: %s", error)
 
     def _beat(self) -> None:
         latest = self._latest
@@ -110,7 +110,7 @@ class Pulse:
 
 
 def _steps(session: Session, held: Claim) -> Iterator[Advance | PointResult]:
-    """Return the computation of a job or a chunk, which has not begun yet."""
+    """Return the computation of a job or a chunk, not yet started."""
     if held.batch_id is None:
         line_hash = reuse.hash_of(held.owner, held.document)
         steps = convert.run(held.document)
@@ -131,7 +131,7 @@ def _with_hashes(steps: Iterator[Advance | PointResult], hashes: Mapping[int, st
 def _compute(
     steps: Iterator[Advance | PointResult], held: Claim, settings: Settings, pulse: Pulse, points: list[PointResult]
 ) -> Failure | None:
-    """Run the engine and collect the points, until it ends, fails, runs too long, or a heartbeat says stop."""
+    """Run the engine and collect the points until it ends, fails, exceeds the time limit, or a heartbeat says stop."""
     try:
         _collect(steps, settings, pulse, points)
     except (InvalidSpec, ValidationError) as error:
@@ -164,7 +164,7 @@ def _collect(
 
 
 def _conclude(session: Session, held: Claim, verdict: Beat, failure: Failure | None, points: list[PointResult]) -> bool:
-    """Write the end of the job; False if it belongs to a later attempt."""
+    """Write the end of the job; return False if a later attempt has the job."""
     if verdict is Beat.LOST:
         return False
     if verdict is Beat.CANCEL:

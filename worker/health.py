@@ -1,4 +1,4 @@
-"""A sign of life: the worker touches a file after every sweep; `python -m worker.health` fails if that is long ago."""
+"""A sign of life: the worker touches a file after every sweep, and `python -m worker.health` fails if it is old."""
 
 import sys
 import time
@@ -23,7 +23,7 @@ def show_life(settings: Settings) -> None:
 
 
 def is_alive(settings: Settings, now: float) -> bool:
-    """Tell whether the worker of this data directory has swept lately; now is in seconds since the epoch."""
+    """Tell whether the worker of this data directory swept recently; `now` is in seconds since the epoch."""
     patience = max(_LEAST_SECONDS, _SWEEPS * settings.sweep_seconds)
     return _file(settings).exists() and now - _file(settings).stat().st_mtime < patience
 

@@ -1,4 +1,4 @@
-"""The pool of processes that works for the embedded broker."""
+"""The process pool for the embedded broker."""
 
 import os
 from typing import Any
@@ -7,11 +7,11 @@ from celery.concurrency.prefork import TaskPool
 
 
 class EmbeddedPool(TaskPool):
-    """A prefork pool that ends, to be started anew, when one of its idle processes is killed.
+    """A prefork pool that exits, to be restarted, when one of its idle processes is killed.
 
-    For a broker without an event loop the processes share one pipe under a lock. A process that is killed while it
-    waits for work takes the lock with it, and no other would ever get a job again. One that is killed at work holds
-    no lock; the pool replaces it, and the other jobs go on.
+    For a broker without an event loop the processes share one pipe under a lock. A process killed while it waits for
+    work keeps the lock, and no other process would get a job again. A process killed during a job holds no lock; the
+    pool replaces it, and the other jobs continue.
     """
 
     def on_start(self) -> None:
@@ -25,5 +25,5 @@ class EmbeddedPool(TaskPool):
             os._exit(1)
 
     def _busy(self) -> set[int]:
-        pool: Any = vars(self)["_pool"]  # what Celery's own class keeps there has no name for others
+        pool: Any = vars(self)["_pool"]  # Celery's class offers no public access to it
         return {pid for job in list(pool._cache.values()) for pid in job.worker_pids()}

@@ -1,4 +1,4 @@
-"""The worker's place in the list of workers, for `galloping status`."""
+"""Report the worker to the list of workers, for `galloping status`."""
 
 import logging
 import time
@@ -16,7 +16,7 @@ _logger = logging.getLogger(__name__)
 
 @contextmanager
 def presence(sessions: sessionmaker[Session], settings: Settings, name: str) -> Iterator[Callable[[], None]]:
-    """Give a function that says, if it is time to, that the worker is there; at the end the worker has left."""
+    """Yield a function that reports the worker when a report is due; at the end, remove the worker from the list."""
     due = 0.0
 
     def show() -> None:
@@ -38,4 +38,4 @@ def _change(sessions: sessionmaker[Session], change: Callable[[Session], None]) 
         with sessions.begin() as session:
             change(session)
     except SQLAlchemyError as error:
-        _logger.warning("the list of workers cannot be written: %s", error)
+        _logger.warning("could not update the list of workers: %s", error)

@@ -1,6 +1,6 @@
-"""The sweeper: gives back jobs whose worker is gone, and sends jobs whose message never left or was lost.
+"""The sweeper: release jobs whose worker is gone, and send jobs whose message was never sent or was lost.
 
-Any number may sweep at once: jobs are released and taken under row locks, and a message too many is harmless.
+Any number of processes may sweep at once: row locks protect the jobs, and an extra message is harmless.
 """
 
 import logging
@@ -18,12 +18,12 @@ _logger = logging.getLogger(__name__)
 
 
 def sweep(sessions: sessionmaker[Session], settings: Settings) -> int:
-    """Release expired leases, then send what waits for a message; return how many messages were sent.
+    """Release expired leases, then send a message for each job that needs one; return the number of messages.
 
     Raises
     ------
     sqlalchemy.exc.SQLAlchemyError
-        If the database fails; the next sweep does what this one did not.
+        If the database fails; the next sweep completes the work.
     """
     release(sessions, settings)
     with sessions.begin() as session:
@@ -45,14 +45,14 @@ def _send_waiting(sessions: sessionmaker[Session], settings: Settings, chunks: b
                 queue.send(job_id, chunk=chunks)
                 sent += 1
     except BrokerUnavailable as error:
-        _logger.warning("the broker is not to be reached: %s", error)
+        _logger.warning("the broker cannot be reached: %s", error)
         with sessions.begin() as session:
             leases.mark_undispatched(session, taken[sent:])
     return sent
 
 
 def release(sessions: sessionmaker[Session], settings: Settings, owner: str | None = None) -> int:
-    """Give back jobs whose lease ran out, or all jobs of an owner that is known to be dead; return their number.
+    """Release jobs whose lease expired, or all jobs of a worker that is known to be dead; return their number.
 
     Raises
     ------
@@ -62,5 +62,5 @@ def release(sessions: sessionmaker[Session], settings: Settings, owner: str | No
     with sessions.begin() as session:
         released = leases.release_expired(session, settings, owner)
     if released:
-        _logger.warning("%d jobs were given back by lost workers", released)
+        _logger.warning("released %d jobs of lost workers", released)
     return released

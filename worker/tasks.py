@@ -21,13 +21,13 @@ OWNER = "GALLOPING_WORKER_OWNER"
 
 
 def worker_application(settings: Settings, owner: str) -> Celery:
-    """Make the Celery application of a worker, whose leases carry the owner's name."""
+    """Create the Celery application of a worker, whose leases carry the owner's name."""
     application = celery_application(settings)
     application.conf.update(_worker_options(settings))
 
     @cache
     def sessions() -> sessionmaker[Session]:
-        # Made at the first job of each process, never before the fork: connections must not be shared.
+        # Created at the first job of each process, never before the fork: processes must not share connections.
         return session_factory(make_engine(settings))
 
     @application.task(name=TASK_NAME)
@@ -41,7 +41,7 @@ def _worker_options(settings: Settings) -> dict[str, object]:
     transport_options = dict(celery_application(settings).conf.broker_transport_options)
     embedded = settings.broker_url.startswith("filesystem:")
     if not embedded:
-        # Unlike a sender, a worker waits in blocking reads of a second, and nobody waits for the worker.
+        # Unlike a sender, a worker blocks in reads of one second, and nobody waits for it.
         transport_options |= {"socket_timeout": 10.0, "health_check_interval": 10, "max_retries": None}
     return {
         "broker_transport_options": transport_options,
@@ -62,20 +62,20 @@ def _worker_options(settings: Settings) -> dict[str, object]:
 
 
 def _leave_logs(**_: object) -> None:
-    """Keep Celery from configuring the logs: it does so unless someone listens to its signal."""
+    """Keep Celery from configuring the logs; it does so unless a handler listens to its signal."""
 
 
 def load() -> None:
-    """Load what every job needs before the fork: once for all processes, so that one that replaces another is ready."""
+    """Load what every job needs before the fork: once for all processes, so that a replacement is ready at once."""
     for name in ("engine.analysis", "engine.clearance"):
         import_module(name)
     configure_mappers()
 
 
 def freeze(**_: object) -> None:
-    """Take what is loaded out of the collector's sight: it lives as long as the process, and looking through it recurs.
+    """Exclude everything loaded so far from garbage collection: it lives as long as the process.
 
-    The engine makes no cycles, so that what is made after this is mostly gone before anything is collected.
+    The engine creates no reference cycles, so most later objects are freed without collection.
     """
     gc.collect()
     gc.freeze()

@@ -1,4 +1,4 @@
-"""The command line: `galloping` with its commands, each in the module of its kind."""
+"""The command line: `galloping` and its commands, grouped in modules by subject."""
 
 import typer
 

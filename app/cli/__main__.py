@@ -1,4 +1,4 @@
-"""Run the command line by `python -m app.cli`."""
+"""Run the command line with `python -m app.cli`."""
 
 from app.cli import main
 

@@ -1,4 +1,4 @@
-"""The source's four lines through the whole service: HTTP, queue, worker, engine, SQL, and back (`make demo`)."""
+"""Run the source's four lines through the whole service and back: HTTP, queue, worker, engine, SQL (`make demo`)."""
 
 import contextlib
 import json
@@ -31,7 +31,7 @@ Jobs = dict[str, dict[str, JobDocument]]
 _CYCLES: Json = {"loops": [1, 2], "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 5}}
 _FREQUENCIES: Json = {"loops": [1, 2, 3], "wind_speeds_m_per_s": [], "finite_element_loops": []}
 _COEXISTING: Json = {"loops": [2], "models": ["hybrid"], "wind_speeds_m_per_s": [12.0]}
-_LIGHT_DAMPING = 0.0308  # of torsion, a tenth of the source's
+_LIGHT_DAMPING = 0.0308  # torsional ratio: a tenth of the source's
 _TABLES = ("frequencies", "critical-wind-speeds", "limit-cycles")
 _PICTURES = ("amplitude", "orbit")
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
@@ -45,15 +45,15 @@ def main(
         "demo-output"
     ),
 ) -> None:
-    """Run the source's four lines through a service of their own and compare with the source."""
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the service ends with a demo that is ended
+    """Run the source's four lines through a new service and compare the results with the source."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends the service with the demo
     console = Console()
     output.mkdir(parents=True, exist_ok=True)
     try:
         with _service(output) as address, Client(address) as service:
-            console.print(f"The service runs at {address}; its documentation is at {address}/docs while this runs.")
+            console.print(f"The service runs at {address}; its documentation is at {address}/docs until the demo ends.")
             jobs = _run_jobs(service, console)
-            console.print("Models: hybrid, and finite element (FE); beside them the number of loops a span.")
+            console.print("Models: hybrid and finite element (FE), each followed by the number of loops per span.")
             console.print(_frequency_table({name: job["frequencies"] for name, job in jobs.items()}, service))
             finished = {name: service.results(job["cycles"]).model_dump() for name, job in jobs.items()}
             console.print(_critical_table(finished))
@@ -68,17 +68,17 @@ def main(
 
 @contextlib.contextmanager
 def _service(output: Path) -> Iterator[str]:
-    """Run the embedded service on a free port, and give its address once it can take work.
+    """Run the embedded service on a free port, and yield its address when it is ready.
 
     Raises
     ------
     ServiceError
-        If it does not come up in time.
+        If the service does not start in time.
     """
     port = _free_port()
     command = [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--data-dir", str(output / "service")]
     log = output / "service.log"
-    # Variables of the shell that would lead it to another database or broker are not for the demo.
+    # Drop variables of the shell that would point the demo at another database or broker.
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GALLOPING_")}
     with log.open("w") as sink, subprocess.Popen(command, stdout=sink, stderr=sink, env=environment) as process:
         try:
@@ -108,10 +108,11 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
 
 
 def _run_jobs(service: Client, console: Console) -> Jobs:
-    """Submit everything first, then follow each job to its end."""
+    """Submit all jobs, then follow each job to its end."""
     wanted = {"frequencies": _FREQUENCIES, "cycles": _CYCLES}
     jobs: Jobs = {
-        name: {kind: service.submit(example(name), asked) for kind, asked in wanted.items()} for name in EXAMPLE_NAMES
+        name: {kind: service.submit(example(name), analysis) for kind, analysis in wanted.items()}
+        for name in EXAMPLE_NAMES
     }
     with _progress(console) as show:
         for name, kinds in jobs.items():
@@ -128,7 +129,7 @@ def _successful(job: JobDocument) -> JobDocument:
 
 @contextlib.contextmanager
 def _progress(console: Console) -> Iterator[Callable[[str, str], client.Show]]:
-    """Give what makes a bar for a job; away from a terminal it only says when a job begins."""
+    """Yield a function that adds a progress bar for a job; without a terminal, print when a job begins."""
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
 
@@ -142,10 +143,10 @@ def _progress(console: Console) -> Iterator[Callable[[str, str], client.Show]]:
 
 
 def _frequency_table(jobs: Mapping[str, JobDocument], service: Client) -> Table:
-    """Set our frequencies beside Table 2 of the source."""
+    """Show the computed frequencies beside Table 2 of the source."""
     source = json.loads((files("app") / "data" / "table2.json").read_text(encoding="utf-8"))
     printed = {(row["subconductors"], row["model"]): row["loops"] for row in source["rows"]}
-    table = _table("Natural frequencies [Hz]: ours, Table 2 of the source, difference in %", *_DIRECTIONS)
+    table = _table("Natural frequencies [Hz]: computed, Table 2 of the source, difference in %", *_DIRECTIONS)
     for subconductors, (name, job) in enumerate(jobs.items(), start=1):
         for row in service.results(job).model_dump()["frequencies"]:
             theirs = printed[subconductors, row["model"]][str(row["loops"])]
@@ -171,9 +172,9 @@ def _critical_table(results: Mapping[str, Json]) -> Table:
 
 
 def _cycle_table(results: Mapping[str, Json]) -> Table:
-    """Show the stable cycles; the equilibria and the unstable ones are in the CSV files."""
+    """Show the stable cycles; the CSV files also hold the equilibria and the unstable cycles."""
     columns = ("wind\n[m/s]", "vertical\n[m]", "horizontal\n[m]", "torsional\n[rad]", "frequency\n[Hz]")
-    table = _table("Stable limit cycles: amplitudes where they are observed", *columns)
+    table = _table("Stable limit cycles: amplitudes at the observation point", *columns)
     for name, result in results.items():
         for row in _stable(result["limit_cycles"]):
             sizes = [f"{row[key]:.4f}" for key in ("vertical_m", "horizontal_m", "torsional_rad", "frequency_hz")]
@@ -183,7 +184,7 @@ def _cycle_table(results: Mapping[str, Json]) -> Table:
 
 
 def _coexisting_table(service: Client) -> Table:
-    """Show a line with two stable cycles at one wind speed: which one it takes depends on how it started."""
+    """Show a line with two stable cycles at one wind speed: the initial motion decides which one develops."""
     line = example("c11-triple")
     light = {**line, "damping": {**line["damping"], "torsional_ratio": _LIGHT_DAMPING}}
     job = _successful(service.wait(service.submit(light, _COEXISTING)))

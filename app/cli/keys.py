@@ -1,34 +1,40 @@
-"""`galloping keys`: makes, lists and revokes the keys of the API."""
-# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+"""`galloping keys`: create, list and revoke API keys."""
+# ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.common import BAD_INPUT, AsJson, DataDirectory, end, print_table, read_settings, using_database, write
+from app.cli.console import BAD_INPUT, end, print_table, write
+from app.cli.inputs import read_settings, using_database
+from app.cli.options import AsJson, DataDirectory
 from app.security.caller import OWNER_PATTERN, Scope
 
 if TYPE_CHECKING:
     from app.tables import ApiKey
 
-commands = typer.Typer(help="Makes, lists and revokes the keys of the API.", no_args_is_help=True)
+commands = typer.Typer(help="Create, list and revoke API keys.", no_args_is_help=True)
 
 _COLUMNS = ("prefix", "owner", "name", "scopes", "state", "created_at", "expires_at", "used_at")
 
 
 @commands.command()
 def create(
-    owner: Annotated[str, typer.Option(help="Whose jobs and batches its bearer sees; letters, digits and . _ @ -")],
-    scope: Annotated[list[Scope] | None, typer.Option(help="What it allows; may be repeated; all if absent.")] = None,
-    name: Annotated[str | None, typer.Option(help="What it is for.")] = None,
+    owner: Annotated[
+        str, typer.Option(help="Owner of the jobs and batches that the key opens; letters, digits and . _ @ -")
+    ],
+    scope: Annotated[
+        list[Scope] | None, typer.Option(help="Scope of the key; may be repeated; all scopes if absent.")
+    ] = None,
+    name: Annotated[str | None, typer.Option(help="Purpose of the key.")] = None,
     days: Annotated[
-        int | None, typer.Option(min=1, max=36_500, help="Days that it holds; without end if absent.")
+        int | None, typer.Option(min=1, max=36_500, help="Days until the key expires; it never does if absent.")
     ] = None,
     json: AsJson = False,
     data_dir: DataDirectory = None,
 ) -> None:
-    """Make a key and print it; it cannot be shown again. From the first key on the service asks for one."""
+    """Create a key and print it; it cannot be shown again. Once a key exists, the service requires one."""
     from app.security import keys
 
     if not OWNER_PATTERN.fullmatch(owner):
@@ -40,7 +46,9 @@ def create(
         write({"key": text, **_document(key)}, None)
         return
     typer.echo(text)
-    typer.echo(f"Keep it: it is not shown again. It belongs to {owner} and allows {', '.join(key.scopes)}.", err=True)
+    typer.echo(
+        f"Store this key: it is not shown again. It belongs to {owner} and allows {', '.join(key.scopes)}.", err=True
+    )
 
 
 @commands.command("list")
@@ -49,7 +57,7 @@ def list_keys(
     json: AsJson = False,
     data_dir: DataDirectory = None,
 ) -> None:
-    """List the keys, oldest first, by what may be shown of them."""
+    """List the keys, oldest first, by their visible prefixes."""
     from app.security import keys
 
     with using_database(read_settings(data_dir)) as sessions, sessions() as session:
@@ -62,10 +70,10 @@ def list_keys(
 
 @commands.command()
 def revoke(
-    key: Annotated[str, typer.Argument(help="The key, its beginning as the list shows it, or its id.")],
+    key: Annotated[str, typer.Argument(help="The key, its prefix from the list, or its id.")],
     data_dir: DataDirectory = None,
 ) -> None:
-    """Revoke a key; running services refuse it after GALLOPING_KEY_CACHE_SECONDS at most."""
+    """Revoke a key; running services refuse it after at most GALLOPING_KEY_CACHE_SECONDS."""
     from app.security import keys
 
     settings = read_settings(data_dir)

@@ -1,5 +1,5 @@
 """Commands that need no service: `galloping analyse`, `example` and `ellipse`."""
-# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+# ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
 import json
 import os
@@ -8,20 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from app.cli.common import (
-    BAD_INPUT,
-    FAILED,
-    AnalysisFile,
-    LineFile,
-    OutputFile,
-    PlacementFile,
-    StudyFile,
-    end,
-    progress_bar,
-    read_request,
-    refuse,
-    write,
-)
+from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, write
+from app.cli.inputs import read_request
+from app.cli.options import AnalysisFile, LineFile, OutputFile, PlacementFile, StudyFile
 from app.reference.source_lines import EXAMPLE_NAMES
 from app.reference.source_studies import STUDY_NAMES
 
@@ -39,7 +28,7 @@ def analyse(
     """Analyse a line in this process, without service or database."""
     from app.runtime.processes import ONE_BLAS_THREAD
 
-    os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, which reads it once
+    os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, because BLAS reads it once
     from app import convert
     from app.schemas.faults import BadInput
 
@@ -48,43 +37,45 @@ def analyse(
         request = convert.read(document)
     except BadInput as error:
         refuse(error.faults)
-    whole = request.kept()
+    complete = request.kept()
     points: list[PointResult] = []
     try:
         with progress_bar() as show:
-            for item in convert.run(whole):
+            for item in convert.run(complete):
                 if isinstance(item, convert.Advance):
                     show(item.fraction, item.step)
                 else:
                     points.append(item)
     except (ArithmeticError, ValueError) as error:
         end(f"the computation failed: {error}", FAILED)
-    write(_result(whole, points), output)
+    write(_result(complete, points), output)
 
 
 def example(
-    name: Annotated[str, typer.Argument(metavar="|".join(EXAMPLE_NAMES), help="Which of the source's lines.")],
+    name: Annotated[str, typer.Argument(metavar="|".join(EXAMPLE_NAMES), help="One of the source's lines.")],
     study: Annotated[
-        str | None, typer.Option(metavar="|".join(STUDY_NAMES), help="Print a whole request: a study of this line.")
+        str | None, typer.Option(metavar="|".join(STUDY_NAMES), help="Print a request with this study of the line.")
     ] = None,
 ) -> None:
-    """Print one of the source's lines, or one of its studies of that line, ready to run."""
+    """Print one of the source's lines, or a request for one of the source's studies of that line, ready to run."""
     from app.reference import source_lines, source_studies
 
     for kind, wanted, known in (("example", name, EXAMPLE_NAMES), ("study", study, STUDY_NAMES)):
         if wanted is not None and wanted not in known:
-            end(f"there is no {kind} {wanted!r}; there are {', '.join(known)}", BAD_INPUT)
+            end(f"there is no {kind} {wanted!r}; choose one of {', '.join(known)}", BAD_INPUT)
     write(source_lines.example(name) if study is None else source_studies.study_request(study, name), None)
 
 
 def ellipse(
-    method: Annotated[Literal["davison", "toye", "cigre", "aeso"], typer.Option(help="Whose ellipse.")],
-    sag_m: Annotated[float, typer.Option(help="Iced sag at mid-span.")],
-    span_m: Annotated[float | None, typer.Option(help="Span length, for toye.")] = None,
-    diameter_m: Annotated[float | None, typer.Option(help="Of a sub-conductor, for cigre and aeso.")] = None,
-    subconductors: Annotated[int, typer.Option(help="For cigre and aeso.")] = 1,
+    method: Annotated[Literal["davison", "toye", "cigre", "aeso"], typer.Option(help="Method that gives the ellipse.")],
+    sag_m: Annotated[float, typer.Option(help="Iced sag at mid-span [m].")],
+    span_m: Annotated[float | None, typer.Option(help="Span length [m], for toye.")] = None,
+    diameter_m: Annotated[
+        float | None, typer.Option(help="Diameter of a sub-conductor [m], for cigre and aeso.")
+    ] = None,
+    subconductors: Annotated[int, typer.Option(help="Number of sub-conductors, for cigre and aeso.")] = 1,
 ) -> None:
-    """Print the galloping ellipse of design practice at mid-loop; nulls where the method sees no galloping."""
+    """Print the galloping ellipse of design practice at mid-loop; nulls if the method predicts no galloping."""
     from app import convert
     from app.schemas.faults import BadInput
 

@@ -1,21 +1,14 @@
 """Commands for the operator of a service: `status`, `prune`, `audit`."""
-# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+# ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.common import (
-    FAILED,
-    AsJson,
-    DataDirectory,
-    operator_told,
-    print_table,
-    read_settings,
-    using_database,
-    write,
-)
+from app.cli.console import FAILED, print_table, write
+from app.cli.inputs import ending_on_faults, read_settings, using_database
+from app.cli.options import AsJson, DataDirectory
 
 if TYPE_CHECKING:
     from app.operation.service_status import Contents, Status
@@ -25,10 +18,10 @@ _EVENTS = ("at", "owner", "key_id", "action", "subject", "detail")
 
 
 def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
-    """Show database, broker, workers, queues, jobs and leases; ends with 1 if anything needs the operator."""
+    """Show database, broker, workers, queues, jobs and leases; exit with 1 if anything needs the operator."""
     from app.operation import service_status as service
 
-    with operator_told():
+    with ending_on_faults():
         found = service.read_status(read_settings(data_dir))
     if json:
         from dataclasses import asdict
@@ -41,16 +34,20 @@ def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
 
 def prune(
     days: Annotated[
-        int, typer.Option(min=1, envvar="GALLOPING_RETENTION_DAYS", help="Keep what ended in so many days.")
+        int,
+        typer.Option(
+            min=1, envvar="GALLOPING_RETENTION_DAYS", help="Keep jobs and batches that ended within this many days."
+        ),
     ],
     audit_days: Annotated[
-        int, typer.Option(min=1, envvar="GALLOPING_AUDIT_RETENTION_DAYS", help="Keep so many days of the audit record.")
+        int,
+        typer.Option(min=1, envvar="GALLOPING_AUDIT_RETENTION_DAYS", help="Keep this many days of the audit record."),
     ] = 730,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only count what would be removed.")] = False,
     json: AsJson = False,
     data_dir: DataDirectory = None,
 ) -> None:
-    """Remove jobs and batches that ended long ago, with results and events; what waits or runs is kept."""
+    """Remove jobs and batches that ended long ago, with results and events; keep those that wait or run."""
     from dataclasses import asdict
 
     from app.operation import prune as retention
@@ -61,18 +58,18 @@ def prune(
     if json:
         write({"dry_run": dry_run, **counts}, None)
         return
-    said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in counts.items())
-    typer.echo(f"{'would remove' if dry_run else 'removed'} {said}")
+    summary = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in counts.items())
+    typer.echo(f"{'would remove' if dry_run else 'removed'} {summary}")
 
 
 def audit(
-    owner: Annotated[str | None, typer.Option(help="Only what this owner's keys did.")] = None,
-    days: Annotated[int | None, typer.Option(min=1, help="Only the last days.")] = None,
-    limit: Annotated[int, typer.Option(min=1, max=100_000, help="Most events.")] = 50,
+    owner: Annotated[str | None, typer.Option(help="Only events of this owner's keys.")] = None,
+    days: Annotated[int | None, typer.Option(min=1, help="Only events of this many last days.")] = None,
+    limit: Annotated[int, typer.Option(min=1, max=100_000, help="Most events to show.")] = 50,
     json: AsJson = False,
     data_dir: DataDirectory = None,
 ) -> None:
-    """Show who changed what, the newest first."""
+    """Show who changed what, newest first."""
     from app.security import audit as record
 
     since = datetime.now(UTC) - timedelta(days=days) if days else None
@@ -98,7 +95,7 @@ def _event(event: Any) -> dict[str, Any]:
 def _show(found: "Status") -> None:
     typer.echo(f"database  {found.database}\nbroker    {found.broker}")
     if found.queues is not None:
-        typer.echo(f"queues    {found.queues.jobs} messages of jobs, {found.queues.chunks} of chunks")
+        typer.echo(f"queues    {found.queues.jobs} messages for jobs, {found.queues.chunks} for chunks")
     if found.contents is not None:
         _show_contents(found.contents)
     for sentence in found.faults():
@@ -107,7 +104,7 @@ def _show(found: "Status") -> None:
 
 def _show_contents(contents: "Contents") -> None:
     leases = contents.leases
-    typer.echo(f"leases    {leases.held} held, {leases.expired} run out; {leases.undispatched} jobs without a message")
+    typer.echo(f"leases    {leases.held} held, {leases.expired} expired; {leases.undispatched} jobs without a message")
     kinds = {"jobs": contents.jobs, "chunks of batches": contents.chunks}
     rows = [
         {"kind": kind, **work.by_status, "oldest waiting": _seconds(work.oldest_waiting_seconds)}

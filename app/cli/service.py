@@ -1,37 +1,24 @@
-"""Commands that run the service, and the one that sends it a line: `serve`, `api`, `worker`, `migrate`, `submit`."""
-# ruff: noqa: PLC0415 - what a command needs is imported by the command, so that --help and example answer at once
+"""Commands that run the service, and `submit`, which sends it a line."""
+# ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
 import json
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.common import (
-    BAD_INPUT,
-    FAILED,
-    AnalysisFile,
-    DataDirectory,
-    LineFile,
-    OutputFile,
-    StudyFile,
-    end,
-    operator_told,
-    progress_bar,
-    read_request,
-    read_settings,
-    refuse,
-    write,
-)
+from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, write
+from app.cli.inputs import ending_on_faults, read_request, read_settings
+from app.cli.options import AnalysisFile, DataDirectory, LineFile, OutputFile, StudyFile
 
 if TYPE_CHECKING:
     from app.runtime.settings import Settings
 
-_PATIENCE_SECONDS = 5.0  # a person waits at the other end
+_PATIENCE_SECONDS = 5.0  # a person is waiting
 
 Host = Annotated[str, typer.Option(help="Address to listen on.")]
 Port = Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")]
 Processes = Annotated[
-    int | None, typer.Option("--processes", min=1, help="Processes of the API; else GALLOPING_API_PROCESSES.")
+    int | None, typer.Option("--processes", min=1, help="API processes; GALLOPING_API_PROCESSES if absent.")
 ]
 
 
@@ -46,7 +33,7 @@ def serve(
     from app.serve import serve as run
 
     try:
-        with operator_told():
+        with ending_on_faults():
             code = run(_with_processes(read_settings(data_dir), processes), host, port)
     except Unguarded as error:
         end(str(error), BAD_INPUT)
@@ -56,10 +43,10 @@ def serve(
 def api(
     host: Host = "127.0.0.1", port: Port = 8000, data_dir: DataDirectory = None, processes: Processes = None
 ) -> None:
-    """Run the API alone, on a database that is migrated; workers are processes of their own."""
+    """Run the API alone, on a migrated database; workers run as separate processes."""
     from app.serve import api as run
 
-    with operator_told():
+    with ending_on_faults():
         code = run(_with_processes(read_settings(data_dir), processes), host, port)
     raise typer.Exit(code)
 
@@ -69,17 +56,17 @@ def _with_processes(settings: "Settings", count: int | None) -> "Settings":
 
 
 def worker(data_dir: DataDirectory = None) -> None:
-    """Run a worker that takes jobs from the broker of the settings."""
+    """Run a worker that takes jobs from the configured broker."""
     from app.serve import worker as run
 
     run(read_settings(data_dir))
 
 
 def migrate(data_dir: DataDirectory = None) -> None:
-    """Bring the database of the settings to the newest schema."""
+    """Bring the configured database to the newest schema."""
     from app.storage.migration import migrate as run
 
-    with operator_told():
+    with ending_on_faults():
         run(read_settings(data_dir))
 
 
@@ -88,10 +75,10 @@ def submit(
     analysis: AnalysisFile = None,
     study: StudyFile = None,
     url: Annotated[str, typer.Option(envvar="GALLOPING_URL", help="Address of the service.")] = "http://127.0.0.1:8000",
-    wait: Annotated[bool, typer.Option("--wait", help="Wait for the end and print the result.")] = False,
+    wait: Annotated[bool, typer.Option("--wait", help="Wait until the job ends and print the result.")] = False,
     output: OutputFile = None,
 ) -> None:
-    """Send a line to a service; print the job's status, or with --wait its result. GALLOPING_KEY holds the key."""
+    """Send a line to a service and print the job's status, or with --wait its result. GALLOPING_KEY holds the key."""
     from app import client
 
     document = read_request(line, analysis, study)

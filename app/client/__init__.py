@@ -1,10 +1,10 @@
-"""The service from Python: submit lines, wait, and take the results as rows, typed documents or data frames.
+"""The Python client: submit lines, wait, and read the results as rows, typed documents or data frames.
 
     with Client("http://127.0.0.1:8000") as service:
         result = service.analyse(line, {"loops": [1]})
 
-Documents are those of `app.schemas`, given as models or as mappings. What can be tried again is: a lost connection, a
-service that is overloaded or away. Every POST carries an idempotency key, so that trying it again makes no second job.
+Documents follow `app.schemas`, as models or as mappings. The client retries when a connection is lost or the service is
+overloaded or down. Every POST carries an idempotency key, so a retry creates no second job.
 """
 
 from app.client.client import Client, JobFailed

@@ -1,4 +1,4 @@
-"""The client itself."""
+"""The client and its methods."""
 
 import json
 import time
@@ -26,12 +26,12 @@ Model = TypeVar("Model", bound=BaseModel)
 Followed = TypeVar("Followed", JobDocument, BatchDocument)
 
 _ENDED = frozenset({"successful", "failed", "dismissed"})
-_FIRST_LOOK_SECONDS = 0.1
-_LONGEST_LOOK_SECONDS = 2.0
+_FIRST_POLL_SECONDS = 0.1
+_LONGEST_POLL_SECONDS = 2.0
 
 
 class JobFailed(ServiceError):
-    """Raised when a result is asked of a job that failed or was cancelled; `job` is its status."""
+    """Raised when the results of a failed or cancelled job are requested; `job` is its status."""
 
     def __init__(self, job: JobDocument) -> None:
         """Take the job's status."""
@@ -40,26 +40,26 @@ class JobFailed(ServiceError):
 
 
 class Client:
-    """A connection to the service, to be used in a `with` statement or closed.
+    """A connection to the service; use it in a `with` statement or close it.
 
-    Every method raises `ServiceError` if the service cannot be reached in time or answers with a problem, and `Refused`
-    if it finds faults in what was sent.
+    Every method raises `ServiceError` if the service does not answer in time or answers with a problem, and `Refused`
+    if the service finds faults in the document.
     """
 
     def __init__(self, url: str | None = None, key: str | None = None, *, patience_seconds: float = 60.0) -> None:
-        """Take the address and the key; GALLOPING_URL and GALLOPING_KEY of the environment hold where they are absent.
+        """Take the address and the key; GALLOPING_URL and GALLOPING_KEY replace absent ones.
 
-        A request is tried again for `patience_seconds`.
+        A failing request is retried for `patience_seconds`.
 
         Raises
         ------
         ServiceError
-            If the address is none.
+            If the address is not valid.
         """
         self._connection = Connection(url, key, patience_seconds)
 
     def __enter__(self) -> Self:
-        """Use the connection."""
+        """Return the client."""
         return self
 
     def __exit__(
@@ -78,12 +78,12 @@ class Client:
         analysis: Analysis | Mapping[str, Any] | None = None,
         study: Study | Mapping[str, Any] | None = None,
     ) -> ResultDocument:
-        """Submit a line, wait for the end, and return everything that was found.
+        """Submit a line, wait until the job ends, and return its results.
 
         Raises
         ------
         JobFailed
-            If the job failed; what it has nevertheless is under `results`.
+            If the job failed; `results` still returns the points that it finished.
         """
         job = self.wait(self.submit(line, analysis, study))
         if job.status != "successful":
@@ -101,8 +101,8 @@ class Client:
         return self.submit_document({name: as_json(part) for name, part in given.items() if part is not None})
 
     def submit_document(self, document: Mapping[str, Any], *, idempotency_key: str | None = None) -> JobDocument:
-        """Submit a whole request; with the key of an earlier one that one's job is returned."""
-        # NaN goes out as it stands: the service names the field, which refusing to write it here would not.
+        """Submit a whole request; with the idempotency key of an earlier request, return that request's job."""
+        # Send NaN as it is: the service names the field in its answer.
         text = json.dumps(document).encode()
         answer = self._connection.post("/v1/jobs", lambda: text, {"Content-Type": "application/json"}, idempotency_key)
         return self._connection.read(JobDocument, answer)
@@ -112,7 +112,7 @@ class Client:
         return self._get(JobDocument, f"/v1/jobs/{job_id}")
 
     def jobs(self, **filters: str | int | list[str]) -> Iterator[JobDocument]:
-        """Yield the jobs that pass the filters of `GET /v1/jobs`, newest first, page by page."""
+        """Yield the jobs that match the filters of `GET /v1/jobs`, newest first, page by page."""
         address: str | None = str(httpx.URL("/v1/jobs", params=filters))
         while address is not None:
             page = self._get(JobPage, address)
@@ -120,23 +120,23 @@ class Client:
             address = page.next
 
     def wait(self, job: Followed, show: Show | None = None, *, seconds: float | None = None) -> Followed:
-        """Look at a job or batch until it has ended, and return its last status.
+        """Poll a job or batch until it ends, and return its final status.
 
         Parameters
         ----------
         job : JobDocument or BatchDocument
-            As it was submitted.
+            Status of the job or batch, as `submit` returned it.
         show : callable, optional
-            Is called with the fraction done, 0 to 1, and the step.
+            Called with the fraction done, 0 to 1, and the current step.
         seconds : float, optional
-            How long to wait at most.
+            Longest time to wait.
 
         Raises
         ------
         TimeoutError
-            If it has not ended in time.
+            If the job or batch does not end in time.
         """
-        begin, pause = time.monotonic(), _FIRST_LOOK_SECONDS
+        begin, pause = time.monotonic(), _FIRST_POLL_SECONDS
         while True:
             found = self._get(type(job), _address(job))
             if show is not None:
@@ -146,32 +146,32 @@ class Client:
             if seconds is not None and time.monotonic() - begin + pause > seconds:
                 raise TimeoutError(f"{_address(job)} is {found.status}, {found.progress:.0%} done")
             time.sleep(pause)
-            pause = min(1.5 * pause, _LONGEST_LOOK_SECONDS)
+            pause = min(1.5 * pause, _LONGEST_POLL_SECONDS)
 
     def results(self, job: JobDocument) -> ResultDocument:
-        """Return everything that was found by an ended job."""
+        """Return all results of a finished job."""
         return self._get(ResultDocument, f"{_address(job)}/results")
 
     def rows(self, job: JobDocument, table: TableName) -> list[Json]:
-        """Return the rows of one table of an ended job."""
+        """Return the rows of one table of a finished job."""
         found: dict[str, list[Json]] = json.loads(self.download(job, f"results/{table}?format=json"))
         (only,) = found.values()
         return only
 
     def frame(self, job: JobDocument, table: TableName) -> "pd.DataFrame":
-        """Return one table of an ended job as a data frame; needs pandas (`galloping[pandas]`)."""
+        """Return one table of a finished job as a data frame; needs pandas (`galloping[pandas]`)."""
         return uploads.frame(self.rows(job, table))
 
     def plot(self, job: JobDocument, picture: str = "amplitude", extension: Literal["svg", "png"] = "svg") -> bytes:
-        """Return a picture of an ended job: amplitude, orbit, or what else its links name."""
+        """Return a picture of a finished job: amplitude, orbit, or another one named in its links."""
         return self.download(job, f"plots/{picture}.{extension}")
 
     def download(self, job: JobDocument | BatchDocument, path: str) -> bytes:
-        """Return what lies at a path under the address of a job or batch."""
+        """Return the content at a path below the address of a job or batch."""
         return self._connection.get(f"{_address(job)}/{path}").content
 
     def cancel(self, job: JobDocument | BatchDocument) -> None:
-        """Cancel a job or batch; one that has ended is removed with its results."""
+        """Cancel a job or batch; remove one that has ended, with its results."""
         self._connection.delete(_address(job))
 
     def submit_batch(
@@ -182,17 +182,17 @@ class Client:
         atomic: bool = False,
         idempotency_key: str | None = None,
     ) -> BatchDocument:
-        """Submit many lines under one analysis; they are sent as a stream, whatever their number.
+        """Submit many lines under one analysis, sent as a stream of any length.
 
         Parameters
         ----------
         lines : iterable of lines, path, or pandas.DataFrame
-            A path is that of an NDJSON, JSON or CSV file, which may end in .gz; the columns of a frame and of CSV are
-            dotted field names such as `span.length_m`. NDJSON and JSON hold their analysis themselves.
+            A path leads to an NDJSON, JSON or CSV file, which may end in .gz. The columns of a frame or a CSV file are
+            dotted field names such as `span.length_m`. NDJSON and JSON files contain their analysis.
         analysis : Analysis or mapping, optional
-            What is asked of every line.
+            The analysis of every line.
         atomic : bool
-            Whether a single line at fault shall refuse all.
+            Whether one wrong line rejects the whole batch.
         """
         with uploads.opened(lines, as_json(analysis or {})) as upload:
             address = f"/v1/batches?{upload.query(atomic)}"
@@ -204,7 +204,7 @@ class Client:
         return self._get(BatchDocument, f"/v1/batches/{batch_id}")
 
     def batch_rows(self, batch: BatchDocument, table: BatchTableName | None = None) -> Iterator[Json]:
-        """Yield the rows of one table of a batch, or an object a line with everything, as they come in."""
+        """Yield the rows of one table of a batch, or all results of each line as one object, as they arrive."""
         named = {"format": "ndjson"} | ({"table": table} if table else {})
         for line in self._connection.lines(str(httpx.URL(f"{_address(batch)}/results", params=named))):
             yield json.loads(line)
@@ -214,7 +214,7 @@ class Client:
         return uploads.frame(self.batch_rows(batch, table))
 
     def resubmit(self, batch: BatchDocument) -> BatchDocument:
-        """Run the failed lines of a batch once more."""
+        """Run the failed lines of a batch again."""
         return self._connection.read(BatchDocument, self._connection.post(f"{_address(batch)}/resubmit"))
 
     def _get(self, model: type[Model], address: str) -> Model:

@@ -1,4 +1,4 @@
-"""One connection to the service: asks again where that may help, and turns what goes wrong into `ServiceError`."""
+"""A connection to the service that retries requests and converts errors to `ServiceError`."""
 
 import os
 import random
@@ -18,30 +18,30 @@ Body = Callable[[], bytes | IO[bytes]]
 Model = TypeVar("Model", bound=BaseModel)
 
 _STRAINED = frozenset({429, 502, 503, 504})
-_IN_FLIGHT = 409  # of a POST: another with its key is being answered
+_IN_FLIGHT = 409  # answer to a POST while another request with its key is in progress
 _FIRST_PAUSE_SECONDS = 0.1
 _LONGEST_PAUSE_SECONDS = 5.0
 
 
 class ServiceError(Exception):
-    """Raised when the service cannot be reached or answers something else than it should."""
+    """Raised when the service cannot be reached or gives an unexpected answer."""
 
 
 class Refused(ServiceError):
-    """Raised when the service refuses a document; `faults` holds what it found."""
+    """Raised when the service refuses a document; `faults` lists its faults."""
 
     def __init__(self, faults: list[Fault]) -> None:
-        """Take what the service found."""
+        """Take the faults that the service found."""
         self.faults = faults
         super().__init__("; ".join(str(fault) for fault in faults))
 
 
 class Unreachable(ServiceError):
-    """Raised when there was no answer at all; it may come at another try."""
+    """Raised when no answer arrived; a retry may get one."""
 
 
 class Connection:
-    """A connection that tries again; `GALLOPING_URL` and `GALLOPING_KEY` hold what is not given."""
+    """A connection that retries; `GALLOPING_URL` and `GALLOPING_KEY` replace absent arguments."""
 
     def __init__(self, url: str | None, key: str | None, patience_seconds: float) -> None:
         """Open a connection.
@@ -49,43 +49,43 @@ class Connection:
         Raises
         ------
         ServiceError
-            If the address is none.
+            If the address is not valid.
         """
         self.url = url or os.environ.get("GALLOPING_URL", "http://127.0.0.1:8000")
         held = key or os.environ.get("GALLOPING_KEY")
         headers = {"Authorization": f"Bearer {held}"} if held else {}
         self._patience_seconds = patience_seconds
-        with self._speaking():
+        with self._converting_errors():
             self._http = httpx.Client(base_url=self.url, timeout=30.0, headers=headers)
 
     def close(self) -> None:
-        """Close it."""
+        """Close the connection."""
         self._http.close()
 
     def get(self, address: str) -> httpx.Response:
-        """Return an answer.
+        """Return the answer to a GET.
 
         Raises
         ------
         ServiceError
-            If there is none, or it is a problem.
+            If there is no answer, or it is a problem.
         """
         return self._send("GET", address)
 
     def delete(self, address: str) -> httpx.Response:
-        """Remove what lies at an address, and return the answer.
+        """Send a DELETE and return the answer.
 
         Raises
         ------
         ServiceError
-            If there is none, or it is a problem.
+            If there is no answer, or it is a problem.
         """
         return self._send("DELETE", address)
 
     def post(
         self, address: str, body: Body = bytes, headers: Mapping[str, str] | None = None, key: str | None = None
     ) -> httpx.Response:
-        """Post a body, which is made anew for every try, under one idempotency key, and return the answer.
+        """Post a body under one idempotency key and return the answer; `body` creates the body for each attempt.
 
         Raises
         ------
@@ -97,27 +97,27 @@ class Connection:
         return self._send("POST", address, body, {**(headers or {}), "Idempotency-Key": key or str(uuid4())})
 
     def read(self, model: type[Model], answer: httpx.Response) -> Model:
-        """Return the document of an answer; fields of a newer service are kept as they are.
+        """Return the document in an answer; keep unknown fields of a newer service.
 
         Raises
         ------
         ServiceError
-            If it is none of ours.
+            If the answer is not such a document.
         """
         try:
             return model.model_validate_json(answer.content, extra="allow")
         except ValidationError as error:
-            raise ServiceError(f"what answers at {self.url} is not this service") from error
+            raise ServiceError(f"the server at {self.url} is not a galloping service") from error
 
     def lines(self, address: str) -> Iterator[str]:
-        """Yield the lines of an answer as they come in.
+        """Yield the lines of an answer as they arrive.
 
         Raises
         ------
         ServiceError
-            If there is no answer, it is a problem, or it breaks off.
+            If there is no answer, it is a problem, or it ends early.
         """
-        with self._speaking(), self._http.stream("GET", address) as answer:
+        with self._converting_errors(), self._http.stream("GET", address) as answer:
             if answer.is_error:
                 answer.read()
             yield from _checked(answer).iter_lines()
@@ -129,51 +129,51 @@ class Connection:
         body: Body | None = None,
         headers: Mapping[str, str] | None = None,
     ) -> httpx.Response:
-        """Ask until there is an answer that another try would not change, or patience is at its end."""
+        """Send a request until the answer is final or the patience ends."""
         deadline, pause = time.monotonic() + self._patience_seconds, _FIRST_PAUSE_SECONDS
         while True:
-            again = time.monotonic() + pause < deadline
+            may_retry = time.monotonic() + pause < deadline
             try:
-                with self._speaking():
+                with self._converting_errors():
                     answer = self._http.request(method, address, content=body() if body else None, headers=headers)
             except Unreachable:
-                if not again:
+                if not may_retry:
                     raise
             else:
                 busy = answer.status_code in _STRAINED or (method == "POST" and answer.status_code == _IN_FLIGHT)
-                if not (busy and again):
+                if not (busy and may_retry):
                     return _checked(answer)
-                pause = max(pause, _seconds_asked_for(answer))
+                pause = max(pause, _retry_seconds(answer))
             time.sleep(min(pause, max(0.0, deadline - time.monotonic())))
-            # At random, so that many who wait do not come back together.
+            # Random, so that many clients do not retry at the same time.
             pause = min(2.0 * pause, _LONGEST_PAUSE_SECONDS) * random.uniform(0.8, 1.0)
 
     @contextmanager
-    def _speaking(self) -> Iterator[None]:
+    def _converting_errors(self) -> Iterator[None]:
         try:
             yield
         except httpx.UnsupportedProtocol as error:
-            raise ServiceError(f"{self.url} is no address of a service: {error}") from error
+            raise ServiceError(f"{self.url} is not the address of a service: {error}") from error
         except httpx.TransportError as error:
             raise Unreachable(f"the service at {self.url} does not answer: {error}") from error
         except (httpx.HTTPError, httpx.InvalidURL, ValueError) as error:
             raise ServiceError(f"the service at {self.url} does not answer: {error}") from error
 
 
-def _seconds_asked_for(answer: httpx.Response) -> float:
-    asked = answer.headers.get("Retry-After", "")
-    return float(asked) if asked.isdecimal() else 0.0
+def _retry_seconds(answer: httpx.Response) -> float:
+    seconds = answer.headers.get("Retry-After", "")
+    return float(seconds) if seconds.isdecimal() else 0.0
 
 
 def _checked(answer: httpx.Response) -> httpx.Response:
-    """Return an answer that is none of a fault.
+    """Return an answer if it reports success.
 
     Raises
     ------
     Refused
-        If it names faults of what was sent.
+        If it lists faults of the document.
     ServiceError
-        If it is another problem.
+        If it is any other problem.
     """
     if answer.is_success:
         return answer

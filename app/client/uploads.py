@@ -1,4 +1,4 @@
-"""Many lines on their way to the service: files, iterables and data frames as bodies that can be sent again."""
+"""Convert files, iterables and data frames to bodies that can be sent again."""
 
 import json
 import tempfile
@@ -29,19 +29,19 @@ _TYPES = {
 
 @dataclass(frozen=True, slots=True)
 class Upload:
-    """A body and what belongs to it."""
+    """A body with its headers and query parameters."""
 
     file: IO[bytes]
     headers: Mapping[str, str]
     parameters: Mapping[str, str] = field(default_factory=dict)
 
     def query(self, atomic: bool) -> str:
-        """Return the query of its address."""
+        """Return the query string of the address."""
         return urlencode({**self.parameters, **({"atomic": "true"} if atomic else {})})
 
 
 def as_json(part: BaseModel | Mapping[str, Any]) -> dict[str, Any]:
-    """Return a document as what JSON can hold."""
+    """Return a document as JSON-compatible values."""
     return (
         part.model_dump(mode="json", by_alias=True, exclude_unset=True) if isinstance(part, BaseModel) else dict(part)
     )
@@ -49,12 +49,12 @@ def as_json(part: BaseModel | Mapping[str, Any]) -> dict[str, Any]:
 
 @contextmanager
 def opened(lines: Lines, analysis: Mapping[str, Any]) -> Iterator[Upload]:
-    """Give the body of a batch, in a file that is kept on the disk if it is large.
+    """Yield the body of a batch, in a file that moves to disk if it is large.
 
     Raises
     ------
     ValueError
-        If a file's name tells no format, or an analysis is given for one that holds its own.
+        If a file's suffix is unknown, or an analysis is given for a file that contains one.
     OSError
         If the file cannot be read.
     """
@@ -80,7 +80,7 @@ def frame(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":
     Raises
     ------
     ImportError
-        If pandas is not installed: it is the extra `galloping[pandas]`.
+        If pandas is not installed (extra `galloping[pandas]`).
     """
     import pandas as pd  # noqa: PLC0415 - optional, and slow to load
 
@@ -94,12 +94,12 @@ def _documents(lines: Iterable[Any], analysis: Mapping[str, Any]) -> Iterator[di
 
 
 def _of_file(path: Path, analysis: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the headers and parameters that go with a file."""
+    """Return the headers and the query parameters for a file."""
     packed = path.suffix == ".gz"
     suffix = path.with_suffix("").suffix if packed else path.suffix
     if suffix not in _TYPES:
-        raise ValueError(f"{path.name} must end in one of {', '.join(_TYPES)}, with .gz behind it if it is packed")
+        raise ValueError(f"{path.name} must end in one of {', '.join(_TYPES)}, followed by .gz if it is compressed")
     if analysis and suffix != ".csv":
-        raise ValueError(f"{path.name} holds its analysis itself, so none can be given beside it")
+        raise ValueError(f"{path.name} contains its analysis, so no other can be given")
     headers = {"Content-Type": _TYPES[suffix]} | ({"Content-Encoding": "gzip"} if packed else {})
     return headers, {"analysis": json.dumps(analysis)} if suffix == ".csv" else {}

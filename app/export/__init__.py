@@ -1,1 +1,1 @@
-"""Result tables as JSON, CSV and Parquet. What the tables hold is decided elsewhere."""
+"""Result tables as JSON, CSV and Parquet. Other packages decide what the tables contain."""

@@ -1,4 +1,4 @@
-"""Results as text, written as they are read: JSON documents of the contract, and CSV that is safe in a spreadsheet."""
+"""Results as text, streamed: JSON documents, and CSV that is safe in a spreadsheet."""
 
 import csv
 import io
@@ -17,25 +17,25 @@ MEDIA_TYPES: Mapping[Format, str] = {
     "parquet": PARQUET,
 }
 
-# The wide forms count, too: spreadsheets of East Asian settings read them as the narrow ones.
+# Include the full-width forms, which spreadsheets with East Asian settings treat like the narrow ones.
 _FORMULA_STARTS = (*"=+-@\t\r\n", *"\uff1d\uff0b\uff0d\uff20")
-_BLOCK = 131_072  # bytes or characters: smaller blocks cost more in hand-overs, larger ones more in copies
+_BLOCK = 131_072  # bytes or characters: smaller blocks cost more thread switches, larger ones more copying
 
 
 def preferred_format(accept: str) -> Format | None:
-    """Choose the format that an Accept header likes best, JSON in doubt; None if it takes neither."""
+    """Return the format that an Accept header prefers, JSON in a tie; None if it accepts none."""
     return preferred(accept, {"json": "application/json", "csv": "text/csv", "parquet": PARQUET})
 
 
 def preferred(accept: str, media_types: Mapping[Name, str]) -> Name | None:
-    """Choose the format whose media type an Accept header likes best, the first in doubt; None if it takes none."""
+    """Return the format whose media type an Accept header prefers, the first in a tie; None if it accepts none."""
     weights = {name: _weight(accept, media_type) for name, media_type in media_types.items()}
     best = max(weights, key=lambda name: weights[name])
     return best if weights[best] > 0.0 else None
 
 
 def in_blocks(pieces: Iterable[AnyStr]) -> Iterator[AnyStr]:
-    """Join small pieces of text or bytes into blocks, since each that is sent costs a hand-over between threads."""
+    """Join small pieces of text or bytes into blocks, because each piece sent costs a switch between threads."""
     block: list[AnyStr] = []
     size = 0
     for piece in pieces:
@@ -53,7 +53,7 @@ def _joined(block: Sequence[AnyStr]) -> AnyStr:
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Row]) -> Iterator[str]:
-    """Yield the lines of a table, header first (RFC 4180); nothing in it can pass for a formula."""
+    """Yield the lines of a table, header first (RFC 4180); no cell can act as a spreadsheet formula."""
     buffer = io.StringIO()
     writer = csv.writer(buffer)
     writer.writerow([_harmless(name) for name in columns])
@@ -64,14 +64,14 @@ def csv_text(columns: Sequence[str], rows: Iterable[Row]) -> Iterator[str]:
 
 
 def json_text(name: str, rows: Iterable[Row]) -> Iterator[str]:
-    """Yield the pieces of a JSON object that holds one table under its name."""
+    """Yield the pieces of a JSON object that contains one table under its name."""
     yield "{"
     yield from _member(name, rows)
     yield "}"
 
 
 def ndjson_text(rows: Iterable[Row]) -> Iterator[str]:
-    """Yield rows as JSON, one object a line."""
+    """Yield rows as JSON, one object on each line."""
     for row in rows:
         yield _dump(row) + "\n"
 
@@ -79,17 +79,17 @@ def ndjson_text(rows: Iterable[Row]) -> Iterator[str]:
 def result_text(
     request: Row, points: Sequence[Row], tables: Mapping[str, Iterable[Row]], failure: Row | None = None
 ) -> Iterator[str]:
-    """Yield the pieces of a whole result document.
+    """Yield the pieces of a complete result document.
 
     Parameters
     ----------
     request : mapping
-        The request with all defaults, which is given back as `input`; with a study, or of a chunk of a batch, which
-        has no line of its own, static and den_hartog are lists with a row for each point, else single objects.
+        The request with all defaults, which the document repeats as `input`. For a study, or a chunk of a batch (which
+        has no line), static and den_hartog are lists with a row for each point, otherwise single objects.
     points : sequence of mappings
-        With axes, static, den_hartog, warnings, engine_version and failure of each point.
+        The axes, static, den_hartog, warnings, engine_version and failure of each point.
     tables : mapping
-        Rows by the name of their table; in a study they begin with the values of the axes.
+        Rows by the name of their table; in a study each row begins with the values of the axes.
     failure : mapping, optional
         Kind and detail of the job's failure.
     """
@@ -135,14 +135,14 @@ def _drain(buffer: io.StringIO) -> str:
 
 
 def _harmless(cell: Any) -> Any:
-    """Put an apostrophe before text that a spreadsheet would take for a formula; numbers stay as they are."""
+    """Put an apostrophe before text that a spreadsheet would take for a formula; leave numbers unchanged."""
     if isinstance(cell, str) and cell.startswith(_FORMULA_STARTS):
         return "'" + cell
     return cell
 
 
 def _weight(accept: str, media_type: str) -> float:
-    """Return the quality that an Accept header gives to a media type, the most specific range deciding (RFC 9110)."""
+    """Return the quality that an Accept header gives a media type; the most specific range decides (RFC 9110)."""
     ranges = dict(_range(part) for part in (accept or "*/*").split(","))
     major = media_type.partition("/")[0]
     return next((ranges[name] for name in (media_type, f"{major}/*", "*/*") if name in ranges), 0.0)

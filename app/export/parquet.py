@@ -1,4 +1,4 @@
-"""Results as Parquet, written as they are read: typed columns that carry unit and meaning, few rows in memory."""
+"""Results as Parquet, streamed: typed columns that carry unit and meaning, with few rows in memory."""
 
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -20,20 +20,20 @@ _ROWS_A_GROUP = 10_000
 
 
 def parquet_bytes(columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
-    """Yield the pieces of a Parquet file, a row group at a time.
+    """Yield the pieces of a Parquet file, one row group at a time.
 
     Parameters
     ----------
     columns : sequence of Column
-        Unit and description become metadata of the field, under these names.
+        The unit and the description become metadata of the field under these names.
     rows : iterable of mappings
-        Values by the name of their column; what is absent is null.
+        Values by the name of their column; an absent value is null.
     """
     schema = pa.schema([_field(column) for column in columns])
     sink = _Sink()
-    left = iter(rows)
+    remaining = iter(rows)
     with ParquetWriter(sink, schema, compression="zstd") as writer:
-        while group := list(islice(left, _ROWS_A_GROUP)):
+        while group := list(islice(remaining, _ROWS_A_GROUP)):
             arrays = [pa.array([row.get(field.name) for row in group], field.type) for field in schema]
             writer.write_batch(pa.record_batch(arrays, schema=schema), row_group_size=_ROWS_A_GROUP)
             yield sink.taken()
@@ -41,7 +41,7 @@ def parquet_bytes(columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]) 
 
 
 class _Sink(io.RawIOBase):
-    """Holds what was written until it is taken."""
+    """Collects written bytes until they are taken."""
 
     def __init__(self) -> None:
         self._pieces: list[bytes] = []
@@ -60,11 +60,11 @@ class _Sink(io.RawIOBase):
         return len(piece)
 
     def taken(self) -> bytes:
-        """Return what was written since the last time."""
+        """Return the bytes written since the last call."""
         pieces, self._pieces = self._pieces, []
         return b"".join(pieces)
 
 
 def _field(column: Column) -> pa.Field:
-    told = {"unit": column.unit, "description": column.description}
-    return pa.field(column.name, _TYPES[column.kind], metadata={name: text for name, text in told.items() if text})
+    metadata = {"unit": column.unit, "description": column.description}
+    return pa.field(column.name, _TYPES[column.kind], metadata={name: text for name, text in metadata.items() if text})

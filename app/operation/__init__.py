@@ -1,1 +1,1 @@
-"""What the operator of a service needs: metrics, status, pruning, and which workers are there."""
+"""Tools for the service's operator: metrics, status, pruning, and the list of workers."""

@@ -1,8 +1,8 @@
-"""What Prometheus reads: requests as the API's processes count them, jobs as the database has them.
+"""Prometheus metrics: requests counted by the API processes, jobs read from the database.
 
-Requests are counted in each process, and in files that all processes of one API share if there are several, so that
-a killed one takes nothing with it. All about jobs is read from SQL as it is asked for: it is right whoever runs the
-jobs and whoever was killed, and workers need no port of their own.
+Each process counts its requests. With several processes they count in shared files, so a killed process loses no
+counts. Everything about jobs is read from SQL at each scrape. It is therefore right whichever workers run or were
+killed, and workers need no port.
 """
 
 import os
@@ -40,13 +40,13 @@ class Requests:
     seconds: Histogram
 
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:
-        """Note a request that has been answered; route is a template, so that there are few."""
+        """Record a finished request; `route` is a path template, so there are few different ones."""
         known = method if method in _METHODS else "other"
         self.seconds.labels(known, route, f"{status // 100}xx").observe(seconds)
 
 
 def requests() -> Requests:
-    """Make what counts the requests of one application."""
+    """Create the request counters of one application."""
     registry = CollectorRegistry()
     seconds = Histogram(
         "galloping_http_request_seconds",
@@ -59,7 +59,7 @@ def requests() -> Requests:
 
 
 def text(requests: Requests, readers: sessionmaker[Session], accept: str) -> tuple[bytes, str]:
-    """Return all metrics in the format that an Accept header asks for, and its media type."""
+    """Return all metrics in the format that an Accept header prefers, and its media type."""
     registry = CollectorRegistry()
     if "PROMETHEUS_MULTIPROC_DIR" in os.environ:
         MultiProcessCollector(registry)  # type: ignore[no-untyped-call]
@@ -72,12 +72,12 @@ def text(requests: Requests, readers: sessionmaker[Session], accept: str) -> tup
 
 @dataclass(frozen=True, slots=True)
 class _Jobs:
-    """Reads the database; without it the metrics say so, and the others are still told."""
+    """Collects metrics from the database; if it is down, a metric says so and the other metrics remain."""
 
     readers: sessionmaker[Session]
 
     def collect(self) -> Iterator[Metric]:
-        up = GaugeMetricFamily("galloping_database_up", "Whether the database has answered this question")
+        up = GaugeMetricFamily("galloping_database_up", "Whether the database answered this scrape")
         try:
             with self.readers() as session:
                 totals = counters.totals(session)
@@ -92,9 +92,13 @@ class _Jobs:
 
 def _open_jobs(session: Session) -> Iterator[Metric]:
     waiting = GaugeMetricFamily("galloping_jobs_waiting", "Jobs and chunks without a worker", labels=["kind"])
-    unsent = GaugeMetricFamily("galloping_jobs_unsent", "Those of them whose message has not left", labels=["kind"])
+    unsent = GaugeMetricFamily(
+        "galloping_jobs_unsent", "Waiting jobs and chunks without a message to the workers", labels=["kind"]
+    )
     running = GaugeMetricFamily("galloping_jobs_running", "Jobs and chunks under a lease", labels=["kind"])
-    age = GaugeMetricFamily("galloping_oldest_waiting_seconds", "Age of the oldest that waits", labels=["kind"])
+    age = GaugeMetricFamily(
+        "galloping_oldest_waiting_seconds", "Age of the oldest waiting job or chunk", labels=["kind"]
+    )
     now = database_time(session)
     found = {(row.chunk, row.status): row for row in _count_open(session)}
     for chunk, kind in ((0, "job"), (1, "chunk")):
@@ -128,10 +132,10 @@ def _count_open(session: Session) -> Iterator[_Open]:
 def _counted(totals: Totals) -> Iterator[Metric]:
     labels = ["kind", "status", "failure"]
     ended = CounterMetricFamily("galloping_jobs_ended", "Jobs and chunks that have ended", labels=labels)
-    work = CounterMetricFamily("galloping_engine_seconds", "Work of the attempts that ended them", labels=["kind"])
-    lost = CounterMetricFamily(
-        "galloping_leases_lost", "Jobs taken from workers that were lost or stopped", labels=["why"]
+    work = CounterMetricFamily(
+        "galloping_engine_seconds", "Seconds of work of the attempts that ended jobs and chunks", labels=["kind"]
     )
+    lost = CounterMetricFamily("galloping_leases_lost", "Jobs released from lost or stopped workers", labels=["why"])
     spent: dict[str, float] = dict.fromkeys(_KINDS.values(), 0.0)
     leases: dict[str, Any] = {"expired": 0, "returned": 0}
     for (name, label), (count, seconds) in sorted(totals.items()):
@@ -149,10 +153,12 @@ def _counted(totals: Totals) -> Iterator[Metric]:
 
 
 def _webhooks(session: Session, totals: Totals) -> Iterator[Metric]:
-    attempts = CounterMetricFamily("galloping_webhook_attempts", "Messages sent, once or again", labels=["outcome"])
-    given_up = CounterMetricFamily("galloping_webhooks_given_up", "Messages that no further attempt is made to send")
-    pending = GaugeMetricFamily("galloping_webhooks_pending", "Messages that are being sent or are to be sent")
-    late = GaugeMetricFamily("galloping_webhook_late_seconds", "Since when the oldest message should have been sent")
+    attempts = CounterMetricFamily(
+        "galloping_webhook_attempts", "Attempts to send webhook messages", labels=["outcome"]
+    )
+    given_up = CounterMetricFamily("galloping_webhooks_given_up", "Webhook messages given up after the last attempt")
+    pending = GaugeMetricFamily("galloping_webhooks_pending", "Webhook messages in progress or waiting to be sent")
+    late = GaugeMetricFamily("galloping_webhook_late_seconds", "Delay of the oldest due webhook message")
     now = database_time(session)
     due = func.min(WebhookDelivery.next_attempt_at)
     open_ones = select(func.count(), due).where(WebhookDelivery.state == DeliveryState.PENDING.value)

@@ -1,7 +1,7 @@
-"""Retention: what ended long ago is removed, with its results and events, in transactions of bounded size.
+"""Retention: remove what ended long ago with its results and events, in transactions of bounded size.
 
-A batch goes whole or not at all: it goes when its last chunk ended long enough ago, and is hidden from its owner before
-the first of its rows is removed. Work that is cut off is taken up by the next run, since what is left is found anew.
+A batch is removed completely or not at all: only when its last chunk ended long enough ago. It is hidden from its owner
+before its first row is removed. After an interruption the next run finds the remaining rows and continues.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,7 +27,7 @@ _NOWHERE = UUID(int=0)
 
 @dataclass(frozen=True, slots=True)
 class Retention:
-    """How long what has ended is kept, and how long the record of who did what."""
+    """How long to keep finished jobs and batches, and how long the audit record."""
 
     results: timedelta
     audit: timedelta
@@ -44,7 +44,7 @@ class Pruned:
 
 
 def due(sessions: sessionmaker[Session], retention: Retention) -> Pruned:
-    """Count what a run would remove now, and change nothing."""
+    """Count what a run would remove now, without changing anything."""
     with sessions() as session:
         before, audit_before = _moments(session, retention)
         gone = _over(before)
@@ -58,12 +58,12 @@ def due(sessions: sessionmaker[Session], retention: Retention) -> Pruned:
 
 
 def prune(sessions: sessionmaker[Session], retention: Retention) -> Pruned:
-    """Remove what is due, and put that on record.
+    """Remove what is due, and record that in the audit record.
 
     Raises
     ------
     sqlalchemy.exc.SQLAlchemyError
-        If the database fails; what was removed until then stays so, and the next run goes on.
+        If the database fails; the next run continues where this one stopped.
     """
     with sessions() as session:
         before, audit_before = _moments(session, retention)
@@ -73,8 +73,8 @@ def prune(sessions: sessionmaker[Session], retention: Retention) -> Pruned:
     lines = _delete_lines(sessions, before)
     pruned = Pruned(jobs, batches, lines, _delete_events(sessions, audit_before))
     with sessions.begin() as session:
-        said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in asdict(pruned).items())
-        audit.record(session, OPERATOR, AuditAction.PRUNED, detail=f"before {before:%Y-%m-%d %H:%M}: {said}")
+        summary = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in asdict(pruned).items())
+        audit.record(session, OPERATOR, AuditAction.PRUNED, detail=f"before {before:%Y-%m-%d %H:%M}: {summary}")
     return pruned
 
 
@@ -96,7 +96,7 @@ def _in_visible_batch() -> ColumnElement[bool]:
 
 
 def _over(before: datetime) -> ColumnElement[bool]:
-    """Tell batches that were wholly received and whose chunks have all ended before a moment."""
+    """Select batches that were received completely and whose chunks all ended before a time."""
     holds = exists().where(Job.batch_id == Batch.id, or_(Job.status.in_(_OPEN), Job.finished_at >= before))
     return and_(Batch.received_at.is_not(None), Batch.created_at < before, ~holds)
 
@@ -106,11 +106,11 @@ def _count(session: Session, column: Any, condition: ColumnElement[bool]) -> int
 
 
 def _hide_batches(sessions: sessionmaker[Session], before: datetime) -> int:
-    """Hide the batches that are over, one a transaction, and return how many there were."""
+    """Hide the batches that are due, one in each transaction, and return their number."""
 
     def hide(session: Session, _: UUID) -> list[UUID]:
         found = session.scalars(select(Batch.id).where(_over(before)).limit(1).with_for_update(skip_locked=True)).all()
-        # Asked anew under the lock: a resubmit may have come in between.
+        # Check again under the lock: a resubmit may have happened in between.
         hidden = update(Batch).where(Batch.id.in_(found), _over(before)).values(received_at=None).returning(Batch.id)
         return list(session.scalars(hidden))
 
@@ -118,7 +118,7 @@ def _hide_batches(sessions: sessionmaker[Session], before: datetime) -> int:
 
 
 def _delete_jobs(sessions: sessionmaker[Session], condition: ColumnElement[bool]) -> int:
-    """Remove jobs with all that hangs on them, and return how many there were."""
+    """Remove jobs with all their rows, and return their number."""
 
     def remove(session: Session, last: UUID) -> list[UUID]:
         wanted = select(Job.id).where(Job.id > last, condition).order_by(Job.id).limit(_JOBS_AT_ONCE)
@@ -130,7 +130,7 @@ def _delete_jobs(sessions: sessionmaker[Session], condition: ColumnElement[bool]
 
 
 def _blocks(sessions: sessionmaker[Session], step: Callable[[Session, UUID], list[UUID]]) -> Iterator[list[UUID]]:
-    """Take a step a transaction, each from the last id of the one before, until one finds nothing."""
+    """Repeat a step, one transaction each, from the last id of the one before, until it finds nothing."""
     last = _NOWHERE
     while True:
         with sessions.begin() as session:
@@ -142,7 +142,7 @@ def _blocks(sessions: sessionmaker[Session], step: Callable[[Session, UUID], lis
 
 
 def _delete_lines(sessions: sessionmaker[Session], before: datetime) -> int:
-    """Remove hidden batches with their lines, and return how many lines there were."""
+    """Remove hidden batches with their lines, and return the number of lines."""
     hidden = Batch.received_at.is_(None), Batch.created_at < before
     with sessions() as session:
         batch_ids = list(session.scalars(select(Batch.id).where(*hidden)))
@@ -166,7 +166,7 @@ def _delete_some_lines(sessions: sessionmaker[Session], batch_id: UUID) -> int:
 
 
 def _delete_events(sessions: sessionmaker[Session], before: datetime) -> int:
-    """Remove the oldest of the record, and return how many there were."""
+    """Remove the oldest events of the audit record, and return their number."""
 
     def remove(session: Session, last: UUID) -> list[UUID]:
         wanted = select(AuditEvent.id).where(AuditEvent.id > last, AuditEvent.at < before)

@@ -1,4 +1,4 @@
-"""The state of the whole service for its operator: database, broker, workers, queues, jobs, leases."""
+"""The status of the whole service for its operator: database, broker, workers, queues, jobs, leases."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ GOOD = "ok"
 
 @dataclass(frozen=True, slots=True)
 class WorkerState:
-    """A worker, how many of its processes are at work, and how long ago it said that it is there."""
+    """A worker, the number of its running jobs, and the time since its last report."""
 
     name: str
     version: str
@@ -32,7 +32,7 @@ class WorkerState:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """Jobs, or chunks of batches: how many there are in each state, and since when the oldest waits for a worker."""
+    """Jobs, or chunks of batches: their number in each state, and how long the oldest has waited for a worker."""
 
     by_status: dict[JobStatus, int]
     oldest_waiting_seconds: float | None
@@ -40,7 +40,7 @@ class Work:
 
 @dataclass(frozen=True, slots=True)
 class Leases:
-    """How many running jobs have a lease, how many of these ran out, and how many waiting jobs have no message yet."""
+    """Running jobs with a lease, expired leases, and waiting jobs that have no message yet."""
 
     held: int
     expired: int
@@ -49,7 +49,7 @@ class Leases:
 
 @dataclass(frozen=True, slots=True)
 class Queues:
-    """How many messages wait for a worker."""
+    """The number of messages that wait for a worker."""
 
     jobs: int
     chunks: int
@@ -57,7 +57,7 @@ class Queues:
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """What only the database knows."""
+    """The part of the status that comes from the database."""
 
     jobs: Work
     chunks: Work
@@ -67,7 +67,7 @@ class Contents:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """The whole; `queues` and `contents` are None where broker or database do not answer."""
+    """The whole status; `queues` or `contents` is None if the broker or the database does not answer."""
 
     database: str
     broker: str
@@ -75,38 +75,37 @@ class Status:
     contents: Contents | None
 
     def faults(self) -> list[str]:
-        """Return in sentences what needs the operator; none if all is well."""
-        said = [f"The {name} {state}." for name, state in self._parts() if state != GOOD]
+        """Return a sentence for each problem that needs the operator; empty if all is well."""
+        faults = [f"The {name} {state}." for name, state in self._parts() if state != GOOD]
         if self.contents is None:
-            return said
-        here = [worker for worker in self.contents.workers if not worker.silent]
-        if not here:
-            said.append("No worker is there.")
-        said += [
-            f"The worker {w.name} is silent for {w.seen_seconds_ago:.0f} s." for w in self.contents.workers if w.silent
+            return faults
+        if all(worker.silent for worker in self.contents.workers):
+            faults.append("No worker is running.")
+        faults += [
+            f"The worker {w.name} has been silent for {w.seen_seconds_ago:.0f} s."
+            for w in self.contents.workers
+            if w.silent
         ]
         if self.contents.leases.expired:
-            said.append(f"{self.contents.leases.expired} leases have run out and nobody has taken them back.")
-        return said
+            faults.append(f"{self.contents.leases.expired} leases have expired, and no worker has released their jobs.")
+        return faults
 
     def _parts(self) -> tuple[tuple[str, str], ...]:
         return ("database", self.database), ("broker", self.broker)
 
 
 def read_status(settings: Settings) -> Status:
-    """Ask the database and the broker of the settings; whichever does not answer is said so.
+    """Query the database and the broker; record which of them does not answer.
 
     Raises
     ------
     OSError
-        If the directory of an SQLite database cannot be made.
+        If the directory of an SQLite database cannot be created.
     """
     engine = make_engine(settings)
     try:
         with engine.connect() as connection:
-            database = (
-                GOOD if is_newest(connection) else "has not the newest schema; `galloping migrate` brings it there"
-            )
+            database = GOOD if is_newest(connection) else "has an older schema; run `galloping migrate`"
         with session_factory(engine, read_only=True)() as session:
             contents = _contents(session, settings) if database == GOOD else None
     except SQLAlchemyError:

@@ -1,4 +1,4 @@
-"""The workers that are there, as they say themselves. The caller commits the transaction."""
+"""The list of workers, which they keep themselves. The caller commits the transaction."""
 
 from collections.abc import Sequence
 from datetime import timedelta
@@ -15,7 +15,7 @@ _FORGOTTEN_AFTER = timedelta(hours=1)
 
 
 def report(session: Session, settings: Settings, name: str) -> None:
-    """Say that a worker is there, and forget those that have been silent for long."""
+    """Record that a worker is alive, and forget workers that have long been silent."""
     now = database_time(session)
     worker = session.get(Worker, name)
     if worker is None:
@@ -26,15 +26,15 @@ def report(session: Session, settings: Settings, name: str) -> None:
 
 
 def leave(session: Session, name: str) -> None:
-    """Say that a worker has ended."""
+    """Record that a worker has ended."""
     session.execute(delete(Worker).where(Worker.name == name))
 
 
 def listed(session: Session) -> Sequence[Worker]:
-    """Return all workers of the last hour that have not said that they ended, in the order of their start."""
+    """Return the workers that reported within the last hour and have not ended, in the order of their start."""
     return session.scalars(select(Worker).order_by(Worker.started_at, Worker.name)).all()
 
 
 def report_seconds(settings: Settings) -> float:
-    """Return the time between two reports; a worker that has missed two of them counts as silent."""
+    """Return the time between two reports; a worker that misses two of them counts as silent."""
     return settings.lease_seconds / 2.0

@@ -1,10 +1,10 @@
-"""Pictures of results. The only package that knows matplotlib.
+"""Pictures of results, the only package that imports matplotlib.
 
-Figures are made as objects, without pyplot and its global state.
+Figures are created as objects, without pyplot and its global state.
 """
 
 from app.plots.amplitudes import amplitude
-from app.plots.common import MEDIA_TYPES, Extension
+from app.plots.drawing import MEDIA_TYPES, Extension
 from app.plots.modes import modes
 from app.plots.orbits import orbit
 from app.plots.studies import Abscissa, Study, study

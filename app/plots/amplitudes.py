@@ -1,4 +1,4 @@
-"""Amplitudes over the wind speed."""
+"""Draw amplitudes over wind speed."""
 
 import math
 import textwrap
@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.plots.common import (
+from app.plots.drawing import (
     COLOURS,
     MARKERS,
     NAMES,
@@ -35,7 +35,7 @@ def amplitude(title: str, found: Found, extension: Extension) -> bytes:
     Parameters
     ----------
     title : str
-        What stands above, usually the line's name.
+        Title of the picture, usually the line's name.
     found : mapping
         Rows of `limit_cycles` and `critical_wind_speeds`.
     extension : {"svg", "png"}
@@ -68,7 +68,7 @@ def _amplitude_figure(title: str, found: Found) -> Figure:
 def _cycle_markers(panel: Axes, cycles: Sequence[Row], column: str, factor: float) -> None:
     for (model, branch, stability, _), group in _groups(cycles, column).items():
         speeds = [cycle["wind_speed_m_per_s"] for cycle in group]
-        joined = branch is not None and len(set(speeds)) == len(speeds)  # else a fold: joining would zigzag
+        joined = branch is not None and len(set(speeds)) == len(speeds)  # at a fold a joined line would zigzag
         panel.plot(
             speeds,
             [cycle[column] * factor for cycle in group],
@@ -94,7 +94,7 @@ def _groups(cycles: Sequence[Row], column: str) -> dict[tuple[str, int | None, s
 
 
 def _critical_lines(panel: Axes, critical: Sequence[Row], cycles: Sequence[Row]) -> None:
-    """Mark critical speeds as far as the wind speeds shown reach, or the first ones if none were asked for."""
+    """Mark the critical speeds within the range of wind speeds shown, or all of them if there are no cycles."""
     reach = 1.15 * max((cycle["wind_speed_m_per_s"] for cycle in cycles), default=math.inf)
     for row in critical:
         if row["wind_speed_m_per_s"] <= reach:

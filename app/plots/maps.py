@@ -1,4 +1,4 @@
-"""Maps over two fields of the line: critical wind speed, and the largest lasting amplitudes at one wind speed."""
+"""Draw maps over two fields of the line: critical wind speed, and the largest stable amplitudes at one wind speed."""
 
 import math
 import textwrap
@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.plots.common import NAMES, Found, Row, loops_and_models, loops_name
+from app.plots.drawing import NAMES, Found, Row, loops_and_models, loops_name
 
 _MOST_TICKS = 12
 _MOST_WRITTEN = 150
@@ -21,15 +21,15 @@ Values = Mapping[Point, float]
 
 
 def map_figure(title: str, axes: Sequence[str], found: Found) -> Figure:
-    """Draw a row of panels for each model and number of loops; grey where there is nothing, a cross where it failed.
+    """Draw a row of panels for each model and number of loops; grey means no result, a cross a failed point.
 
     Parameters
     ----------
     title : str
     axes : sequence of str
-        Names of the two fields; the first runs upwards, the second to the right.
+        Names of the two fields: the first on the vertical axis, the second on the horizontal axis.
     found : mapping
-        The result document of a study over both.
+        The result document of a study over both fields.
     """
     loops, models = loops_and_models(found)
     wind = max((row["wind_speed_m_per_s"] for row in found["limit_cycles"]), default=None)
@@ -47,7 +47,7 @@ def map_figure(title: str, axes: Sequence[str], found: Found) -> Figure:
             panel.set_xlabel(axes[1])
             panel.set_ylabel(axes[0])
     figure.suptitle(textwrap.fill(title, 90), fontweight="bold")
-    figure.supxlabel("grey: nothing of the kind found; cross: the point failed", fontsize=8.0)
+    figure.supxlabel("grey: none found; cross: the point failed", fontsize=8.0)
     return figure
 
 
@@ -82,7 +82,7 @@ def _quantities(
 
 
 def _ticks(axes: Sequence[str], found: Found) -> list[list[Any]]:
-    """Return the values of each axis in rising order, or as they come if they are words."""
+    """Return the values of each axis in rising order, or in the order of appearance if they are words."""
     rows = [*found["static"], *found.get("failures", ())]
     values = [list(dict.fromkeys(row[axis] for row in rows)) for axis in axes]
     return [sorted(v) if all(isinstance(x, int | float) for x in v) else v for v in values]
@@ -108,7 +108,7 @@ def _heat(figure: Figure, panel: Axes, ticks: Sequence[Sequence[Any]], values: V
 
 
 def _edges(count: int) -> Any:
-    """Return the edges of cells whose middles are 0, 1, 2, ..."""
+    """Return the edges of cells centred at 0, 1, 2, ..."""
     return np.arange(count + 1) - 0.5
 
 

@@ -1,4 +1,4 @@
-"""Mode shapes of both models."""
+"""Draw mode shapes of both models."""
 
 import textwrap
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.plots.common import COLOURS, NAMES, Extension, Found, Row, drawn, loops_name
+from app.plots.drawing import COLOURS, NAMES, Extension, Found, Row, drawn, loops_name
 
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
 _OTHERS = {"vertical": ("longitudinal", "horizontal"), "horizontal": ("longitudinal", "vertical"), "torsional": ()}
@@ -20,7 +20,7 @@ def modes(title: str, found: Found, extension: Extension) -> bytes:
     Parameters
     ----------
     title : str
-        What stands above.
+        Title of the picture.
     found : mapping
         Rows of `shapes` (`app.convert.mode_shapes`) and of `frequencies`.
     extension : {"svg", "png"}
@@ -46,7 +46,7 @@ def _figure(title: str, found: Found) -> Figure:
 
 
 def _panel(panel: Axes, direction: str, shapes: Sequence[Row]) -> None:
-    """Draw the own component of each model, the hybrid one broad below the other, and the others of both thin."""
+    """Draw each model's main component, the hybrid model's broad and below, and the other components thin."""
     for shape in shapes:
         width = 3.5 if shape["model"] == "hybrid" else 1.3
         colour = COLOURS[shape["model"]]
@@ -60,8 +60,8 @@ def _panel(panel: Axes, direction: str, shapes: Sequence[Row]) -> None:
 
 def _heading(direction: str, count: int, frequencies: Sequence[Row]) -> str:
     rows = [row for row in frequencies if row["loops"] == count and row[f"{direction}_hz"] is not None]
-    told = ", ".join(f"{NAMES[row['model']].removesuffix(' model')} {row[f'{direction}_hz']:.4f} Hz" for row in rows)
-    return f"{direction}, {loops_name(count)}\n{told}"
+    text = ", ".join(f"{NAMES[row['model']].removesuffix(' model')} {row[f'{direction}_hz']:.4f} Hz" for row in rows)
+    return f"{direction}, {loops_name(count)}\n{text}"
 
 
 def _legend(shapes: Sequence[Row]) -> list[Line2D]:

@@ -1,4 +1,4 @@
-"""Orbits where they are observed."""
+"""Draw orbits at the observation point."""
 
 import math
 import textwrap
@@ -13,21 +13,21 @@ from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.plots.common import NAMES, Extension, Found, Row, drawn, loops_and_models, loops_name
+from app.plots.drawing import NAMES, Extension, Found, Row, drawn, loops_and_models, loops_name
 
 _ORBIT_POINTS = 361
 _MOST_IN_LEGEND = 8
 
 
 def orbit(title: str, found: Found, extension: Extension) -> bytes:
-    """Draw vertical over horizontal motion where it is observed, a panel for each model and number of loops.
+    """Draw vertical over horizontal motion at the observation point, a panel for each model and number of loops.
 
     Parameters
     ----------
     title : str
-        What stands above.
+        Title of the picture.
     found : mapping
-        Rows of `limit_cycles`, and `orbits` with Fourier coefficients of the cycles by their row number.
+        Rows of `limit_cycles`, and `orbits` with the cycles' Fourier coefficients and row numbers.
     extension : {"svg", "png"}
         Format of the picture.
     """
@@ -41,7 +41,7 @@ def _orbit_figure(title: str, found: Found) -> Figure:
     cycles = found["limit_cycles"]
     orbits = [(cycles[item["cycle"]], item) for item in found["orbits"]]
     speeds = sorted({cycle["wind_speed_m_per_s"] for cycle, _ in orbits})
-    dark = ListedColormap(mpl.colormaps["viridis_r"](np.linspace(0.15, 1.0, 256)))  # its first yellow is too pale
+    dark = ListedColormap(mpl.colormaps["viridis_r"](np.linspace(0.15, 1.0, 256)))  # without the palest yellow
     colours = ScalarMappable(Normalize(speeds[0], speeds[-1]) if len(speeds) > 1 else Normalize(0.0, 1.0), dark)
     for count, row in zip(loops, panels, strict=True):
         for model, panel in zip(models, row, strict=True):

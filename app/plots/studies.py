@@ -1,4 +1,4 @@
-"""Studies: amplitudes over what varies, as the source draws them (paper Figures 4 to 9), and maps over two fields."""
+"""Draw studies: amplitudes over one field as in the source (paper Figures 4 to 9), or maps over two fields."""
 
 import math
 import textwrap
@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.plots.common import MARKERS, NAMES, Extension, Found, Row, drawn, loops_and_models, loops_name
+from app.plots.drawing import MARKERS, NAMES, Extension, Found, Row, drawn, loops_and_models, loops_name
 from app.plots.maps import map_figure
 
 Abscissa = Literal["reduced", "parameter"]
@@ -21,15 +21,15 @@ _TENSIONS = frozenset({"span.horizontal_tension_n", "span.catenary_parameter_m",
 _DAMPING = frozenset({"damping.vertical_ratio", "damping.horizontal_ratio", "damping.torsional_ratio"})
 _LENGTH = "span.length_m"
 _MOST_IN_LEGEND = 12
-_SIZES = (7.0, 5.5, 4.0, 2.5)  # of one study after the other: equal cycles stay visible below each other
+_SIZES = (7.0, 5.5, 4.0, 2.5)  # one for each study, so that equal cycles stay visible behind each other
 
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A job's result as pictures of studies read it.
+    """A job's result in the form that pictures of studies need.
 
-    axes: names of the fields that vary; length: of the span [m], where no axis varies it; found: the result document,
-    whose rows begin with the values of the axes.
+    axes: names of the fields that vary; length: length of the span [m], unless an axis varies it; found: the result
+    document, whose rows begin with the values of the axes.
     """
 
     axes: Sequence[str]
@@ -39,7 +39,7 @@ class Study:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Cycles that belong together: look and name in the legend, abscissa and row of each cycle, and their model."""
+    """Cycles drawn together: their look and legend entry, the abscissa and the row of each, and their model."""
 
     name: str
     colour: str
@@ -49,14 +49,14 @@ class Curve:
 
 
 def study(title: str, studies: Mapping[str, Study], extension: Extension, abscissa: Abscissa = "reduced") -> bytes:
-    """Draw the ratios of lasting motions over what varies, a row of panels a number of loops; two axes make a map.
+    """Draw the amplitude ratios over the varied field, a row of panels for each number of loops; two axes give a map.
 
     Parameters
     ----------
     title : str
-        What stands above.
+        Title of the picture.
     studies : mapping
-        Studies over the same axes by their name in the legend. A map shows the first.
+        Studies over the same axes, by their name in the legend. A map shows the first one.
     extension : {"svg", "png"}
         Format of the picture.
     abscissa : {"reduced", "parameter"}
@@ -100,7 +100,7 @@ _RATIOS: Sequence[tuple[str, Callable[[Row], float]]] = (
 
 
 def _label(axes: Sequence[str], abscissa: Abscissa) -> str:
-    """Say what the abscissa is."""
+    """Return the label of the abscissa."""
     if not axes:
         return "reduced wind speed U / (f L_x)" if abscissa == "reduced" else "wind speed [m/s]"
     if abscissa == "parameter":
@@ -113,7 +113,7 @@ def _label(axes: Sequence[str], abscissa: Abscissa) -> str:
 
 
 def curves(studies: Mapping[str, Study], abscissa: Abscissa) -> Iterator[Curve]:
-    """Yield the cycles of each study by model, and by wind speed unless that is what varies."""
+    """Yield the cycles of each study by model, and by wind speed unless the study varies it."""
     speeds = sorted({row["wind_speed_m_per_s"] for one in studies.values() for row in _lasting(one)})
     sizes = dict(zip(studies, cycle(_SIZES), strict=False))
     shown = [(name, one, speed) for name, one in studies.items() for speed in (speeds if one.axes else [None])]
@@ -128,7 +128,7 @@ def curves(studies: Mapping[str, Study], abscissa: Abscissa) -> Iterator[Curve]:
 
 
 def _lasting(study: Study) -> list[Row]:
-    """Return the motions that last, or may."""
+    """Return the motions that are stable or of unknown stability."""
     return [
         row
         for row in study.found["limit_cycles"]
@@ -137,7 +137,7 @@ def _lasting(study: Study) -> list[Row]:
 
 
 def _places(study: Study, abscissa: Abscissa) -> Callable[[Row], Any]:
-    """Return the function that gives the abscissa of a cycle, None where it has none."""
+    """Return a function that gives the abscissa of a cycle, None if it has none."""
     if not study.axes:
         return lambda row: row["reduced_wind_speed" if abscissa == "reduced" else "wind_speed_m_per_s"]
     axis = study.axes[0]
@@ -152,7 +152,7 @@ def _places(study: Study, abscissa: Abscissa) -> Callable[[Row], Any]:
 
 
 def _tension_ratio(static: Row, length: float) -> float:
-    """Return H/w with the weight of one iced sub-conductor in the span; the line does not tell its bare weight."""
+    """Return H/w with the weight of one iced sub-conductor; the document does not hold the bare weight."""
     return float(static["catenary_parameter_m"]) / length
 
 
@@ -171,14 +171,14 @@ def _lowest_onsets(study: Study) -> Mapping[tuple[Any, str, int], float]:
 
 
 def _reduced(critical: float | None, cycle: Row) -> float | None:
-    """Return U_c/(f L_x) with the scale that the cycle's own reduced wind speed has."""
+    """Return U_c/(f L_x), scaled like the cycle's reduced wind speed."""
     if critical is None or cycle["reduced_wind_speed"] is None:
         return None
     return float(critical * cycle["reduced_wind_speed"] / cycle["wind_speed_m_per_s"])
 
 
 def _draw(panel: Axes, curve: Curve, points: Sequence[tuple[Any, float, Row]]) -> None:
-    """Draw cycles, stable ones filled and joined where there is one at each place."""
+    """Draw cycles; fill stable ones, and join them if each place has only one."""
     for stability in dict.fromkeys(row["stability"] for _, _, row in points):
         here = [(place, value) for place, value, row in points if row["stability"] == stability]
         places = [place for place, _ in here]
@@ -197,7 +197,7 @@ def _draw(panel: Axes, curve: Curve, points: Sequence[tuple[Any, float, Row]]) -
 
 
 def _legend(figure: Figure, shown: Sequence[Curve], failed: int) -> None:
-    """Explain the marks, as far as that is short, and say how many points failed."""
+    """Draw a legend of limited length, with the number of failed points."""
     several = len({one.model for one in shown}) > 1
     handles = []
     for one in shown[:_MOST_IN_LEGEND]:

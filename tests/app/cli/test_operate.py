@@ -70,8 +70,8 @@ def test_status_shows_the_service_and_its_exit_code_what_is_wrong(own_settings: 
     assert galloping("migrate", *place).returncode == 0
     shown = galloping("status", *place)
     assert shown.returncode == 1
-    assert "No worker is there." in shown.stdout
+    assert "No worker is running." in shown.stdout
     assert "oldest waiting" in shown.stdout
     found = json.loads(galloping("status", "--json", *place).stdout)
     assert (found["database"], found["broker"], found["queues"]) == ("ok", "ok", {"jobs": 0, "chunks": 0})
-    assert found["faults"] == ["No worker is there."]
+    assert found["faults"] == ["No worker is running."]

@@ -95,7 +95,7 @@ def test_lines_are_sent_from_an_iterable_a_frame_or_a_file(client: Client, tmp_p
     ]
     assert [(batch.lines.accepted, batch.errors) for batch in batches] == [(3, [])] * 6
     assert client.batch(batches[0].id).lines.total == 3
-    with pytest.raises(ValueError, match="holds its analysis itself"):
+    with pytest.raises(ValueError, match="contains its analysis"):
         client.submit_batch(tmp_path / "lines.ndjson", ANALYSIS)
     with pytest.raises(ValueError, match="must end in one of"):
         client.submit_batch(tmp_path / "lines.xlsx")
@@ -109,7 +109,7 @@ def test_an_atomic_batch_is_refused_whole(client: Client) -> None:
 def test_another_service_is_told_from_ours(client: Client) -> None:
     with pytest.raises(ServiceError, match="404"):
         client.job("../health/nothing")
-    with pytest.raises(ServiceError, match="is not this service"):
+    with pytest.raises(ServiceError, match="is not a galloping service"):
         client.job("../../health/live")
 
 

@@ -36,7 +36,7 @@ def test_work_is_counted_as_it_is(deployment: Settings, deployed: sessionmaker[S
     assert found.contents.leases == service_status.Leases(held=2, expired=1, undispatched=1)
     (worker,) = found.contents.workers
     assert (worker.name, worker.running, worker.processes, worker.silent) == ("here", 1, 2, False)
-    assert found.faults() == ["1 leases have run out and nobody has taken them back."]
+    assert found.faults() == ["1 leases have expired, and no worker has released their jobs."]
 
 
 def test_workers_come_and_go(deployment: Settings, deployed: sessionmaker[Session]) -> None:
@@ -44,7 +44,7 @@ def test_workers_come_and_go(deployment: Settings, deployed: sessionmaker[Sessio
         contents = service_status.read_status(deployment).contents
         return [worker.silent for worker in contents.workers] if contents else []
 
-    assert "No worker is there." in service_status.read_status(deployment).faults()
+    assert "No worker is running." in service_status.read_status(deployment).faults()
     with running_worker(deployment) as process:
         wait_until(lambda: seen() == [False], what="the worker in the list")
         assert service_status.read_status(deployment).faults() == []
@@ -61,7 +61,7 @@ def test_a_worker_that_was_killed_is_silent_and_at_last_forgotten(
         session.flush()
         (worker,) = workers.listed(session)
         worker.seen_at -= timedelta(seconds=3.0 * workers.report_seconds(settings))
-    assert any("The worker killed is silent" in fault for fault in service_status.read_status(settings).faults())
+    assert any("The worker killed has been silent" in fault for fault in service_status.read_status(settings).faults())
     with sessions.begin() as session:
         workers.listed(session)[0].seen_at -= timedelta(hours=1)
         session.flush()

@@ -1,4 +1,4 @@
-"""What all pictures share: how they are drawn and saved, and how models and stability look."""
+"""What all pictures share: drawing, saving, and the look of models and stability."""
 
 import io
 import threading
@@ -17,18 +17,18 @@ MEDIA_TYPES: Mapping[Extension, str] = {"svg": "image/svg+xml", "png": "image/pn
 
 COLOURS = {"hybrid": "#0b5394", "finite_element": "#c55a11"}
 MARKERS = {"hybrid": "o", "finite_element": "s"}
-SIZES = {"hybrid": 7.0, "finite_element": 4.0}  # the smaller ones are drawn over the larger
+SIZES = {"hybrid": 7.0, "finite_element": 4.0}  # smaller markers are drawn over larger ones
 NAMES = {"hybrid": "hybrid model", "finite_element": "finite element model"}
 
-_DRAWING = threading.Lock()  # matplotlib's fonts and settings are shared between threads
+_DRAWING = threading.Lock()  # threads share matplotlib's fonts and settings
 _DOTS_PER_INCH = 130
 
 
 def drawn(make: Callable[[], Figure], extension: Extension) -> bytes:
-    """Make a figure and return it as a file; the same rows give the same bytes."""
+    """Draw a figure and return it as a file; equal rows give equal bytes."""
     buffer = io.BytesIO()
     with _DRAWING, _style(), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # names may be in any script
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # names may use any script
         metadata = {"Date": None} if extension == "svg" else None
         make().savefig(buffer, format=extension, dpi=_DOTS_PER_INCH, metadata=metadata)
     return buffer.getvalue()
@@ -41,18 +41,18 @@ def _style() -> AbstractContextManager[None]:
             "axes.spines.top": False,
             "axes.spines.right": False,
             "svg.hashsalt": "galloping",
-            "text.parse_math": False,  # a dollar sign in a name is a dollar sign
+            "text.parse_math": False,  # keep dollar signs in names
         }
     )
 
 
 def face(model: str, stability: str) -> str:
-    """Return the fill of a marker: filled if stable, hollow if unstable, grey if unknown."""
+    """Return a marker's fill: coloured if stable, hollow if unstable, grey if unknown."""
     return {"stable": COLOURS[model], "unstable": "white"}.get(stability, "lightgrey")
 
 
 def loops_and_models(found: Found) -> tuple[list[int], list[str]]:
-    """Return what the rows hold, at least one of each so that there is a panel."""
+    """Return the numbers of loops and the models in the rows, at least one of each, so that there is a panel."""
     rows = [*found["limit_cycles"], *found["critical_wind_speeds"]]
     loops = sorted({row["loops"] for row in rows}) or [1]
     present = {row["model"] for row in rows}

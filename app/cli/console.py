@@ -1,0 +1,75 @@
+"""Write results, tables and progress, and end a command with a message."""
+# ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
+
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import typer
+
+if TYPE_CHECKING:
+    from app.schemas.faults import Fault
+
+BAD_INPUT = 2
+FAILED = 1
+_FILE_WIDTH = 250
+
+
+def print_table(columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print rows as a table."""
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(*(name.removesuffix("_at").replace("_", " ") for name in columns), box=SIMPLE_HEAD)
+    for row in rows:
+        table.add_row(*(_shown(row[name]) for name in columns))
+    # Do not wrap output to a file or another program at a terminal's width.
+    Console(width=None if sys.stdout.isatty() else _FILE_WIDTH).print(table)
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, list):
+        return " ".join(map(str, value))
+    return "-" if value is None else str(value)
+
+
+def write(document: Any, output: Path | None) -> None:
+    """Write a document as JSON to a file, or to standard output without one."""
+    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    try:
+        if output is None:
+            sys.stdout.write(text)
+        else:
+            output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        end(f"the result cannot be written: {error.strerror or error}", BAD_INPUT)
+
+
+def refuse(faults: Sequence["Fault"]) -> NoReturn:
+    """End with the faults of the input."""
+    end("\n".join(str(fault) for fault in faults), BAD_INPUT)
+
+
+def end(message: str, code: int) -> NoReturn:
+    """End with a message on standard error and an exit code."""
+    typer.echo(message, err=True)
+    raise typer.Exit(code)
+
+
+@contextmanager
+def progress_bar() -> Iterator[Any]:
+    """Yield a function of fraction and step that draws a bar on a terminal and does nothing elsewhere."""
+    if not sys.stderr.isatty():  # rich loads slowly
+        yield lambda fraction, step: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+    columns = (BarColumn(), TaskProgressColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("starting", total=1.0)
+        yield lambda fraction, step: progress.update(task, completed=fraction, description=step)

@@ -1,0 +1,94 @@
+"""Read what a command works on: request files, settings and the database."""
+# ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from app.cli.console import BAD_INPUT, end
+
+if TYPE_CHECKING:
+    from sqlalchemy.orm import Session, sessionmaker
+
+    from app.runtime.settings import Settings
+
+
+def read_request(line: Path, analysis: Path | None, study: Path | None, placement: Path | None = None) -> Any:
+    """Build the request from its files; a file may add to a whole request, but not repeat a part of it."""
+    whole = _read_json(line)
+    document = whole if isinstance(whole, dict) and "line" in whole else {"line": whole}
+    for name, path in (("analysis", analysis), ("study", study), ("placement", placement)):
+        if path is None:
+            continue
+        if name in document:
+            end(f"{name} is given twice: in {line} and in {path}", BAD_INPUT)
+        document = {**document, name: _read_json(path)}
+    return document
+
+
+def _read_json(path: Path) -> Any:
+    from app.schemas.faults import BadInput, parse_json
+
+    try:
+        raw = sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()
+        return parse_json(raw)
+    except OSError as error:
+        end(f"{path} cannot be read: {error.strerror or error}", BAD_INPUT)
+    except BadInput as error:
+        end("\n".join(f"{path}: {fault.detail if not fault.pointer else fault}" for fault in error.faults), BAD_INPUT)
+
+
+def read_settings(data_dir: Path | None) -> "Settings":
+    """Read the settings from the environment; if they are wrong, print their faults and end."""
+    from pydantic import ValidationError
+
+    from app.runtime.settings import Settings
+
+    try:
+        return Settings() if data_dir is None else Settings(data_dir=data_dir)
+    except ValidationError as error:
+        # A default that depends on a wrong value cannot be computed; that is not a fault itself.
+        faults = [fault for fault in error.errors() if fault["type"] != "default_factory_not_called"]
+        end(
+            "\n".join(_variable(fault["loc"]) + fault["msg"].removeprefix("Value error, ") for fault in faults),
+            BAD_INPUT,
+        )
+
+
+def _variable(location: Sequence[int | str]) -> str:
+    return f"GALLOPING_{'_'.join(map(str, location)).upper()}: " if location else ""
+
+
+@contextmanager
+def ending_on_faults() -> Iterator[None]:
+    """End the command with one sentence if files or the database cannot be used."""
+    from alembic.util import CommandError
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except (SQLAlchemyError, CommandError) as error:
+        reasons = str(getattr(error, "orig", None) or error).splitlines()
+        end(f"the database of GALLOPING_DATABASE_URL cannot be used: {reasons[0] if reasons else error!r}", BAD_INPUT)
+    except OSError as error:
+        end(f"{error.filename or 'a file of the service'} cannot be used: {error.strerror or error}", BAD_INPUT)
+
+
+@contextmanager
+def using_database(settings: "Settings") -> Iterator["sessionmaker[Session]"]:
+    """Yield sessions on a database of this version; end with one sentence if there is none."""
+    from app.storage.database import make_engine, session_factory
+    from app.storage.migration import is_newest
+
+    with ending_on_faults():
+        engine = make_engine(settings)
+        try:
+            with engine.connect() as connection:
+                newest = is_newest(connection)
+            if not newest:
+                end("the database has an older schema: run `galloping migrate`", BAD_INPUT)
+            yield session_factory(engine)
+        finally:
+            engine.dispose()

@@ -1,0 +1,21 @@
+"""Options and arguments that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+LineFile = Annotated[
+    Path,
+    typer.Argument(metavar="LINE.json", help="A line, or {line, analysis, study, placement}; - for standard input."),
+]
+AnalysisFile = Annotated[
+    Path | None, typer.Option("--analysis", metavar="ANALYSIS.json", help="The analysis; defaults if absent.")
+]
+StudyFile = Annotated[Path | None, typer.Option("--study", metavar="STUDY.json", help="Fields of the line to vary.")]
+PlacementFile = Annotated[Path | None, typer.Option("--placement", metavar="PLACEMENT.json", help="Devices to place.")]
+OutputFile = Annotated[
+    Path | None, typer.Option("--output", metavar="RESULT.json", help="File for the result; standard output if absent.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
+DataDirectory = Annotated[Path | None, typer.Option("--data-dir", help="Directory for all files of the service.")]
