@@ -146,6 +146,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         loop_competition=spec.LoopCompetition(part.loop_competition),
         quasi_periodic=spec.TorusSearch(part.quasi_periodic),
         device_effect=spec.DeviceEffect(part.device_effect),
+        amplitude_curves=spec.AmplitudeCurves(part.amplitude_curves),
         check=spec.Check(part.check),
     )
 

@@ -115,6 +115,12 @@ class Analysis(Document):
         examples=["reported"],
     )
 
+    amplitude_curves: Literal["neglected", "reported"] = Field(
+        default="neglected",
+        description="Whether every computed point of each branch of limit cycles is reported, from its Hopf point on",
+        examples=["reported"],
+    )
+
     quasi_periodic: Literal["lasting", "every"] = Field(
         default="lasting",
         description="Which quasi-periodic motions are sought: those that may last, or unstable ones too",

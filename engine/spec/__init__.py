@@ -6,6 +6,7 @@ the left support. Every property of a sub-conductor is that of one iced sub-cond
 
 from engine.spec.analysis import (
     AerodynamicModel,
+    AmplitudeCurves,
     Analysis,
     Check,
     Closure,
@@ -37,6 +38,7 @@ __all__ = [
     "AerodynamicModel",
     "Aerodynamics",
     "AirflowSpoiler",
+    "AmplitudeCurves",
     "Analysis",
     "BlowOut",
     "Bundle",

@@ -61,6 +61,13 @@ class DeviceEffect(StrEnum):
     REPORTED = "reported"
 
 
+class AmplitudeCurves(StrEnum):
+    """Whether the branches of limit cycles are reported point by point, beside the wind speeds asked for."""
+
+    NEGLECTED = "neglected"
+    REPORTED = "reported"
+
+
 class TorusSearch(StrEnum):
     """Which quasi-periodic motions are sought: those that may last, or unstable ones beside stable cycles as well."""
 
@@ -94,6 +101,7 @@ class Analysis:
     static_twist: StaticTwist = StaticTwist.NEGLECTED
     loop_competition: LoopCompetition = LoopCompetition.NEGLECTED
     device_effect: DeviceEffect = DeviceEffect.NEGLECTED
+    amplitude_curves: AmplitudeCurves = AmplitudeCurves.NEGLECTED
     check: Check = Check.NONE
     quasi_periodic: TorusSearch = TorusSearch.LASTING
 
