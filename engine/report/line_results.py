@@ -6,6 +6,7 @@ from engine import ENGINE_VERSION
 from engine.mechanics.modes import DirectionalShapes
 from engine.models.discretization import Discretization
 from engine.outcome import Outcome
+from engine.report.amplitude_curves import amplitude_curve_rows
 from engine.report.bifurcations import bifurcation_rows
 from engine.report.critical_wind_speeds import critical_wind_speed_rows
 from engine.report.findings import ModelFindings
@@ -15,7 +16,7 @@ from engine.report.limit_cycles import Motion, limit_cycle_rows
 from engine.report.model_comparisons import model_comparisons
 from engine.report.warnings import dropped_warnings, fit_warnings, line_warnings, twist_warnings
 from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
-from engine.spec import Analysis
+from engine.spec import AmplitudeCurves, Analysis
 
 
 def line_results(
@@ -50,6 +51,8 @@ def line_results(
     critical = [critical_wind_speed_rows(model_findings) for model_findings in findings]
     bifurcations = [bifurcation_rows(model_findings) for model_findings in findings]
     motions = [limit_cycle_rows(discretization, model_findings, analysis.loops, lowest) for model_findings in findings]
+    reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
+    curves = [amplitude_curve_rows(discretization, model_findings) for model_findings in reported]
     dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
     results = []
     for i, line in enumerate(discretization.lines):
@@ -65,6 +68,7 @@ def line_results(
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 limit_cycles=cycles,
                 bifurcations=tuple(row for table in bifurcations for row in table[i]),
+                amplitude_curves=tuple(row for table in curves for row in table[i]),
                 model_comparisons=model_comparisons(cycles),
                 loop_competitions=tuple(competitions[i]),
                 orbits=orbits,

@@ -108,6 +108,28 @@ class BifurcationRow:
 
 
 @dataclass(frozen=True, slots=True)
+class AmplitudeCurveRow:
+    """A computed point of a branch of limit cycles; amplitudes are half of peak-to-peak.
+
+    Wind speeds are where the continuation stepped. A family is followed in several curves where it does not begin at
+    one Hopf point.
+    """
+
+    model: ModelColumn
+    loops: LoopsColumn
+    branch: Annotated[int, Column("Family of cycles", 0)]
+    curve: Annotated[int, Column("Curve of the family, from 0", 0)]
+    point: Annotated[int, Column("Order along the curve, from 0", 7)]
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed", 2.649, unit="m/s")]
+    frequency_hz: Annotated[float, Column("Frequency", 0.4816, unit="Hz")]
+    observed_at_m: Annotated[float, Column("Where the amplitudes hold, from the left support", 62.94, unit="m")]
+    vertical_m: Annotated[float, Column("Vertical amplitude", 0.0502, unit="m")]
+    horizontal_m: Annotated[float, Column("Horizontal amplitude", 0.0021, unit="m")]
+    torsional_rad: Annotated[float, Column("Torsional amplitude", 0.0006, unit="rad")]
+    stability: Annotated[Stability, Column("Whether the motion lasts; unknown if it was not decided", "stable")]
+
+
+@dataclass(frozen=True, slots=True)
 class ModelComparisonRow:
     """A stable cycle of the hybrid model beside the nearest of the finite element model with as many loops.
 

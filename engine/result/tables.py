@@ -8,6 +8,7 @@ from engine.result.at_rest import CriticalWindSpeedRow, DenHartog, FrequencyRow,
 from engine.result.columns import Table, Title, tables_of
 from engine.result.devices import DeviceEffectRow, PlacedDeviceRow
 from engine.result.motions import (
+    AmplitudeCurveRow,
     BifurcationRow,
     LimitCycleRow,
     LoopCompetitionRow,
@@ -29,6 +30,10 @@ class Tables:
     ] = ()
     limit_cycles: Annotated[tuple[LimitCycleRow, ...], Title("Motions at every wind speed")] = ()
     bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Changes of the motions over the wind speed")] = ()
+    amplitude_curves: Annotated[
+        tuple[AmplitudeCurveRow, ...],
+        Title("Branches of limit cycles point by point; empty unless amplitude_curves is reported"),
+    ] = ()
     model_comparisons: Annotated[
         tuple[ModelComparisonRow, ...], Title("Stable cycles of the hybrid model beside the finite element model's")
     ] = ()

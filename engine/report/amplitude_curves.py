@@ -1,0 +1,89 @@
+"""The table of amplitude curves: every computed point of the branches of limit cycles. Theory section 7.2."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+
+from engine.arrays import FloatArray, IntArray
+from engine.cycles.branches import BranchSet
+from engine.cycles.floquet import floquet
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak
+from engine.mechanics.static_profile import horizontal_position
+from engine.models.discretization import Discretization, observation
+from engine.report.cells import lists_by_line
+from engine.report.findings import ModelFindings
+from engine.result.motions import AmplitudeCurveRow
+
+
+def amplitude_curve_rows(discretization: Discretization, findings: ModelFindings) -> list[list[AmplitudeCurveRow]]:
+    """Return a row for every computed point of every branch, one list per line, along each curve in turn."""
+    table: list[list[AmplitudeCurveRow]] = lists_by_line(findings.line)
+    curves: Counter[tuple[int, int]] = Counter()
+    first = 0
+    for branch_set in findings.cycles.branch_sets:
+        members = branch_set.problem.member
+        families = findings.cycles.followed[first : first + members.size]
+        numbers = []
+        for place in zip(members.tolist(), families.tolist(), strict=True):
+            numbers.append(curves[place])
+            curves[place] += 1
+        for line, row in _rows(discretization, findings, branch_set, families, np.array(numbers, dtype=np.intp)):
+            table[line].append(row)
+        first += members.size
+    for rows in table:
+        rows.sort(key=lambda row: (row.loops, row.branch, row.curve, row.point))
+    return table
+
+
+def _rows(
+    discretization: Discretization,
+    findings: ModelFindings,
+    branch_set: BranchSet,
+    families: IntArray,
+    curves: IntArray,
+) -> Iterator[tuple[int, AmplitudeCurveRow]]:
+    """Yield the rows of a set of branches, each with the index of its line; families and curves: (branches,)."""
+    orbits, member, branch = branch_set.orbits, branch_set.member, branch_set.points.branch
+    line, loops = findings.line[member], _dominant_loops(findings, branch_set, orbits)
+    amplitude = _amplitudes(discretization, findings.model.shapes[member], loops, orbits)
+    position = np.empty(line.size)
+    for k in np.unique(loops):
+        here = loops == k
+        at = horizontal_position(discretization.profile, discretization.profile.arc_length / (2.0 * int(k)))
+        position[here] = at[line[here]]
+    columns = (
+        loops,
+        families[branch],
+        curves[branch],
+        np.arange(branch.size) - np.searchsorted(branch, branch),
+        orbits.wind_speed,
+        orbits.angular_frequency / (2.0 * np.pi),
+        position,
+        *amplitude.T,
+        floquet(findings.model, member, orbits).stability,
+    )
+    for number, *cells in zip(line.tolist(), *(column.tolist() for column in columns), strict=True):
+        yield number, AmplitudeCurveRow(findings.name, *cells)
+
+
+def _amplitudes(discretization: Discretization, shapes: FloatArray, loops: IntArray, orbits: Orbits) -> FloatArray:
+    """Return half of the peak-to-peak of V, W [m] and Theta [rad] where each cycle is observed: (cycles, 3)."""
+    series = np.empty((loops.size, 3, orbits.coefficients.shape[-1]))
+    for k in np.unique(loops):
+        here = loops == k
+        series[here] = observation(discretization, shapes[here], int(k)).swapaxes(-1, -2) @ orbits.coefficients[here]
+    return half_peak_to_peak(series)
+
+
+def _dominant_loops(findings: ModelFindings, branch_set: BranchSet, orbits: Orbits) -> IntArray:
+    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 at each point.
+
+    Nothing moves at a Hopf point: the next point of its branch decides there.
+    """
+    member, branch = branch_set.member, branch_set.points.branch
+    energy = findings.model.modal_masses[member] * (orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
+    following = np.minimum(np.arange(branch.size) + 1, branch.size - 1)
+    still = ~energy.any(axis=-1) & (branch[following] == branch)
+    energy[still] = energy[following[still]]
+    return np.asarray(findings.loops[member, energy.argmax(axis=-1)])
