@@ -6,7 +6,7 @@ from typing import Any
 
 from app import convert
 from app.answers.jobs import JobDocument
-from app.answers.problems import Problem
+from app.answers.problem_pages import Problem
 from app.answers.results import ResultDocument
 from app.export.formats import PARQUET, csv_text
 from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document

@@ -11,7 +11,7 @@ from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.answers.health import Health
-from app.answers.problems import ProblemPage
+from app.answers.problem_pages import ProblemPage
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.operation import metrics
