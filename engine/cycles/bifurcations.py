@@ -11,7 +11,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, ObjectArray
+from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, ObjectArray, filled
 from engine.cycles.branches import BranchSet, CycleProblem, ends_at_hopf_points, orbits_of, points_of
 from engine.cycles.floquet import Floquet, floquet
 from engine.cycles.harmonic_balance import Orbits, resized
@@ -68,17 +68,13 @@ def _pair_factors(multipliers: ComplexArray) -> ComplexArray:
         return 1.0 - multipliers[..., i] * multipliers[..., j]
 
 
-def _period_doubling_factors(multipliers: ComplexArray) -> ComplexArray:
-    return 1.0 + multipliers
-
-
 def _branch_point_factors(multipliers: ComplexArray) -> ComplexArray:
     return 1.0 - multipliers
 
 
 FACTORS: dict[Kind, Factors] = {
     Kind.TORUS: _pair_factors,
-    Kind.PERIOD_DOUBLING: _period_doubling_factors,
+    Kind.PERIOD_DOUBLING: lambda multipliers: 1.0 + multipliers,
     Kind.BRANCH_POINT: _branch_point_factors,
 }
 
@@ -103,15 +99,10 @@ def bifurcations(
     Bifurcations
         Sorted by member, branch and parameter; a point that was passed twice is listed once.
     """
-    branch = (
-        np.split(followed, np.cumsum([branch_set.problem.member.size for branch_set in branch_sets])[:-1])
-        if branch_sets
-        else []
-    )
-    found = [_hopf_points(branch_sets, branch, model, crossings)]
-    return distinct(
-        [*found, *(part for one in zip(branch_sets, branch, strict=True) for part in bifurcations_on(*one))]
-    )
+    sizes = [branch_set.problem.member.size for branch_set in branch_sets]
+    branch = np.split(followed, np.cumsum(sizes)[:-1]) if branch_sets else []
+    others = [part for one in zip(branch_sets, branch, strict=True) for part in bifurcations_on(*one)]
+    return distinct([_hopf_points(branch_sets, branch, model, crossings), *others])
 
 
 def bifurcations_on(branch_set: BranchSet, families: IntArray) -> Iterator[Bifurcations]:
@@ -181,7 +172,7 @@ def _locate_bifurcations(
     result = Bifurcations(
         member=member,
         branch=families[zero.points.branch],
-        kind=_repeated(kind, member.size),
+        kind=filled(member.size, kind),
         parameter=np.where(inside, z[:, -1], 0.5 * (value[0] + value[1])),
         angular_frequency=orbits.angular_frequency,
         second_frequency=_second_frequency(problem.model, member, orbits, critical, kind),
@@ -258,10 +249,8 @@ def _hopf_points(
     number = np.full(hopf.size, -1, dtype=np.intp)
     for branch_set, families in zip(branch_sets, branch, strict=True):
         same = branch_set.problem.member[:, None] == crossings.member[hopf]
-        reached = same & (
-            ends_at_hopf_points(branch_set, crossings, hopf)
-            | (branch_set.hopf_wind_speed[:, None] == crossings.wind_speed[hopf])
-        )
+        starts = branch_set.hopf_wind_speed[:, None] == crossings.wind_speed[hopf]
+        reached = same & (ends_at_hopf_points(branch_set, crossings, hopf) | starts)
         which, where = np.nonzero(reached)
         number[where] = families[which]
     index = hopf[number >= 0]
@@ -269,7 +258,7 @@ def _hopf_points(
     return Bifurcations(
         member=member,
         branch=number[number >= 0],
-        kind=_repeated(Kind.HOPF, index.size),
+        kind=filled(index.size, Kind.HOPF),
         parameter=speed,
         angular_frequency=crossings.angular_frequency[index],
         second_frequency=np.full(index.size, np.nan),
@@ -277,10 +266,6 @@ def _hopf_points(
         uncertainty=crossing_error(model, member, speed),
         may_end_stability=np.ones(index.size, dtype=np.bool_),
     )
-
-
-def _repeated(kind: Kind, count: int) -> ObjectArray:
-    return np.array([kind], dtype=np.object_)[np.zeros(count, dtype=np.intp)]
 
 
 def _concatenated(parts: list[Bifurcations]) -> Bifurcations:

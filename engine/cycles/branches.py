@@ -158,10 +158,6 @@ def follow_from_hopf_points(
         H of the balance.
     winds : (winds,)
         Wind speeds asked for in rising order [m/s]; branches are followed a little beyond the highest.
-
-    Returns
-    -------
-    BranchSet
     """
     member, speed = crossings.member[hopf], crossings.wind_speed[hopf]
     shape = critical_modes(model, member, speed)
@@ -189,10 +185,7 @@ def reference_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> Flo
 
 
 def follow_both_ways(problem: CycleProblem, start: FloatArray, limits: tuple[float, float]) -> BranchSet:
-    """Follow branches from points (k, n + 1): 2 k branches, k to higher parameters, then k to lower ones.
-
-    The problem has one entry per point.
-    """
+    """Follow branches from points (k, n + 1), one per entry of the problem: k to higher parameters, then k to lower."""
     both, up = np.tile(np.arange(start.shape[0]), 2), np.repeat([1.0, -1.0], start.shape[0])
     problem, start = problem.repeated(both), start[both]
     along = np.zeros_like(start)
@@ -219,10 +212,7 @@ def ends_at_hopf_points(branch_sets: BranchSet, crossings: Crossings, hopf: IntA
 def guessed_cycles(branch_sets: BranchSet, winds: FloatArray) -> tuple[IntArray, IntArray, Orbits]:
     """Interpolate the cycles of the branches at wind speeds (winds,), as initial guesses.
 
-    Returns
-    -------
-    (guesses,), (guesses,), Orbits
-        Branch and wind speed index of each guess, and the guessed orbit.
+    Returns branch, wind speed index and orbit of each guess: (guesses,), (guesses,), Orbits.
     """
     branch, wind, guess = guessed_points(branch_sets.points, winds)
     return branch, wind, branch_sets.problem.orbits(guess, branch)
@@ -267,9 +257,8 @@ def follow_branches(
         return np.asarray(alive & ~_returned_to_start(problem, before.select(new.branch), new, len(found)))
 
     outcome = driven(continue_branches(problem, start, direction, STEPS), goes_on)
-    every = BranchPoints(
-        *(np.concatenate([getattr(p, name) for p in found]) for name in ("branch", "z", "scale", "tangent"))
-    )
+    names = ("branch", "z", "scale", "tangent")
+    every = BranchPoints(*(np.concatenate([getattr(p, name) for p in found]) for name in names))
     return BranchSet(problem, every.select(np.argsort(every.branch, kind="stable")), outcome, ended, hopf_wind_speed)
 
 

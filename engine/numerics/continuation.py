@@ -1,8 +1,7 @@
 """Pseudo-arclength continuation of stacks of branches, and location of zeros of a test function on them.
 
-Nothing here depends on physics: a problem provides residuals and their derivatives by the unknowns and by one
-parameter, which is the last entry of each point. Branches run side by side, each with its own step length. Theory
-section 7.2.
+Theory section 7.2. Nothing here depends on physics: a problem provides residuals and their derivatives by the unknowns
+and by one parameter, the last entry of each point. Branches run side by side, each with its own step length.
 """
 
 from collections.abc import Callable, Generator
@@ -29,11 +28,9 @@ class Problem(Protocol):
 
         anchor (k, n + 1) is a nearby point, for conditions that fix a phase relative to it.
         """
-        ...
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
         """Return the scale of each entry of the points, for norms of steps: (k, n + 1)."""
-        ...
 
     def correct(
         self, start: "NewtonStart", branch: IntArray, condition: tuple[FloatArray, FloatArray], options: NewtonOptions
@@ -172,9 +169,8 @@ def continue_branches(
     while active.size:
         here = last.select(active)
         guess = _predict(before.select(active), here, length[active])
-        anchor = np.where(
-            np.isnan(before.z[active]), guess, here.z
-        )  # a starting point may have no phase, as an equilibrium has none
+        # A starting point may have no phase, as an equilibrium has none.
+        anchor = np.where(np.isnan(before.z[active]), guess, here.z)
         new, solution = _solve_at_length(problem, here, length[active], guess, anchor, CONTINUATION_OPTIONS)
         good = solution.converged & _stays_on_branch(here, new, guess, steps)
         growth = 2.0 ** ((steps.iterations - solution.iterations) / steps.iterations)
@@ -275,20 +271,9 @@ def locate_zeros(
 ) -> LocatedZeros:
     """Locate zeros of a test function between successive points of branches by the Illinois method.
 
-    Parameters
-    ----------
-    problem : Problem
-    left, right : BranchPoints
-        Points of the same branches at which the test function has opposite signs.
-    test : callable
-        Takes BranchPoints, returns (k,).
-    accuracy : float
-        Relative change of the parameter at which the search stops.
-
-    Returns
-    -------
-    LocatedZeros
-        With infinite uncertainty where the search left the branch.
+    The test function takes points and returns (k,); it has opposite signs at the left and right points, which lie on
+    the same branches. accuracy is the relative change of the parameter at which the search stops. The uncertainty is
+    infinite where the search left the branch.
     """
     whole = np.einsum("ki,ki->k", left.tangent / left.scale, (right.z - left.z) / left.scale)
     end, other = whole.copy(), np.zeros_like(whole)

@@ -97,25 +97,21 @@ class QuasiPeriodicMotions:
 def quasi_periodic_motions(
     model: ReducedModel, cycles: Cycles, bifurcations: Bifurcations, winds: FloatArray, search: TorusSearch
 ) -> QuasiPeriodicMotions:
-    """Find the quasi-periodic motions at the wind speeds; a model without torus points or growing pairs costs nothing.
+    """Find the quasi-periodic motions at the wind speeds, sorted by member and wind speed.
+
+    A model without torus points or growing pairs costs nothing.
 
     Parameters
     ----------
     model : ReducedModel
         Leading axis (members,).
-    cycles : Cycles
-    bifurcations : Bifurcations
-        Of the branches of these cycles.
+    cycles, bifurcations
+        The bifurcations are those on the branches of the cycles.
     winds : (winds,)
         In rising order [m/s].
     search : TorusSearch
         Which torus points are followed: those from which stable tori start and those of models with a wind speed at
         which no stable motion is known, or every one.
-
-    Returns
-    -------
-    QuasiPeriodicMotions
-        Sorted by member and wind speed.
     """
     motions = _no_motions(model)
     if winds.size and any(kind is Kind.TORUS for kind in bifurcations.kind):
@@ -137,10 +133,8 @@ def _torus_starts(
     if search is TorusSearch.EVERY:
         return starts_at_torus_points(model, cycles.branch_sets, bifurcations, every, COARSE)
     without_stable = [member for member, _ in _without_stable_motion(model, cycles, _no_motions(model), winds)]
-    needed = np.isin(bifurcations.member, without_stable)
-    starts = starts_at_torus_points(
-        model, cycles.branch_sets, bifurcations, needed | bifurcations.may_end_stability, COARSE
-    )
+    needed = np.isin(bifurcations.member, without_stable) | bifurcations.may_end_stability
+    starts = starts_at_torus_points(model, cycles.branch_sets, bifurcations, needed, COARSE)
     selected = np.isin(starts.member, without_stable)
     others = np.flatnonzero(~selected)
     selected[others[starting_stable_tori(model, starts.select(others))]] = True
@@ -175,18 +169,16 @@ def _from_unstable_cycles(model: ReducedModel, cycles: Cycles, locations: set[tu
     """Solve for tori from unstable cycles at some places, modulated to several depths by what grows on them."""
     here = [i for i in _with_growing_pair(cycles) if (int(cycles.member[i]), int(cycles.wind[i])) in locations]
     index = np.array(here, dtype=np.intp)
-    start = _modulated_cycles(
-        take(model, cycles.member[index]), select(cycles.orbits, index), _leading_multipliers(cycles)[index]
-    )
+    models, orbits = take(model, cycles.member[index]), select(cycles.orbits, index)
+    start = _modulated_cycles(models, orbits, _leading_multipliers(cycles)[index])
     index = np.tile(index, len(DEPTHS))
     member, wind, branch = cycles.member[index], cycles.wind[index], cycles.branch[index]
     tori, solution = balance(model, member, start, TRIAL)
     good = np.flatnonzero(solution.converged)
     good = good[is_torus(model, member[good], tori.select(good))]
     good = good[_first_of_duplicates(model, member[good], wind[good], tori.select(good))]
-    return _balanced_tori(
-        model, (member[good], wind[good], branch[good]), resized(tori.select(good), FINE), "unstable_cycle"
-    )
+    guess = resized(tori.select(good), FINE)
+    return _balanced_tori(model, (member[good], wind[good], branch[good]), guess, "unstable_cycle")
 
 
 def _modulated_cycles(model: ReducedModel, orbits: Orbits, multiplier: ComplexArray) -> Tori:
@@ -197,8 +189,7 @@ def _modulated_cycles(model: ReducedModel, orbits: Orbits, multiplier: ComplexAr
     beat = orbits.angular_frequency * np.abs(np.angle(multiplier)) / (2.0 * np.pi)
     start = tori_from_cycles(orbits, beat, COARSE)
     direction = critical_directions(model, start)[:, :-3].reshape(start.coefficients.shape)
-    weight = model.modal_masses
-    size = np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, weight))[:, None, None]
+    size = np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, model.modal_masses))[:, None, None]
     modulated = [replace(start, coefficients=start.coefficients + depth * size * direction) for depth in DEPTHS]
     return stacked(modulated)
 
@@ -250,9 +241,8 @@ def _without_stable_motion(
     """Return member and wind where no stable motion is known and a pair of multipliers grows on some cycle."""
     locations = set(zip(cycles.member.tolist(), cycles.wind.tolist(), strict=True))
     for found_motions in (cycles, motions):
-        stable = (
-            found_motions.floquet if isinstance(found_motions, Cycles) else found_motions
-        ).stability == Stability.STABLE
+        judged = found_motions.floquet if isinstance(found_motions, Cycles) else found_motions
+        stable = judged.stability == Stability.STABLE
         locations -= set(zip(found_motions.member[stable].tolist(), found_motions.wind[stable].tolist(), strict=True))
     growing = _with_growing_pair(cycles)
     locations &= set(zip(cycles.member[growing].tolist(), cycles.wind[growing].tolist(), strict=True))

@@ -7,7 +7,7 @@ import pytest
 from pydantic import BaseModel
 
 from app import convert, schemas
-from app.answers import aerodynamics, batches, clearance, health, jobs, problems, reference, results, rows
+from app.answers import aerodynamics, batches, clearance, health, jobs, problem_pages, reference, results, rows
 from app.export.formats import PARQUET
 from app.main import create_app
 from tests.app import service
@@ -36,7 +36,7 @@ def model_of(content: dict[str, Any]) -> type[BaseModel] | None:
     found = next(
         (
             getattr(m, name)
-            for m in (schemas, jobs, results, problems, health, batches, aerodynamics, clearance, reference, rows)
+            for m in (schemas, jobs, results, problem_pages, health, batches, aerodynamics, clearance, reference, rows)
             if hasattr(m, name)
         ),
         None,

@@ -7,7 +7,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from app import schemas
-from app.answers import aerodynamics, batches, clearance, health, jobs, problems, reference, results
+from app.answers import aerodynamics, batches, clearance, health, jobs, problem_pages, reference, results
 from app.answers.rows import row_schema
 from app.convert import TABLES
 from app.reference.source_lines import EXAMPLE_NAMES, example
@@ -20,7 +20,7 @@ MODELS = [
 ]
 ANSWERS = [
     model
-    for module in (jobs, results, problems, health, batches, aerodynamics, clearance, reference)
+    for module in (jobs, results, problem_pages, health, batches, aerodynamics, clearance, reference)
     for model in vars(module).values()
     if isinstance(model, type) and issubclass(model, Answer)
 ] + [row_schema(table.row) for table in TABLES.values()]

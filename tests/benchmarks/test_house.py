@@ -19,6 +19,11 @@ def function(lines: int, name: str = "long") -> str:
     return f'def {name}():\n    """One line.\n\n    More.\n    """\n' + "    x = 1\n" * lines
 
 
+def test_this_tree_keeps_its_rules(capsys: pytest.CaptureFixture[str]) -> None:
+    assert house.main() == 0
+    assert capsys.readouterr().out.endswith("All bounds hold.\n")
+
+
 def test_a_docstring_is_no_part_of_a_body(tmp_path: Path) -> None:
     (module,) = written(tmp_path, {"a.py": function(7)})
     assert [found.lines for found in module.functions] == [7]
