@@ -129,8 +129,8 @@ def _torus_starts(
     model: ReducedModel, cycles: Cycles, bifurcations: Bifurcations, winds: FloatArray, search: TorusSearch
 ) -> TorusStarts:
     """Return the torus points from which branches are followed."""
-    every = np.ones(bifurcations.member.size, dtype=np.bool_)
     if search is TorusSearch.EVERY:
+        every = np.ones(bifurcations.member.size, dtype=np.bool_)
         return starts_at_torus_points(model, cycles.branch_sets, bifurcations, every, COARSE)
     without_stable = [member for member, _ in _without_stable_motion(model, cycles, _no_motions(model), winds)]
     needed = np.isin(bifurcations.member, without_stable) | bifurcations.may_end_stability
@@ -190,8 +190,7 @@ def _modulated_cycles(model: ReducedModel, orbits: Orbits, multiplier: ComplexAr
     start = tori_from_cycles(orbits, beat, COARSE)
     direction = critical_directions(model, start)[:, :-3].reshape(start.coefficients.shape)
     size = np.sqrt(np.einsum("cms,cm->c", orbits.coefficients[..., 1:] ** 2, model.modal_masses))[:, None, None]
-    modulated = [replace(start, coefficients=start.coefficients + depth * size * direction) for depth in DEPTHS]
-    return stacked(modulated)
+    return stacked([replace(start, coefficients=start.coefficients + depth * size * direction) for depth in DEPTHS])
 
 
 def _balanced_tori(
@@ -282,8 +281,7 @@ def _first_of_duplicates(model: ReducedModel, member: IntArray, wind: IntArray, 
 
 def _concatenated(parts: list[QuasiPeriodicMotions]) -> QuasiPeriodicMotions:
     """Concatenate the motions of several searches, with the larger order."""
-    order = max(part.tori.order for part in parts)
-    padded = [resized(part.tori, order) for part in parts]
+    padded = [resized(part.tori, max(one.tori.order for one in parts)) for part in parts]
     names = ("member", "wind", "branch", "stability", "residual", "truncation", "direct")
     arrays = {name: np.concatenate([getattr(p, name) for p in parts]) for name in names}
     return QuasiPeriodicMotions(
