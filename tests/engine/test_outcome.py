@@ -44,17 +44,3 @@ def test_a_wind_speed_without_a_cycle_to_converge_to_has_its_row_and_stops_no_ot
 def test_the_critical_speeds_stand_though_no_cycle_does() -> None:
     linear, cubic = (run(line, BOTH).critical_wind_speeds for line in (linear_line(), source_line(2)))
     assert [row.wind_speed_m_per_s for row in linear] == pytest.approx([row.wind_speed_m_per_s for row in cubic])
-
-
-def test_an_ill_conditioned_mass_matrix_is_said_to_be_one() -> None:
-    line = source_line(1)
-    least = line.conductor.mass * (line.ice.eccentricity_y**2 + line.ice.eccentricity_z**2)
-
-    def warnings(share: float) -> tuple[str, ...]:
-        conductor = replace(line.conductor, polar_inertia=least * (1.0 + share))
-        return run(replace(line, conductor=conductor), replace(BOTH, wind_speeds=())).warnings
-
-    assert not any("ill-conditioned" in text for text in warnings(1e-3))
-    (said,) = (text for text in warnings(1e-9) if "ill-conditioned" in text)
-    assert "1.0e-09" in said
-    assert not any("ill-conditioned" in text for text in run(source_line(2), BOTH).warnings)

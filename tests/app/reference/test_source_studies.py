@@ -1,5 +1,4 @@
 import json
-import math
 from typing import Any
 
 import pytest
@@ -32,15 +31,6 @@ def test_two_requests_share_nothing() -> None:
     first["line"]["ice"]["aerodynamics"]["vertical"].clear()
     assert study_request("figure-4", "c11-twin")["study"]["axes"][0]["values"]
     assert example("c11-twin")["ice"]["aerodynamics"]["vertical"]
-
-
-def test_the_mass_of_the_ice_turns_with_its_shape() -> None:
-    at_40, at_270 = (example("c11-single", angle)["ice"] for angle in (40, 270))
-    turned = complex(at_270["eccentricity_y_m"], at_270["eccentricity_z_m"])
-    ratio = turned / complex(at_40["eccentricity_y_m"], at_40["eccentricity_z_m"])
-    assert abs(ratio) == pytest.approx(1.0)
-    assert math.degrees(math.atan2(ratio.imag, ratio.real)) % 360.0 == pytest.approx(230.0)
-    assert at_270["aerodynamics"]["vertical"][0] == 0.9423
 
 
 def test_damping_raises_the_critical_speed_and_lowers_the_amplitude() -> None:

@@ -1,0 +1,63 @@
+import gzip
+import json
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from app.client.uploads import Upload, as_json, frame, opened
+from app.reference.source_lines import example
+from app.schemas import Analysis, Line
+
+ANALYSIS = {"loops": [1]}
+
+
+def sent(lines: Any, analysis: dict[str, Any]) -> tuple[bytes, Upload]:
+    with opened(lines, analysis) as upload:
+        upload.file.seek(0)
+        return upload.file.read(), upload
+
+
+def test_lines_become_ndjson_behind_their_analysis() -> None:
+    line = Line.model_validate(example("c11-twin"))
+    body, upload = sent([line, {"reference": "é"}], ANALYSIS)
+    assert [json.loads(text) for text in body.splitlines()] == [
+        {"analysis": ANALYSIS},
+        line.model_dump(mode="json", by_alias=True, exclude_unset=True),
+        {"reference": "é"},
+    ]
+    assert (upload.headers, upload.query(atomic=True)) == ({"Content-Type": "application/x-ndjson"}, "atomic=true")
+
+
+def test_a_data_frame_becomes_csv_with_its_analysis_in_the_address() -> None:
+    body, upload = sent(pd.DataFrame({"reference": ["a"], "span.length_m": [90.0]}), ANALYSIS)
+    assert body == b"reference,span.length_m\na,90.0\n"
+    assert upload.headers == {"Content-Type": "text/csv"}
+    assert upload.query(atomic=False) == "analysis=%7B%22loops%22%3A+%5B1%5D%7D"
+
+
+@pytest.mark.parametrize(
+    ("name", "headers"),
+    [
+        ("a.csv", {"Content-Type": "text/csv"}),
+        ("a.b.jsonl", {"Content-Type": "application/x-ndjson"}),
+        ("a.json.gz", {"Content-Type": "application/json", "Content-Encoding": "gzip"}),
+    ],
+)
+def test_a_file_is_sent_as_it_is_under_the_type_of_its_name(tmp_path: Path, name: str, headers: dict[str, str]) -> None:
+    content = gzip.compress(b"{}") if name.endswith(".gz") else b"{}"
+    (tmp_path / name).write_bytes(content)
+    body, upload = sent(tmp_path / name, {})
+    assert (body, upload.headers) == (content, headers)
+
+
+def test_what_was_set_is_sent_and_defaults_are_left_to_the_service() -> None:
+    assert as_json(Analysis(loops=[2])) == {"loops": [2]}
+    assert as_json({"loops": [2]}) == {"loops": [2]}
+
+
+def test_rows_become_a_frame_in_their_order() -> None:
+    made = frame(row for row in ({"number": 2, "sag_m": 1.5}, {"number": 1, "sag_m": None}))
+    assert made["number"].tolist() == [2, 1]
+    assert made["sag_m"].isna().tolist() == [False, True]
