@@ -6,7 +6,7 @@ from inspect import cleandoc
 from types import UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model, model_validator
 
 from app import convert
 from app.convert import Column, Table
@@ -19,6 +19,12 @@ class Row(Answer):
     """A result row; in a study the values of the axes stand before these columns."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _completed(cls, row: Any) -> Any:
+        """Read a row that was stored before one of its columns was declared as if that were null."""
+        return {**dict.fromkeys(cls.model_fields), **row} if isinstance(row, dict) else row
 
 
 def row_schema(row: type[Any], *, nullable: bool = False) -> type[Row]:

@@ -9,11 +9,12 @@ import httpx
 import orjson
 import pyarrow.parquet as pq
 import pytest
+from pydantic import ValidationError
 
 from app import convert
 from app.answers.batches import BatchTableName
 from app.answers.results import ResultDocument, TableName
-from app.answers.rows import with_tables
+from app.answers.rows import row_schema, with_tables
 from app.convert.run import point_results
 from app.export.columns import columns_of
 from app.export.formats import csv_text
@@ -106,6 +107,14 @@ def test_the_schema_follows_with_description_unit_and_example(sways: Table) -> N
     read: Any = document.model_validate({"sways": found()})
     assert read.sways[0].stability is Stability.STABLE
     assert read.model_dump(mode="json") == {"sways": ROWS}
+
+
+def test_a_row_stored_before_a_column_was_declared_is_read_with_null() -> None:
+    schema = row_schema(SwayRow)
+    old = {name: value for name, value in ROWS[0].items() if name != "sway_m"}
+    assert schema.model_validate_json(orjson.dumps(old)).model_dump(mode="json") == {**ROWS[0], "sway_m": None}
+    with pytest.raises(ValidationError, match="pace"):
+        schema.model_validate({"loops": 1, "stability": "stable"})
 
 
 def test_a_table_without_title_and_a_column_without_declaration_are_refused() -> None:
