@@ -45,7 +45,7 @@ def point_result(number: int = 0, *, tension: float = 30000.0, failure: str | No
         axes={"span.horizontal_tension_n": tension},
         static={} if failure else {"horizontal_tension_n": tension, "catenary_parameter_m": 1285.5, "sag_m": 1.54},
         den_hartog={} if failure else {"coefficient": -3.2, "unstable": True},
-        peaks={},
+        ranking_figures={},
         tables_json=json.dumps({name: found if name == "frequencies" else [] for name in TABLES}).encode(),
         orbits_json=b"[]",
         warnings=[],

@@ -1,1 +1,1 @@
-"""The JSON that goes out, as pydantic models. Rows of results are made of the tables that the engine declares."""
+"""The JSON of answers, as pydantic models. Schemas of result rows follow from the tables that the engine declares."""

@@ -1,4 +1,4 @@
-"""Batches as they go out: how far they are, what came of their lines, and which gallop first."""
+"""Answers about batches: status, results of lines, faults and rankings."""
 
 from datetime import datetime
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.answers.jobs import Link, Status
 from app.answers.results import TableName
-from app.schemas.fields import Answer, example_of, told
+from app.schemas.fields import Answer, described, example_of
 
 if TYPE_CHECKING:
     BatchTableName = str
@@ -18,115 +18,119 @@ Count = Annotated[int, Field(ge=0)]
 
 
 class LineCounts(Answer):
-    """How many lines are in which state."""
+    """Number of lines in each state."""
 
-    total: Count = told("All lines that came in [1]", 3)
-    accepted: Count = told("Waiting [1]", 0)
-    running: Count = told("In a chunk that is being worked on [1]", 0)
-    successful: Count = told("With results [1]", 2)
-    failed: Count = told("Without; see their failures in the results [1]", 0)
-    dismissed: Count = told("Cancelled before they were worked on [1]", 0)
-    rejected: Count = told("Never taken, since they are at fault; see errors [1]", 1)
-    reused: Count = told("Of the successful: stored before, and not computed again [1]", 0)
+    total: Count = described("All lines received [1]", 3)
+    accepted: Count = described("Lines that wait for a worker [1]", 0)
+    running: Count = described("Lines in a chunk that a worker is computing [1]", 0)
+    successful: Count = described("Lines with results [1]", 2)
+    failed: Count = described("Lines without results; the results list their failures [1]", 0)
+    dismissed: Count = described("Lines cancelled before they were computed [1]", 0)
+    rejected: Count = described("Lines rejected because of faults; see errors [1]", 1)
+    reused: Count = described("Successful lines whose results were stored before [1]", 0)
 
 
 class LineSummary(Answer):
-    """What came of one line, in a row, beside its static state and Den Hartog's criterion, which declare themselves."""
+    """The result of one line in a row, together with its static state and Den Hartog's criterion."""
 
-    number: int = told("Number of the line, from 1; headers and the analysis do not count [1]", 1)
-    reference: str | None = told("The caller's reference of the line", "row-1")
-    asset_id: str | None = told("Identity of the line in the owner's records", "L204-S017")
-    status: str = told("State of the line", "successful")
-    failure: str | None = told("Why there is nothing, in a sentence", "The job ran longer than 3600 s.")
-    lowest_critical_wind_speed_m_per_s: float | None = told("Wind speed from which the line gallops [m/s]", 2.403)
-    largest_vertical_m: float | None = told("Largest vertical amplitude of a stable motion [m]", 0.1568)
-    largest_height_m: float | None = told(
-        "Height of all that a stable motion of all sub-conductors reaches [m]", 0.3136
+    number: int = described("Number of the line, from 1; headers and the analysis do not count [1]", 1)
+    reference: str | None = described("The caller's reference of the line", "row-1")
+    asset_id: str | None = described("Identity of the line in the owner's records", "L204-S017")
+    status: str = described("State of the line", "successful")
+    failure: str | None = described("Why there are no results, in a sentence", "The job ran longer than 3600 s.")
+    lowest_critical_wind_speed_m_per_s: float | None = described("Wind speed from which the line gallops [m/s]", 2.403)
+    largest_vertical_m: float | None = described("Largest vertical amplitude of a stable motion [m]", 0.1568)
+    largest_height_m: float | None = described(
+        "Largest height of the space that the sub-conductors sweep in a stable motion [m]", 0.3136
     )
-    largest_width_m: float | None = told("Width of all that a stable motion of all sub-conductors reaches [m]", 0.4908)
-    engine_version: str | None = told("Version of the computation", "0.1.0")
+    largest_width_m: float | None = described(
+        "Largest width of the space that the sub-conductors sweep in a stable motion [m]", 0.4908
+    )
+    engine_version: str | None = described("Version of the computation", "0.1.0")
 
 
 class RankedLine(Answer):
     """One line of a ranking."""
 
-    rank: int = told("Place in the ranking, from 1 [1]", 1)
-    number: int = told("Number of the line, from 1 [1]", 17)
-    reference: str | None = told("The caller's reference of the line", "row-17")
-    asset_id: str | None = told("Identity of the line in the owner's records", "L204-S017")
-    lowest_critical_wind_speed_m_per_s: float | None = told("Wind speed from which the line gallops [m/s]", 2.403)
-    largest_vertical_m: float | None = told("Largest vertical amplitude of a stable motion [m]", 0.1568)
-    largest_height_m: float | None = told(
-        "Height of all that a stable motion of all sub-conductors reaches [m]", 0.3136
+    rank: int = described("Place in the ranking, from 1 [1]", 1)
+    number: int = described("Number of the line, from 1 [1]", 17)
+    reference: str | None = described("The caller's reference of the line", "row-17")
+    asset_id: str | None = described("Identity of the line in the owner's records", "L204-S017")
+    lowest_critical_wind_speed_m_per_s: float | None = described("Wind speed from which the line gallops [m/s]", 2.403)
+    largest_vertical_m: float | None = described("Largest vertical amplitude of a stable motion [m]", 0.1568)
+    largest_height_m: float | None = described(
+        "Largest height of the space that the sub-conductors sweep in a stable motion [m]", 0.3136
     )
-    largest_width_m: float | None = told("Width of all that a stable motion of all sub-conductors reaches [m]", 0.4908)
-    margin_m_per_s: float | None = told("Critical less design wind speed; null unless ranked by it [m/s]", -2.597)
-    clearance_m: float | None = told("Spacing less height or width; null unless ranked by it [m]", 3.6864)
+    largest_width_m: float | None = described(
+        "Largest width of the space that the sub-conductors sweep in a stable motion [m]", 0.4908
+    )
+    margin_m_per_s: float | None = described("Critical minus design wind speed; null unless ranked by it [m/s]", -2.597)
+    clearance_m: float | None = described("Spacing minus height or width; null unless ranked by it [m]", 3.6864)
 
 
 class RankingPage(Answer):
-    """Some lines of a ranking, in its order."""
+    """One page of a ranking."""
 
-    lines: list[RankedLine] = told("The lines of the page", [example_of(RankedLine)])
-    next: str | None = told(
+    lines: list[RankedLine] = described("The lines of the page", [example_of(RankedLine)])
+    next: str | None = described(
         "Address of the next page; null on the last",
         "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f/ranking?by=amplitude&cursor=AZmjxFt-fBqdLj9KW2x9jg",
     )
 
 
 class LineFault(Answer):
-    """One fault of a line that was rejected."""
+    """One fault of a rejected line."""
 
-    number: int = told("Number of the line, from 1; headers and the analysis do not count [1]", 3)
-    reference: str | None = told("The caller's reference of the line", "row-3")
-    pointer: str = told("JSON pointer from the root of the line", "/span/length_m")
-    code: str = told("The kind of fault, for programs", "greater_than_equal")
-    detail: str = told("What is wrong, in a sentence", "input should be greater than or equal to 1, got -5.0")
+    number: int = described("Number of the line, from 1; headers and the analysis do not count [1]", 3)
+    reference: str | None = described("The caller's reference of the line", "row-3")
+    pointer: str = described("JSON pointer from the root of the line", "/span/length_m")
+    code: str = described("The kind of fault, for programs", "greater_than_equal")
+    detail: str = described("What is wrong, in a sentence", "input should be greater than or equal to 1, got -5.0")
 
 
 class BatchErrors(Answer):
-    """Every fault of the lines that were rejected, in the order of their numbers."""
+    """Every fault of the rejected lines, in the order of their numbers."""
 
-    errors: list[LineFault] = told("The faults", [example_of(LineFault)])
+    errors: list[LineFault] = described("The faults", [example_of(LineFault)])
 
 
 class BatchDocument(Answer):
-    """State of a batch."""
+    """Status of a batch."""
 
-    id: UUID = told("Identity of the batch", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f")
-    status: Status = told("State; successful if any line is, once all have ended", "successful")
-    progress: Annotated[float, Field(ge=0.0, le=1.0)] = told("How much is done, 0 to 1 [1]", 1.0)
-    lines: LineCounts = told("How many lines are in which state", example_of(LineCounts))
-    created_at: datetime = told("When the batch was accepted", "2026-11-22T10:00:00+00:00")
-    started_at: datetime | None = told("When work on it began", "2026-11-22T10:00:01+00:00")
-    finished_at: datetime | None = told("When its last line ended", "2026-11-22T10:00:05+00:00")
-    errors: list[LineFault] = told(
+    id: UUID = described("Identity of the batch", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f")
+    status: Status = described("State; a finished batch is successful if any line is", "successful")
+    progress: Annotated[float, Field(ge=0.0, le=1.0)] = described("Share of the work done, 0 to 1 [1]", 1.0)
+    lines: LineCounts = described("Number of lines in each state", example_of(LineCounts))
+    created_at: datetime = described("When the batch was accepted", "2026-11-22T10:00:00+00:00")
+    started_at: datetime | None = described("When work on it began", "2026-11-22T10:00:01+00:00")
+    finished_at: datetime | None = described("When its last line ended", "2026-11-22T10:00:05+00:00")
+    errors: list[LineFault] = described(
         "Faults of the first rejected lines; a link leads to all of them", [example_of(LineFault)]
     )
-    links: list[Link] = told(
-        "Where to go on", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
+    links: list[Link] = described(
+        "Links to related addresses", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
     )
 
 
 class BatchSummary(Answer):
-    """State of a batch in a list."""
+    """Status of a batch in a list."""
 
-    id: UUID = told("Identity of the batch", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f")
-    status: Status = told("State; successful if any line is, once all have ended", "successful")
-    progress: Annotated[float, Field(ge=0.0, le=1.0)] = told("How much is done, 0 to 1 [1]", 1.0)
-    lines: LineCounts = told("How many lines are in which state", example_of(LineCounts))
-    created_at: datetime = told("When the batch was accepted", "2026-11-22T10:00:00+00:00")
-    started_at: datetime | None = told("When work on it began", "2026-11-22T10:00:01+00:00")
-    finished_at: datetime | None = told("When its last line ended", "2026-11-22T10:00:05+00:00")
-    links: list[Link] = told(
-        "Where to go on", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
+    id: UUID = described("Identity of the batch", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f")
+    status: Status = described("State; a finished batch is successful if any line is", "successful")
+    progress: Annotated[float, Field(ge=0.0, le=1.0)] = described("Share of the work done, 0 to 1 [1]", 1.0)
+    lines: LineCounts = described("Number of lines in each state", example_of(LineCounts))
+    created_at: datetime = described("When the batch was accepted", "2026-11-22T10:00:00+00:00")
+    started_at: datetime | None = described("When work on it began", "2026-11-22T10:00:01+00:00")
+    finished_at: datetime | None = described("When its last line ended", "2026-11-22T10:00:05+00:00")
+    links: list[Link] = described(
+        "Links to related addresses", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
     )
 
 
 class BatchPage(Answer):
-    """Some batches, newest first."""
+    """One page of batches, newest first."""
 
-    batches: list[BatchSummary] = told("The batches of the page", [example_of(BatchSummary)])
-    next: str | None = told(
+    batches: list[BatchSummary] = described("The batches of the page", [example_of(BatchSummary)])
+    next: str | None = described(
         "Address of the next page; null on the last", "/v1/batches?limit=20&cursor=AZmjxFt-fBqdLj9KW2x9jg"
     )

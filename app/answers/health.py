@@ -2,13 +2,13 @@
 
 from typing import Literal
 
-from app.schemas.fields import Answer, told
+from app.schemas.fields import Answer, described
 
 
 class Health(Answer):
-    """Whether the service lives or can take work; `checks` says what was looked at."""
+    """Health of the service, with the state of each part in `checks`."""
 
-    status: Literal["ok", "unavailable"] = told("Whether all is well", "ok")
-    checks: dict[str, str] = told(
+    status: Literal["ok", "unavailable"] = described("Health of the whole service", "ok")
+    checks: dict[str, str] = described(
         "What was looked at, and how it is", {"database": "ok", "migrations": "ok", "broker": "ok"}
     )

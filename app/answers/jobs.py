@@ -1,4 +1,4 @@
-"""States of jobs."""
+"""Status documents of jobs."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -6,7 +6,7 @@ from uuid import UUID
 
 from pydantic import Field
 
-from app.schemas.fields import Answer, example_of, told
+from app.schemas.fields import Answer, described, example_of
 
 Status = Literal["accepted", "running", "successful", "failed", "dismissed"]
 
@@ -14,47 +14,47 @@ Status = Literal["accepted", "running", "successful", "failed", "dismissed"]
 class Failure(Answer):
     """Why a job failed: its input or model, or the service."""
 
-    kind: Literal["input", "no_convergence", "time_limit", "worker_lost", "internal"] = told(
-        "Who is to act: input, no_convergence and time_limit concern the line, the others the service", "time_limit"
+    kind: Literal["input", "no_convergence", "time_limit", "worker_lost", "internal"] = described(
+        "Cause: input, no_convergence and time_limit come from the line, the others from the service", "time_limit"
     )
-    detail: str | None = told("Why, in a sentence", "The job ran longer than 3600 s.")
+    detail: str | None = described("Cause in a sentence", "The job ran longer than 3600 s.")
 
 
 class Link(Answer):
-    """Where to go on."""
+    """A link to a related address."""
 
-    rel: str = told("What lies there", "self")
-    href: str = told("Address", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e")
+    rel: str = described("Relation of the address", "self")
+    href: str = described("Address", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e")
 
 
 class JobDocument(Answer):
-    """State of a job."""
+    """Status of a job."""
 
-    id: UUID = told("Identity of the job", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e")
-    status: Status = told("State; the last three are final", "running")
-    progress: Annotated[float, Field(ge=0.0, le=1.0)] = told("How much is done, 0 to 1 [1]", 0.4)
-    step: str = told("What is being done", "limit cycles, hybrid, 1 loop")
-    name: str | None = told("Name of the line", "C11 twin, 126 m")
-    asset_id: str | None = told("Identity of the line in the owner's records", "L204-S017")
-    tags: dict[str, str] = told("Labels of the line", {"region": "north"})
-    created_at: datetime = told("When the job was accepted", "2026-11-22T10:00:00+00:00")
-    started_at: datetime | None = told("When its last attempt began", "2026-11-22T10:00:01+00:00")
-    finished_at: datetime | None = told("When it ended", "2026-11-22T10:00:05+00:00")
-    attempt: int = told("Attempts so far; another follows if a worker is lost [1]", 1)
-    cancel_requested: bool = told("Whether the running job was asked to stop", False)
-    failure: Failure | None = told("Why it failed; null if it did not", example_of(Failure))
-    engine_version: str | None = told("Version of the computation; null before it", "0.1.0")
-    reused_from: UUID | None = told(
-        "Job, or chunk of a batch, whose stored results of the same input these are; null if they were computed",
+    id: UUID = described("Identity of the job", "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e")
+    status: Status = described("State; the last three are final", "running")
+    progress: Annotated[float, Field(ge=0.0, le=1.0)] = described("Share of the work done, 0 to 1 [1]", 0.4)
+    step: str = described("Current step", "limit cycles, hybrid, 1 loop")
+    name: str | None = described("Name of the line", "C11 twin, 126 m")
+    asset_id: str | None = described("Identity of the line in the owner's records", "L204-S017")
+    tags: dict[str, str] = described("Labels of the line", {"region": "north"})
+    created_at: datetime = described("When the job was accepted", "2026-11-22T10:00:00+00:00")
+    started_at: datetime | None = described("When its last attempt began", "2026-11-22T10:00:01+00:00")
+    finished_at: datetime | None = described("When it ended", "2026-11-22T10:00:05+00:00")
+    attempt: int = described("Attempts so far; the service starts another if a worker is lost [1]", 1)
+    cancel_requested: bool = described("Whether the running job was asked to stop", False)
+    failure: Failure | None = described("Why it failed; null if it did not", example_of(Failure))
+    engine_version: str | None = described("Version of the engine; null before the computation", "0.1.0")
+    reused_from: UUID | None = described(
+        "Job, or chunk of a batch, from which the results of the same input were copied; null if computed",
         "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d80",
     )
-    links: list[Link] = told("Where to go on", [example_of(Link)])
+    links: list[Link] = described("Links to related addresses", [example_of(Link)])
 
 
 class JobPage(Answer):
-    """Some jobs, newest first."""
+    """One page of jobs, newest first."""
 
-    jobs: list[JobDocument] = told("The jobs of the page", [example_of(JobDocument)])
-    next: str | None = told(
+    jobs: list[JobDocument] = described("The jobs of the page", [example_of(JobDocument)])
+    next: str | None = described(
         "Address of the next page; null on the last", "/v1/jobs?limit=50&cursor=AZmjxFt-fBqdLj9KW2x9jg"
     )

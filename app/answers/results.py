@@ -1,4 +1,4 @@
-"""The result document: the tables that the engine declares, and what stands around them."""
+"""The result document: the tables that the engine declares, and the fields around them."""
 
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -8,25 +8,25 @@ from app import convert
 from app.answers.jobs import Failure
 from app.answers.rows import DenHartog, StaticState, with_tables
 from app.reference.source_lines import example
-from app.schemas.fields import Answer, example_of, told
+from app.schemas.fields import Answer, described, example_of
 
 
 class PointFailure(Answer):
-    """Why a point of a study failed, after the values of the axes."""
+    """The failure of a point of a study, after the values of the axes."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    failure: str = told("Why, in a sentence", "InvalidSpec: devices.0.position must lie on the span")
+    failure: str = described("Cause in a sentence", "InvalidSpec: devices.0.position must lie on the span")
 
 
 class _Head(Answer):
-    """What stands before the tables."""
+    """The fields before the tables."""
 
-    input: dict[str, Any] = told("What was asked, with every default that was taken", {"line": example("c11-twin")})
-    static: StaticState | list[StaticState] | None = told(
+    input: dict[str, Any] = described("The request with every default", {"line": example("c11-twin")})
+    static: StaticState | list[StaticState] | None = described(
         "Static state of the span", convert.example_row(convert.StaticState)
     )
-    den_hartog: DenHartog | list[DenHartog] | None = told(
+    den_hartog: DenHartog | list[DenHartog] | None = described(
         "Den Hartog's criterion", convert.example_row(convert.DenHartog)
     )
 
@@ -46,9 +46,11 @@ else:
 
 
 class ResultDocument(_WithTables):
-    """Everything that was found; in a study every row begins with the values of the axes."""
+    """All results; in a study every row begins with the values of the axes."""
 
-    warnings: list[str] = told("What to bear in mind, in sentences", ["The angle of attack leaves the fitted range."])
-    failures: list[PointFailure] = told("Points that failed", [example_of(PointFailure)])
-    failure: Failure | None = told("Why the job failed; null if it did not", example_of(Failure))
-    engine_version: str | None = told("Version of the computation; null if nothing was computed", "0.1.0")
+    warnings: list[str] = described(
+        "Warnings about the results, in sentences", ["The angle of attack leaves the fitted range."]
+    )
+    failures: list[PointFailure] = described("Points that failed", [example_of(PointFailure)])
+    failure: Failure | None = described("Why the job failed; null if it did not", example_of(Failure))
+    engine_version: str | None = described("Version of the engine; null if nothing was computed", "0.1.0")

@@ -1,4 +1,4 @@
-"""Schemas of result rows, made of the columns that the engine declares: description, unit and example of each."""
+"""Schemas of result rows, generated from the columns that the engine declares: description, unit and example."""
 
 from collections.abc import Mapping
 from enum import Enum
@@ -10,13 +10,13 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model,
 
 from app import convert
 from app.convert import Column, Table
-from app.schemas.fields import Answer, told
+from app.schemas.fields import Answer, described
 
 __all__ = ["DenHartog", "Row", "StaticState", "row_schema", "with_tables"]
 
 
 class Row(Answer):
-    """A result row; in a study the values of the axes stand before these columns."""
+    """A result row; in a study it begins with the values of the axes."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
@@ -52,13 +52,13 @@ def with_tables(head: type[BaseModel], tables: Mapping[str, Table]) -> type[Base
     fields: dict[str, Any] = {}
     for name, table in tables.items():
         rows = tuple[row_schema(table.row), ...]  # type: ignore[misc, valid-type]  # a type that is made here
-        fields[name] = (rows, told(table.title, [convert.example_row(table.row)]))
+        fields[name] = (rows, described(table.title, [convert.example_row(table.row)]))
     return create_model("WithTables", __base__=head, __module__=__name__, **fields)
 
 
 def _field(column: Column) -> Any:
     if column.unit is None:
-        return told(column.description, column.example)
+        return described(column.description, column.example)
     return Field(
         description=f"{column.description} [{column.unit}]",
         examples=[column.example],

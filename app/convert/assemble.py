@@ -1,7 +1,7 @@
-"""Parts -> line and analysis, with the faults of all parts and of their combination gathered before any is told.
+"""Build a line and an analysis from their parts, and collect all faults of parts and combinations.
 
-Where a part is not sound, a neutral one stands in for it, so that what concerns several parts is still checked for the
-others; the neutral part itself causes no fault.
+Where a part is not valid, a neutral part replaces it, so that rules about several parts are still checked for the other
+parts. The neutral part itself causes no fault.
 """
 
 import math
@@ -19,7 +19,7 @@ Made = TypeVar("Made")
 Source = TypeVar("Source")
 
 _GRAVITY = 9.81
-_STEEPEST = 100.0  # far beyond a sag of the length, and far below what overflows
+_STEEPEST = 100.0  # far beyond a sag equal to the length, and far below overflow
 _STILL = spec.Aerodynamics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), at_rest=(0.0, 0.0, 0.0))
 _NEUTRAL_CONDUCTOR = spec.Conductor(0.03, 1e7, 100.0, 1e-3, 1e3)
 _NEUTRAL_SPAN = spec.Span(1e9, horizontal_tension=1e4, elements=1000)
@@ -41,7 +41,7 @@ class _LineParts(TypedDict):
 
 @dataclass(frozen=True, slots=True)
 class SoundParts:
-    """The parts of a line document that pass their own schema; None where one does not."""
+    """The parts of a line document that pass their schema; None for a part that does not."""
 
     conductor: schemas.Conductor | None
     bundle: schemas.Bundle | None
@@ -54,7 +54,7 @@ class SoundParts:
 
     @classmethod
     def of(cls, line: schemas.Line) -> "SoundParts":
-        """Take all parts of a line that passes its schema."""
+        """Return the parts of a line that passes its schema."""
         return cls(
             conductor=line.conductor,
             bundle=line.bundle,
@@ -69,24 +69,24 @@ class SoundParts:
 
 @dataclass(frozen=True, slots=True)
 class Gathered:
-    """Faults found so far, with paths from the root of the line or the analysis, and the places of neutral parts."""
+    """The faults found so far, with paths from the root of the line or the analysis, and the paths of neutral parts."""
 
     faults: list[Fault] = field(default_factory=list)
     neutral: list[str] = field(default_factory=list)
 
     def make(self, path: str, source: Source | None, maker: Callable[[Source], Made], neutral: Made) -> Made:
-        """Return what is made of a source, or the neutral thing if there is none or it is at fault."""
+        """Return what `maker` builds from a source, or the neutral part if there is no source or it is wrong."""
         return self.settle(path, None if source is None else self.attempt(f"{path}.", lambda: maker(source)), neutral)
 
     def settle(self, path: str, made: Made | None, neutral: Made) -> Made:
-        """Return what was made, or the neutral thing whose faults are nobody's."""
+        """Return what was built, or the neutral part, whose faults are ignored."""
         if made is None:
             self.neutral.append(path)
             return neutral
         return made
 
     def attempt(self, prefix: str, make: Callable[[], Made]) -> Made | None:
-        """Return what is made, or None and keep the faults of it."""
+        """Return what is built, or collect its faults and return None."""
         try:
             return make()
         except InvalidSpec as error:
@@ -99,16 +99,16 @@ class Gathered:
 
 
 def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line | None, spec.Analysis, list[Fault]]:
-    """Build a line and an analysis, and say everything that is wrong with them, apart and together.
+    """Build a line and an analysis, and return all faults of each and of their combination.
 
     Returns
     -------
     line : Line or None
-        To be used only if there is no fault.
+        Use it only if there are no faults.
     analysis : Analysis
-        Likewise.
+        Use it only if there are no faults.
     faults : list of Fault
-        With dotted paths from the root of the line or of the analysis.
+        Faults with dotted paths from the root of the line or of the analysis.
     """
     gathered = Gathered()
     values = _values(sound, gathered)
@@ -123,7 +123,7 @@ def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line
 
 
 def _compare(gathered: Gathered, line: spec.Line, asked: schemas.Analysis) -> None:
-    """Ask of a line the choices of an analysis; those that exclude each other one by one, so that they hide nothing."""
+    """Check a line against the options of an analysis; check conflicting options one by one to find all faults."""
     loops, more_loops = tuple(asked.loops), tuple(asked.finite_element_loops)
     for choice in _choices(loops, more_loops, asked.closure, asked.aerodynamic_model):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
@@ -133,7 +133,7 @@ def _compare(gathered: Gathered, line: spec.Line, asked: schemas.Analysis) -> No
 def _choices(
     loops: tuple[int, ...], more_loops: tuple[int, ...], closure: str, aerodynamic_model: str
 ) -> tuple[spec.Analysis, ...]:
-    # Kept, since all lines of a batch are asked the same.
+    # Cached, because all lines of a batch have the same options.
     asked = replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops)
     closed = replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(closure))
     modelled = replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(aerodynamic_model))
@@ -164,7 +164,7 @@ def _device(index: int, part: schemas.Device | None, gathered: Gathered) -> spec
 
 
 def _ice(ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
-    # A neutral segment lies beyond every span, each on a stretch of its own.
+    # Neutral segments lie beyond every span and do not overlap.
     segments = tuple(
         gathered.make(f"ice.segments.{i}", part, parts.segment, spec.IceSegment(1e8 + i, 1e8 + i + 0.5))
         for i, part in enumerate(ice.segments)
@@ -174,7 +174,7 @@ def _ice(ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
 
 
 def _apart_from_positions(values: _LineParts) -> spec.Line | None:
-    """Return a line that differs where a fault of position or inertia was found, to ask the other questions of."""
+    """Return a line with a neutral span and conductor, to check rules that do not depend on positions or inertia."""
     other: _LineParts = {
         **values,
         "span": replace(_NEUTRAL_SPAN, elements=values["span"].elements),
@@ -184,17 +184,17 @@ def _apart_from_positions(values: _LineParts) -> spec.Line | None:
 
 
 def _slack_faults(line: spec.Line) -> Iterator[Fault]:
-    """Refuse a span that sags more than its length: no line is so slack, and its catenary soon has no numbers."""
+    """Refuse a span that sags more than its length: no line does, and the catenary would overflow."""
     span = line.span
     if span.sag is not None:
-        given, sag = "sag", span.sag
+        field_name, sag = "sag", span.sag
     elif span.catenary_parameter is not None:
-        given, sag = "catenary_parameter", _sag(span.length, span.catenary_parameter)
+        field_name, sag = "catenary_parameter", _sag(span.length, span.catenary_parameter)
     else:
         tension = span.horizontal_tension or 0.0
-        given, sag = "horizontal_tension", _sag(span.length, tension / (line.conductor.mass * _GRAVITY))
+        field_name, sag = "horizontal_tension", _sag(span.length, tension / (line.conductor.mass * _GRAVITY))
     if sag > span.length:
-        yield Fault(f"span.{given}", getattr(span, given), "must let the span sag less than its length")
+        yield Fault(f"span.{field_name}", getattr(span, field_name), "must give a sag smaller than the span's length")
 
 
 def _sag(length: float, catenary_parameter: float) -> float:
@@ -203,6 +203,6 @@ def _sag(length: float, catenary_parameter: float) -> float:
 
 
 def _rooted(prefix: str, path: str) -> str:
-    """Put a prefix before a path unless the engine has begun at the root already."""
+    """Prepend a prefix to a path unless the engine's path begins at the root already."""
     root = prefix.split(".", maxsplit=1)[0]
     return path if not prefix or path.split(".", maxsplit=1)[0] == root else prefix + path

@@ -1,4 +1,4 @@
-"""What is wrong with a request beyond its schema: faults of the engine and of the study, as JSON pointers."""
+"""Find the faults of a request beyond its schema: those of the engine's rules and of the study, as JSON pointers."""
 
 from collections.abc import Mapping, Sequence
 from itertools import islice
@@ -19,12 +19,12 @@ from engine.spec import check_placement
 
 
 def read(document: object) -> schemas.JobRequest:
-    """Return a request that passes its schema and fits together.
+    """Return a request that passes its schema and all rules.
 
     Raises
     ------
     BadInput
-        With every fault of the schema and beyond it.
+        With every fault of the schema and of the rules.
     """
     try:
         request = schemas.JobRequest.model_validate(document)
@@ -38,7 +38,7 @@ def read(document: object) -> schemas.JobRequest:
 
 
 def request_faults(request: schemas.JobRequest) -> list[Fault]:
-    """Return the faults that a request has beyond its schema."""
+    """Return the faults of a request beyond its schema."""
     axes = request.study.axes if request.study else []
     sound = [SoundAxis(i, axis.parameters, list(enumerate(axis.values))) for i, axis in enumerate(axes)]
     parts = SoundParts.of(request.line)
@@ -47,7 +47,7 @@ def request_faults(request: schemas.JobRequest) -> list[Fault]:
 
 
 def _placement_faults(request: schemas.JobRequest) -> list[Fault]:
-    """Return what is wrong with the placement of a request that is sound without it."""
+    """Return the faults of the placement of a request that is valid without it."""
     if request.placement is None:
         return []
     line, analysis, _ = gather(SoundParts.of(request.line), request.analysis)
@@ -57,13 +57,13 @@ def _placement_faults(request: schemas.JobRequest) -> list[Fault]:
     except InvalidSpec as error:
         names = [json_names(request.placement, fault.field.split(".")) for fault in error.faults]
         pointers = [json_pointer(["placement", *path]) for path in names]
-        told = zip(pointers, error.faults, strict=True)
-        return [Fault(pointer, "inconsistent", fault.rule) for pointer, fault in told]
+        placed = zip(pointers, error.faults, strict=True)
+        return [Fault(pointer, "inconsistent", fault.rule) for pointer, fault in placed]
     return []
 
 
 def with_further_faults(document: object, faults: Sequence[Fault]) -> list[Fault]:
-    """Add to the faults of the schema those of the combination of the sound parts of a request document."""
+    """Return the faults of the schema and those of combinations of the valid parts of a request document."""
     body: Mapping[str, Any] = pruned(document, faults) if isinstance(document, dict) else {}
     raw = body.get("line")
     line: Mapping[str, Any] = raw if isinstance(raw, dict) else {}
@@ -74,7 +74,7 @@ def with_further_faults(document: object, faults: Sequence[Fault]) -> list[Fault
 def _combined(
     line: Mapping[str, Any], parts: SoundParts, asked: schemas.Analysis | None, axes: Sequence[SoundAxis]
 ) -> list[Fault]:
-    """Return the faults of sound parts together, and what the axes of a study add to them."""
+    """Return the faults of valid parts together, and the faults that the axes of a study add."""
     _, _, found = gather(parts, asked)
     faults = [to_pointer(fault, parts, asked) for fault in found]
     if axes:

@@ -10,19 +10,19 @@ from engine.outcome import InvalidSpec
 EllipseMethodName = Literal["davison", "toye", "cigre", "aeso"]
 MOTION = ("model", "loops", "wind_speed_m_per_s", "branch", "kind", "stability", "observed_at_m")
 
-# What the engine names -> the option that gives it.
+# Engine's name -> command-line option.
 _OPTIONS = {"sag": "--sag-m", "span_length": "--span-m", "diameter": "--diameter-m", "subconductors": "--subconductors"}
 
 
 def ellipse(
     method: str, sag: float, span_length: float | None, diameter: float | None, subconductors: int
 ) -> dict[str, float | None]:
-    """Return both axes and B of the ellipse of a method, in metres; None for each if there is none.
+    """Return both axes and B of a method's ellipse in metres, each None if the method gives no ellipse.
 
     Raises
     ------
     BadInput
-        If a length is missing or not positive, or there is no sub-conductor.
+        If a length is missing or not positive, or the number of sub-conductors is less than 1.
     """
     from engine.clearance import EllipseMethod, galloping_ellipse  # noqa: PLC0415 - `galloping --help` needs no numerics
 
@@ -46,23 +46,23 @@ def clearances(
     offset: tuple[float, float],
     method: EllipseMethodName,
 ) -> dict[str, Any]:
-    """Return the clearance that is left between two phases which gallop alike, motion by motion, beside the ellipse's.
+    """Return the clearance between two phases that gallop alike, for each motion and for an ellipse.
 
     Parameters
     ----------
     request : tuple
-        A request document, and the number of a point.
+        A request document and the number of a point.
     found : mapping
         The point's rows of `limit_cycles`, `orbits` and `static`.
     offset : tuple of float
-        How far the other phase lies above, and downwind [m].
+        Position of the other phase: upward and downwind [m].
     method : str
-        Whose ellipse.
+        Method that gives the ellipse.
 
     Raises
     ------
     ValueError, LookupError
-        If the line of the point is at fault, or there is no such point.
+        If the line at this point is not valid, or there is no such point.
     """
     import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
 

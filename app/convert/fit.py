@@ -1,4 +1,4 @@
-"""A table of measured coefficients -> the engine's fit -> coefficients as a line document takes them."""
+"""Convert a table of measured coefficients, by the engine's fit, to coefficients for a line document."""
 
 import math
 from typing import Any
@@ -15,7 +15,7 @@ def fit(request: schemas.MeasuredCoefficients) -> dict[str, Any]:
     Raises
     ------
     BadInput
-        If too few rows lie in the range, or all of them on one side of the static angle.
+        If too few rows lie in the range, or all of them lie on one side of the static angle.
     """
     import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
 

@@ -1,4 +1,4 @@
-"""A request and the number of a point -> the mode shapes of its line, as plain rows for a picture."""
+"""Compute the mode shapes of a request's line at one point, as plain rows for a picture."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,15 +9,15 @@ _COMPONENTS = ("longitudinal", "vertical", "horizontal", "torsional")
 
 
 def mode_shapes(document: Mapping[str, object], point: int) -> list[dict[str, Any]]:
-    """Return one row for each model, direction and number of loops that a request asks for, at one point of its study.
+    """Return one row for each model, direction and number of loops of the analysis, at one point of the study.
 
-    A row has `model`, `direction`, `loops`, `position_m` and the four components at these positions, scaled as
-    `engine.models.mode_shapes` says.
+    A row has `model`, `direction`, `loops`, `position_m` and the four components at these positions, scaled as in
+    `engine.models.mode_shapes`.
 
     Raises
     ------
     ValueError, ArithmeticError
-        If the line of the point is at fault or numerically out of reach.
+        If the line at this point is not valid or its computation fails.
     LookupError
         If there is no such point.
     """

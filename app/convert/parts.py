@@ -1,7 +1,7 @@
-"""JSON models -> engine dataclasses, one part at a time: the only place where degrees become radians.
+"""Convert JSON models to engine dataclasses, one part at a time; degrees become radians here and nowhere else.
 
-Every function raises `InvalidSpec` for what the engine refuses, with paths that begin at the line's root where the
-engine knows it, else at the part itself.
+Every function raises `InvalidSpec` for what the engine refuses. Fault paths begin at the line's root where the engine
+knows it, otherwise at the part itself.
 """
 
 import math
@@ -13,7 +13,7 @@ from engine.outcome import Fault, InvalidSpec, require
 
 
 def conductor(part: schemas.Conductor) -> spec.Conductor:
-    """Build a sub-conductor; its axial rigidity may come from area and modulus."""
+    """Build a sub-conductor; compute its axial rigidity from area and modulus if it is not given."""
     rigidity = part.axial_rigidity
     if rigidity is None:
         rigidity = (part.area or 0.0) * (part.youngs_modulus or 0.0)
@@ -28,7 +28,7 @@ def conductor(part: schemas.Conductor) -> spec.Conductor:
 
 
 def bundle(part: schemas.Bundle) -> spec.Bundle:
-    """Build the arrangement from positions, or from a circle."""
+    """Build the arrangement from positions or from a circle."""
     if part.positions is not None:
         return spec.Bundle(tuple((y, z) for y, z in part.positions))
     return spec.Bundle.regular(part.subconductors or 1, part.radius or 0.0, math.radians(part.orientation or 0.0))
@@ -52,9 +52,9 @@ def supports(part: schemas.Supports) -> spec.Supports:
 def aerodynamics(
     part: schemas.Aerodynamics | schemas.MeasuredCoefficients, at_rest: schemas.AerodynamicsAtRest | None
 ) -> spec.Aerodynamics:
-    """Build the coefficients from what the contract keeps in two places, or from a table."""
+    """Build the coefficients from cubics and values at rest, or from a table."""
     if isinstance(part, schemas.MeasuredCoefficients):
-        rule = "must be absent beside a table, which holds the values at rest itself"
+        rule = "must be absent if a table is given, which contains the values at rest"
         require(Fault("at_rest", None, rule) if at_rest else None)
         return _fitted(part)
     return spec.Aerodynamics(
@@ -79,13 +79,13 @@ def _fitted(part: schemas.MeasuredCoefficients) -> spec.Aerodynamics:
 
 
 def segment(part: schemas.IceSegment) -> spec.IceSegment:
-    """Build a stretch of other ice."""
+    """Build a stretch with other ice."""
     own = aerodynamics(part.aerodynamics, part.at_rest) if part.aerodynamics else None
     return spec.IceSegment(part.start, part.stop, own, part.eccentricity_y, part.eccentricity_z, part.mass)
 
 
 def wind(part: schemas.Wind) -> spec.Wind:
-    """Build the wind apart from its speed."""
+    """Build the wind, except its speed."""
     mean = part.blow_out
     blow_out = spec.BlowOut(mean.wind_speed, mean.drag_coefficient) if mean else None
     return spec.Wind(part.air_density, tuple((point.position, point.factor) for point in part.profile), blow_out)
@@ -109,7 +109,7 @@ def device(part: schemas.Device) -> spec.Device:
 
 
 def placement(part: schemas.Placement) -> spec.Placement:
-    """Build a search for the places of devices."""
+    """Build a search for the placement of devices."""
     return spec.Placement(
         choice=_choice(part.choice),
         objective=spec.Objective(part.objective),
@@ -131,7 +131,7 @@ def _choice(part: schemas.PendulumChoice | schemas.SpoilerChoice) -> spec.Pendul
 
 
 def analysis(part: schemas.Analysis) -> spec.Analysis:
-    """Build what is asked."""
+    """Build the analysis."""
     return spec.Analysis(
         loops=tuple(part.loops),
         models=tuple(spec.Model(model) for model in part.models),

@@ -1,4 +1,4 @@
-"""Faults of the engine, which name its attributes -> faults of a request document, which point into its JSON."""
+"""Convert faults of the engine, which name its attributes, to faults with pointers into the JSON document."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ def to_pointer(fault: outcome.Fault, line: object, analysis: object) -> Fault:
     ----------
     fault : engine.outcome.Fault
     line, analysis : object
-        What the attributes of the fault are looked up in: models, or `SoundParts` for the line.
+        Models in which to look up the attributes of the fault, or `SoundParts` for the line.
     """
     path = fault.field.split(".")
     if path[0] == "analysis":
@@ -27,14 +27,14 @@ def to_pointer(fault: outcome.Fault, line: object, analysis: object) -> Fault:
 
 
 def json_names(node: object, path: Sequence[str]) -> list[str]:
-    """Turn the engine's names into the contract's by walking the models, whose attributes carry the engine's names."""
+    """Convert the engine's names to JSON names by walking the models, whose attributes have the engine's names."""
     names: list[str] = []
     for token in path:
         if isinstance(node, BaseModel):
             fields = type(node).model_fields
             aliases = {info.alias for info in fields.values()}
             if token not in fields and token not in aliases:
-                break  # a rule of several fields: it is told of what holds them
+                break  # a rule about several fields points to the object that contains them
             names.append((fields[token].alias or token) if token in fields else token)
             node = getattr(node, token, None)
         elif isinstance(node, Sequence) and token.isdecimal():

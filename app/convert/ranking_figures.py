@@ -1,4 +1,4 @@
-"""The figures by which the lines of a batch are ranked, out of everything that was found for each."""
+"""The figures by which the lines of a batch are ranked, from the results of each line."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -17,12 +17,12 @@ _Motion = tuple[LimitCycleRow, Orbit | None]
 _Room = tuple[float, float]
 
 
-def peaks(lines: Sequence[spec.Line], results: Sequence[Result]) -> list[dict[str, float | None]]:
-    """Return the lowest critical wind speed of each line, and its largest motion that lasts at the winds asked for.
+def ranking_figures(lines: Sequence[spec.Line], results: Sequence[Result]) -> list[dict[str, float | None]]:
+    """Return the lowest critical wind speed of each line, and its largest stable motion at the analysis' wind speeds.
 
-    Height and width [m] are of all that the sub-conductors reach where the motion is observed. None where nothing is
-    known: no crossing up to the limit, or no motion whose stability was decided. A line that is unstable without wind
-    has the critical wind speed 0.
+    Height and width [m] bound the space that the sub-conductors sweep at the observation point. A figure is None if it
+    is unknown: no crossing up to the limit, or no motion with known stability. A line that is unstable without wind has
+    the critical wind speed 0.
     """
     lasting = [_lasting(result) for result in results]
     moving = [place for place, motions in enumerate(lasting) if motions]
@@ -52,9 +52,9 @@ def _figures(result: Result, lasting: Sequence[_Motion], room: _Room | None) -> 
 
 
 def _rooms(moving: Sequence[tuple[spec.Line, Sequence[_Motion]]]) -> list[_Room]:
-    """Return height and width of each line's largest motions, of which it has some, all lines side by side.
+    """Return height and width of the space that each line's stable motions sweep, all lines together.
 
-    They are exact from orbits, and from above where there are amplitudes only.
+    They are exact from orbits, and upper bounds where only amplitudes are known.
     """
     import numpy as np  # noqa: PLC0415 - the API and `galloping --help` need no numerics
 
@@ -67,7 +67,7 @@ def _rooms(moving: Sequence[tuple[spec.Line, Sequence[_Motion]]]) -> list[_Room]
     most, least = _bounds(motions, np.abs(positions).max(axis=1)[owner, ::-1])
     most += found[owner]
     np.maximum.at(found, owner, np.where([[orbit is None] for _, orbit in motions], most, 0.0))
-    # Orbits that cannot reach as far as another one of their line does anyway need not be followed.
+    # Skip orbits that cannot reach as far as another orbit of their line surely does.
     surely = np.maximum.reduceat(least, np.searchsorted(owner, range(len(moving))))
     far = np.flatnonzero((most >= surely[owner]).any(axis=-1)).tolist()
     reaching = [(place, orbit) for place in far if (orbit := motions[place][1]) is not None]
@@ -79,13 +79,13 @@ def _rooms(moving: Sequence[tuple[spec.Line, Sequence[_Motion]]]) -> list[_Room]
 
 
 def _equally_many(bundles: Sequence[tuple[tuple[float, float], ...]]) -> list[tuple[tuple[float, float], ...]]:
-    """Repeat a sub-conductor of the smaller bundles, which takes no more room than it does alone."""
+    """Repeat a sub-conductor of smaller bundles, which does not change the space that they take."""
     most = max(map(len, bundles))
     return [positions + positions[:1] * (most - len(positions)) for positions in bundles]
 
 
 def _bounds(motions: Sequence[_Motion], arms: "FloatArray") -> "tuple[FloatArray, FloatArray]":
-    """Return what height and width (motions, 2) of a motion lie between, the bundle's own above left out [m]."""
+    """Return upper and lower bounds of height and width (motions, 2) of a motion, without the bundle's own size [m]."""
     import numpy as np  # noqa: PLC0415 - as above
 
     moved = np.array([(row.vertical_m or 0.0, row.horizontal_m or 0.0) for row, _ in motions])
@@ -95,7 +95,7 @@ def _bounds(motions: Sequence[_Motion], arms: "FloatArray") -> "tuple[FloatArray
 
 
 def _reached(orbits: Sequence[Orbit], positions: "FloatArray") -> "FloatArray":
-    """Return height and width (orbits, 2) of all that the sub-conductors at positions (orbits, n, 2) reach [m]."""
+    """Return height and width (orbits, 2) of the space swept by sub-conductors at positions (orbits, n, 2) [m]."""
     import numpy as np  # noqa: PLC0415 - as above
 
     from engine.clearance import extents, subconductor_paths  # noqa: PLC0415 - as above

@@ -1,4 +1,4 @@
-"""A validated request -> the engine -> plain rows, one point of the study after another."""
+"""Run a validated request in the engine and return plain rows, one point of the study after another."""
 
 import math
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
@@ -12,7 +12,7 @@ import orjson
 from app import schemas
 from app.convert import parts, study
 from app.convert.assemble import SoundParts, gather
-from app.convert.ranking_figures import peaks
+from app.convert.ranking_figures import ranking_figures
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
 from engine.progress import Progress, translated
@@ -23,7 +23,7 @@ _NO_ROWS = orjson.dumps({name: [] for name in TABLES})
 
 @dataclass(frozen=True)
 class Advance:
-    """How far a job is: fraction from 0 to 1 and the step at hand in words."""
+    """The progress of a job: fraction from 0 to 1, and the current step in words."""
 
     fraction: float
     step: str
@@ -42,7 +42,7 @@ class PointResult:
     axes: dict[str, object]
     static: dict[str, Any]
     den_hartog: dict[str, Any]
-    peaks: dict[str, float | None]
+    ranking_figures: dict[str, float | None]
     tables_json: bytes
     orbits_json: bytes
     warnings: list[str]
@@ -59,7 +59,7 @@ class PointResult:
 
     @cached_property
     def orbits(self) -> list[dict[str, Any]]:
-        """Fourier coefficients of the cycles, each with the number of its row among the limit cycles."""
+        """Fourier coefficients of the cycles, each with its row number among the limit cycles."""
         found: list[dict[str, Any]] = orjson.loads(self.orbits_json)
         return found
 
@@ -98,7 +98,7 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
             elif follows:
                 held.append(item)
             else:
-                yield item.told()
+                yield item.as_result()
     if follows:
         yield Advance(total / (total + 1), "branches over the field")
         yield from _followed(request, held)
@@ -107,21 +107,21 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
 
 @dataclass(frozen=True)
 class _Solved:
-    """A point of a study with what the engine found there."""
+    """A point of a study with the engine's result."""
 
     number: int
     values: dict[str, Any]
     line: spec.Line
     result: Result
 
-    def told(self) -> PointResult:
-        """Return everything as plain values."""
+    def as_result(self) -> PointResult:
+        """Return the point as plain values."""
         (point,) = point_results([(self.number, self.values)], [self.line], [self.result])
         return point
 
 
 def _followed(request: schemas.JobRequest, held: list[_Solved]) -> Iterator[PointResult]:
-    """Follow the cycles of the points over the one field of a study; where that fails, its points say so."""
+    """Follow the cycles of the points over the one field of a study; if that fails, add a warning to the points."""
     # The API and `galloping --help` need no solver.
     from engine.studies.followed import followed  # noqa: PLC0415
 
@@ -140,7 +140,7 @@ def _followed(request: schemas.JobRequest, held: list[_Solved]) -> Iterator[Poin
             said = f"The cycles were not followed over {parameter}: {error}"
             results = [replace(result, warnings=(*result.warnings, said)) for result in results]
     for point, result in zip(rising, results, strict=True):
-        yield replace(point, result=result).told()
+        yield replace(point, result=result).as_result()
 
 
 def _point(
@@ -160,7 +160,7 @@ def _point(
 def _steps(
     placement: schemas.Placement | None, line: spec.Line, analysis: spec.Analysis
 ) -> Generator[Progress, None, Result]:
-    """Return the computation of one point, which has not begun yet."""
+    """Return the computation of one point, not yet started."""
     # The API and `galloping --help` need no solver, and an analysis needs no optimizer.
     if placement is None:
         from engine.analysis import analyse  # noqa: PLC0415
@@ -172,7 +172,7 @@ def _steps(
 
 
 def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:
-    """Return what the engine is asked at one point of a request.
+    """Return the engine's line and analysis at one point of a request.
 
     Raises
     ------
@@ -188,7 +188,7 @@ def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[
 
 
 def specification_of_point(document: Mapping[str, object], point: int) -> tuple[spec.Line, spec.Analysis]:
-    """Return what the engine is asked at a point of a request document, by its number.
+    """Return the engine's line and analysis at a point of a request document, by its number.
 
     Raises
     ------
@@ -206,14 +206,14 @@ def specification_of_point(document: Mapping[str, object], point: int) -> tuple[
 def point_results(
     points: Iterable[tuple[int, dict[str, Any]]], lines: Sequence[spec.Line], results: Sequence[Result]
 ) -> Iterator[PointResult]:
-    """Yield the engine's results of points, given by number and values, as plain values; what is not finite is null."""
-    for (number, values), result, figures in zip(points, results, peaks(lines, results), strict=True):
+    """Yield the engine's results of points as plain values; a value that is not finite becomes null."""
+    for (number, values), result, figures in zip(points, results, ranking_figures(lines, results), strict=True):
         yield PointResult(
             point=number,
             axes=values,
             static=_finite(asdict(result.static)),
             den_hartog=_finite(asdict(result.den_hartog)),
-            peaks=_finite(figures),
+            ranking_figures=_finite(figures),
             tables_json=_json({name: getattr(result, name) for name in TABLES}),
             orbits_json=_json(result.orbits),
             warnings=list(result.warnings),
@@ -223,13 +223,13 @@ def point_results(
 
 
 def failed_point(error: Exception, number: int, values: dict[str, Any]) -> PointResult:
-    """Return a point that holds nothing but why it failed."""
+    """Return a point that contains only its failure."""
     return PointResult(
         point=number,
         axes=values,
         static={},
         den_hartog={},
-        peaks={},
+        ranking_figures={},
         tables_json=_NO_ROWS,
         orbits_json=b"[]",
         warnings=[],
@@ -239,7 +239,7 @@ def failed_point(error: Exception, number: int, values: dict[str, Any]) -> Point
 
 
 def _json(found: object) -> bytes:
-    """Return dataclasses, enums and numpy's scalars as JSON."""
+    """Return dataclasses, enums and numpy scalars as JSON."""
     return orjson.dumps(found, option=orjson.OPT_SERIALIZE_NUMPY)
 
 

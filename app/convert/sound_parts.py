@@ -1,4 +1,4 @@
-"""What is sound in a request document that fails its schema, so that the rest of it can still be checked."""
+"""Find the valid parts of a request document that fails its schema, so that the other rules can still be checked."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -24,7 +24,7 @@ _AXIS_VALUE: TypeAdapter[Any] = TypeAdapter(AxisValue)
 
 @dataclass(frozen=True, slots=True)
 class SoundAxis:
-    """An axis of a study with its number, the fields that it varies, and its sound values with their numbers."""
+    """An axis of a study: its number, the fields that it varies, and its valid values with their numbers."""
 
     number: int
     parameters: Sequence[str]
@@ -32,7 +32,7 @@ class SoundAxis:
 
 
 def pruned(document: Mapping[str, Any], faults: Iterable[Fault]) -> Mapping[str, Any]:
-    """Return a document without the unknown fields that these faults name, so that they hide nothing else."""
+    """Return a document without the unknown fields that these faults name, so that they hide no other faults."""
     pointers = [fault.pointer for fault in faults if fault.code == "unknown_field"]
     paths = [[token.replace("~1", "/").replace("~0", "~") for token in text.split("/")[1:]] for text in pointers]
     without: Mapping[str, Any] = _without(document, paths)
@@ -40,7 +40,7 @@ def pruned(document: Mapping[str, Any], faults: Iterable[Fault]) -> Mapping[str,
 
 
 def _without(node: Any, paths: Iterable[Sequence[str]]) -> Any:
-    """Return a copy that lacks what the paths lead to; only what lies on a path is copied."""
+    """Return a copy without the nodes at the end of the paths; copy only nodes on a path."""
     below: dict[str, list[Sequence[str]]] = defaultdict(list)
     for path in paths:
         if path:
@@ -54,7 +54,7 @@ def _without(node: Any, paths: Iterable[Sequence[str]]) -> Any:
 
 
 def sound_parts(line: Mapping[str, Any]) -> SoundParts:
-    """Return the parts of a line document that pass their own schema; an absent one has its default."""
+    """Return the parts of a line document that pass their schema; an absent part has its default."""
     devices = line.get("devices")
     return SoundParts(
         conductor=_part(schemas.Conductor, line, "conductor"),
@@ -69,7 +69,7 @@ def sound_parts(line: Mapping[str, Any]) -> SoundParts:
 
 
 def sound_analysis(value: object) -> schemas.Analysis | None:
-    """Return an analysis of the choices that are sound by themselves; None if it is no object."""
+    """Return an analysis of the options that are valid by themselves; None if the value is not an object."""
     if not isinstance(value, dict):
         return None
     choices: dict[str, Any] = {}
@@ -80,12 +80,12 @@ def sound_analysis(value: object) -> schemas.Analysis | None:
         if _sound(schemas.Analysis, {key: value[key]}) is not None:
             choices[key] = value[key]
         elif name in {"loops", "finite_element_loops"}:
-            choices[key] = [1]  # every line has as many elements, while the default may be too much for it
+            choices[key] = [1]  # every line has enough elements for one loop, but perhaps not for the default
     return _sound(schemas.Analysis, choices)
 
 
 def sound_axes(study: object) -> list[SoundAxis]:
-    """Return the axes of a study document whose parameter is sound, with their sound values."""
+    """Return the axes of a study document whose parameter is valid, with their valid values."""
     axes = study.get("axes") if isinstance(study, dict) else None
     if not isinstance(axes, list):
         return []

@@ -1,4 +1,4 @@
-"""Many lines under one analysis -> the engine in stacks -> plain rows, one point a line."""
+"""Run many lines under one analysis, in stacks of the engine, with one point for each line."""
 
 import itertools
 import logging
@@ -17,11 +17,11 @@ from engine import spec
 from engine.outcome import InvalidSpec
 from engine.progress import finished
 
-STACK = 128  # lines side by side: fewer share too little of the work between them, more gain nothing
+STACK = 128  # lines computed together: fewer share too little work, more gain nothing
 _LINE, _ANALYSIS = "/line", "/analysis"
 _NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
 
-# Seconds of one core for a line in a stack, fixed and per wind speed, rounded from figures of `benchmarks.line_costs`.
+# Seconds on one core for a line in a stack, fixed and per wind speed, rounded from `benchmarks.line_costs`.
 _HYBRID_SECONDS = (0.003, 0.0003)  # for each number of loops
 _HYBRID_DIRECT_SECONDS = (0.6, 0.2)
 _FINITE_ELEMENT_SECONDS = (0.4, 0.01)
@@ -35,19 +35,19 @@ _logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class NumberedLine:
-    """A line document, as `read_line` took it, and its number in the batch."""
+    """A line document, as `read_line` accepts it, and its number in the batch."""
 
     number: int
     document: Mapping[str, object]
 
 
 def read_analysis(document: object) -> schemas.Analysis:
-    """Return an analysis that is sound by itself.
+    """Return an analysis that is valid by itself.
 
     Raises
     ------
     BadInput
-        With every fault, as JSON pointers below `/analysis`.
+        With every fault, with JSON pointers below `/analysis`.
     """
     try:
         analysis = schemas.Analysis.model_validate(document)
@@ -60,12 +60,12 @@ def read_analysis(document: object) -> schemas.Analysis:
 
 
 def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
-    """Return a line that passes its schema and can be asked this analysis.
+    """Return a line that passes its schema and allows this analysis.
 
     Raises
     ------
     BadInput
-        With every fault, as JSON pointers from the root of the line.
+        With every fault, with JSON pointers from the root of the line.
     """
     try:
         line = schemas.Line.model_validate(document)
@@ -80,7 +80,7 @@ def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
 
 
 def seconds_a_line(analysis: schemas.Analysis) -> float:
-    """Estimate what a line costs in a stack on one core [s], to cut a batch into messages of equal work."""
+    """Estimate the time of a line in a stack on one core [s], to cut a batch into chunks of equal work."""
     winds, direct = len(analysis.speeds()), analysis.check == "direct"
 
     def motions(*costs: tuple[float, float]) -> float:
@@ -99,18 +99,18 @@ def seconds_a_line(analysis: schemas.Analysis) -> float:
 
 
 def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> Iterator[Advance | PointResult]:
-    """Run many lines, side by side where they have equal numbers of elements.
+    """Run many lines, those with equal numbers of elements together.
 
     Parameters
     ----------
     analysis : mapping
-        An analysis document as `read_analysis` takes it.
+        An analysis document that `read_analysis` accepts.
     lines : sequence of NumberedLine
 
     Yields
     ------
     Advance or PointResult
-        Progress, and one result a line, whose point is the line's number; a line that fails has its failure.
+        Progress, and one result for each line, whose point is the line's number; a failed line has its failure.
 
     Raises
     ------
@@ -137,7 +137,7 @@ _Made = tuple[int, spec.Line, spec.Analysis]
 
 
 def _stacks(made: Iterable[_Made]) -> Iterator[list[_Made]]:
-    """Yield lines with equal numbers of elements together, not too many at once."""
+    """Yield lines with equal numbers of elements in stacks of limited size."""
 
     def elements(item: _Made) -> int:
         return item[1].span.elements
@@ -156,7 +156,7 @@ def _specification(line: NumberedLine, asked: schemas.Analysis) -> tuple[spec.Li
 
 
 def _stack_results(stack: Sequence[_Made]) -> Iterator[PointResult]:
-    """Run a stack; one that fails is run again line by line, so that a bad line fails alone."""
+    """Run a stack; if it fails, run its lines one by one, so that only the wrong line fails."""
     from engine.analysis import analyse_stack  # noqa: PLC0415 - the API and `galloping --help` need no solver
 
     try:
@@ -173,7 +173,7 @@ def _stack_results(stack: Sequence[_Made]) -> Iterator[PointResult]:
 
 
 def _for_owner(error: Exception) -> Exception:
-    """Return a numerical error as it is, and a defect of ours without its inside."""
+    """Return a numerical error unchanged, and hide the details of an internal error."""
     if isinstance(error, ArithmeticError | ValueError):
         return error
     _logger.error("a line of a batch failed", exc_info=error)

@@ -1,4 +1,4 @@
-"""Studies: fields of the line by dotted JSON path, checked beforehand, set for every point."""
+"""Studies: check fields of the line by dotted JSON path beforehand, and set them at every point."""
 
 import copy
 import itertools
@@ -20,7 +20,7 @@ _UNVARIABLE = frozenset({"name", "asset_id", "tags"})
 
 
 def points(study: schemas.Study | None) -> Iterator[dict[str, Any]]:
-    """Yield the axes' values by parameter for every point, the last axis fastest; one empty point without axes."""
+    """Yield for every point the axes' values by parameter, the last axis fastest; without axes one empty point."""
     axes = study.axes if study else []
     names = [axis.parameter for axis in axes]
     for values in itertools.product(*(axis.values for axis in axes)):
@@ -28,7 +28,7 @@ def points(study: schemas.Study | None) -> Iterator[dict[str, Any]]:
 
 
 def settings(study: schemas.Study | None, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the value of every field that a point sets, those that follow an axis among them."""
+    """Return the value of every field that a point sets, including fields that follow an axis."""
     axes = study.axes if study else []
     return {name: values[axis.parameter] for axis in axes for name in axis.parameters}
 
@@ -58,10 +58,10 @@ def varied(line: schemas.Line, values: dict[str, Any]) -> schemas.Line:
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """A line document that a study varies: sound parts with their defaults, others as they came, and its own faults.
+    """A line document that a study varies: valid parts with their defaults, other parts unchanged, and its own faults.
 
-    `unsound` holds the paths of parts and devices that fail their schema; `known` the pointers of what is wrong without
-    any study, which no value is to be blamed for.
+    `unsound` holds the paths of parts and devices that fail their schema. `known` holds the pointers of faults without
+    the study, which no value of an axis causes.
     """
 
     document: dict[str, Any]
@@ -71,7 +71,7 @@ class Ground:
 
     @classmethod
     def of(cls, line: Mapping[str, Any], parts: SoundParts, asked: schemas.Analysis | None) -> "Ground":
-        """Take a line document, its sound parts, and what is asked as far as that is sound."""
+        """Take a line document, its valid parts, and the valid options of the analysis."""
         document: dict[str, Any] = {"devices": []}
         unsound: set[tuple[str, ...]] = set()
         for name in PARTS:
@@ -86,15 +86,15 @@ class Ground:
         known = {fault.pointer for fault in _document_faults(document, asked)}
         return cls(document, frozenset(unsound), asked, frozenset(known))
 
-    def is_open(self, path: Sequence[str]) -> bool:
-        """Tell whether a path leads into a part that is not sound, where its defaults are unknown."""
+    def is_unsound(self, path: Sequence[str]) -> bool:
+        """Tell whether a path leads into a part that is not valid, so that its defaults are unknown."""
         return tuple(path[:1]) in self.unsound or tuple(path[:2]) in self.unsound
 
 
 def faults(ground: Ground, axes: Sequence[SoundAxis]) -> Iterator[Fault]:
-    """Yield what is wrong with the axes of a study, value by value, then point by point, beside the line's own faults.
+    """Yield the faults of the axes of a study, value by value and then point by point, except the line's own faults.
 
-    Every combination is tried only if each value is sound by itself.
+    Combinations are checked only if each value alone is valid.
     """
     found = False
     for axis in axes:
@@ -123,22 +123,22 @@ def _axis_faults(ground: Ground, axis: SoundAxis) -> Iterator[Fault]:
 
 
 def _point_faults(ground: Ground, values: dict[str, Any], pointer: str) -> Iterator[Fault]:
-    """Yield the faults that the line has with these values only."""
-    said = ", ".join(f"{name} = {value}" for name, value in values.items())
+    """Yield the faults that the line has only with these values."""
+    assignment = ", ".join(f"{name} = {value}" for name, value in values.items())
     own = {json_pointer(["line", *name.split(".")]) for name in values}
     document = copy.deepcopy(ground.document)
     try:
         for name, value in values.items():
             _set(document, name.split("."), value)
     except LookupError:
-        return  # the field is absent from a part that is at fault already
+        return  # the field is missing in a part that is not valid
     for fault in _document_faults(document, ground.asked):
         if fault.pointer in own or fault.pointer not in ground.known:
-            yield Fault(pointer, fault.code, f"with {said}: {fault}")
+            yield Fault(pointer, fault.code, f"with {assignment}: {fault}")
 
 
 def _document_faults(document: Mapping[str, Any], asked: schemas.Analysis | None) -> list[Fault]:
-    """Return the faults of a line document, first those of its schema."""
+    """Return the faults of a line document, those of its schema first."""
     wrong: list[Fault] = []
     try:
         parts = SoundParts.of(schemas.Line.model_validate(document))
@@ -154,15 +154,15 @@ def _dumped(part: BaseModel) -> Any:
 
 
 def _path_fault(ground: Ground, path: Sequence[str]) -> str | None:
-    """Say why a path leads to no number or word of a line document; None if it does, or if nobody can tell yet."""
+    """Return why a path leads to no number or word of a line document; None if it does, or if that is unknown yet."""
     if path[0] in _UNVARIABLE or path[-1] == "type":
-        return "must lead to a number or a word that the analysis depends on"
+        return "must lead to a number or a word that affects the analysis"
     try:
         value = _at(ground.document, path)
     except LookupError:
-        if ground.is_open(path):
+        if ground.is_unsound(path):
             return None
-        return "leads to no field of this line; list items are named by their number from 0"
+        return "leads to no field of this line; use a number from 0 for a list item"
     if isinstance(value, bool | dict | list):
         return "must lead to a single number or word"
     return None
@@ -180,7 +180,7 @@ def _set(document: Any, path: Sequence[str], value: object) -> None:
 
 
 def _key(document: object, token: str) -> str | int:
-    """Return the key of a token in an object or a list.
+    """Return the key or index for a token in an object or a list.
 
     Raises
     ------

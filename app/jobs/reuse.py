@@ -156,7 +156,7 @@ def _as_result(row: PointRow, number: int) -> PointResult:
         axes={"number": number},
         static={name: getattr(row, name) for name in STATIC},
         den_hartog={"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable},
-        peaks={name: getattr(row, name) for name in RANKING_FIGURES},
+        ranking_figures={name: getattr(row, name) for name in RANKING_FIGURES},
         tables_json=unpacked(row.tables),
         orbits_json=unpacked(row.orbits),
         warnings=row.warnings,

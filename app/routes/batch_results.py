@@ -1,4 +1,4 @@
-"""Results of a batch, streamed as NDJSON, CSV or Parquet, and the faults of the lines that were rejected."""
+"""Results of a batch, streamed as NDJSON, CSV or Parquet, and the faults of rejected lines."""
 
 from collections.abc import Iterator
 from typing import Annotated, Literal
@@ -33,17 +33,19 @@ _MEDIA_TYPES: dict[BatchFormat, str] = {
 
 
 class ResultsQuery(BaseModel):
-    """Which results of a batch, and in which form."""
+    """Which results of a batch to return, and in which format."""
 
     table: BatchTableName | None = Field(
-        default=None, description="One table of flat rows; CSV and Parquet are the summary if absent"
+        default=None,
+        description="One table of flat rows; without it, NDJSON has all results, CSV and Parquet the summary",
     )
-    format: BatchFormat | None = Field(default=None, description="Wins over the Accept header")
-    partial: bool = Field(default=False, description="Also while lines are waiting or running")
+    format: BatchFormat | None = Field(default=None, description="Format; takes precedence over the Accept header")
+    partial: bool = Field(default=False, description="Return the results so far, even if lines still wait or run")
 
 
 @router.get(
     "/results",
+    summary="Get the results of a batch",
     response_class=StreamingResponse,
     responses={
         200: batch_documentation.RESULTS_ANSWER,
@@ -53,7 +55,7 @@ class ResultsQuery(BaseModel):
         ),
     },
 )
-def results(
+def batch_results(
     batch_id: UUID,
     request: Request,
     caller: CallerOf,
@@ -61,7 +63,7 @@ def results(
     asked: Annotated[ResultsQuery, Query()],
     known: KnownTags = "",
 ) -> StreamingResponse:
-    """Return what came of the lines in the order of their numbers: everything, one object a line, or one table.
+    """Return the results of the lines in the order of their numbers: one object with all results each, or one table.
 
     Every row has `number`, `reference` and `asset_id`. A line without results has its failure.
     """
@@ -71,7 +73,7 @@ def results(
             ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {formats.PARQUET}."
         )
     state = require_results(readers, caller, batch_id, partial=asked.partial)
-    # What still changes has no tag: a strong one would have to be known before the last row is read.
+    # Results that may still change get no tag: it would have to be known before the last row is read.
     headers = unless_known(known, strong_tag(state, form)) if state else {"Vary": "Accept"}
     name = convert.TABLES_BY_ADDRESS.get(asked.table or "summary", "summary")
 
@@ -91,17 +93,18 @@ def results(
 
 @router.get(
     "/errors",
+    summary="Get the faults of rejected lines",
     response_class=StreamingResponse,
     responses={
         200: {
-            **documentation.body("Every fault", ("application/json", batch_documentation.ERRORS)),
+            **documentation.body("All faults", ("application/json", batch_documentation.ERRORS)),
             "model": BatchErrors,
         },
         **documentation.problems(ProblemKind.NOT_FOUND),
     },
 )
-def errors(batch_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
-    """Return all faults of the lines that were rejected when the batch came in."""
+def batch_errors(batch_id: UUID, caller: CallerOf, readers: Readers) -> StreamingResponse:
+    """Return all faults of the lines that were rejected when the batch was received."""
     require_results(readers, caller, batch_id, partial=True)
 
     def pieces(session: Session) -> Iterator[str]:

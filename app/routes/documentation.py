@@ -1,4 +1,4 @@
-"""Examples of every body and every problem for OpenAPI; each validates against its own schema (tests see to it)."""
+"""OpenAPI examples of every body and every problem; tests validate each against its schema."""
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
@@ -45,7 +45,7 @@ REPLAYED_HEADER: dict[str, Any] = {
 }
 ACCEPTED_HEADERS: dict[str, Any] = {
     "Location": {"description": "Address of the status", "schema": {"type": "string"}},
-    "Retry-After": {"description": "Seconds to wait before looking", "schema": {"type": "integer"}},
+    "Retry-After": {"description": "Seconds to wait before the next request", "schema": {"type": "integer"}},
     **REPLAYED_HEADER,
 }
 _NOTHING_YET = ("started_at", "finished_at", "failure", "engine_version", "reused_from")
@@ -80,7 +80,7 @@ PROBLEM_PAGE: dict[str, Any] = {
     "description": ProblemKind.NOT_READY.description,
 }
 TABLE_ANSWER: dict[str, Any] = {
-    "description": "The rows of the table, under its name in JSON",
+    "description": "The rows of the table; in JSON under the table's name",
     "content": {
         "application/json": {
             "schema": {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "object"}}},
@@ -145,11 +145,11 @@ _FAULTS = {
 
 UNCHANGED: dict[int | str, dict[str, Any]] = {
     304: {
-        "description": "The client has it: the `ETag` is among those of `If-None-Match`",
+        "description": "The client has this answer: its `ETag` is in `If-None-Match`",
         "headers": {"ETag": {"description": "Strong tag of the answer", "schema": {"type": "string"}}},
     }
 }
-# The model brings its schema into the document, under a media type of FastAPI's choice, which `as_sent` corrects.
+# FastAPI adds the model's schema under its own media type, which `as_sent` corrects.
 ANY_PROBLEM: dict[str, Any] = {"model": Problem}
 _ANY_PROBLEM_AS_SENT: dict[str, Any] = {
     "description": "Problem details (RFC 9457), as application/problem+json",
@@ -163,7 +163,7 @@ _ANY_PROBLEM_AS_SENT: dict[str, Any] = {
 
 
 def problems(*kinds: ProblemKind) -> dict[int | str, dict[str, Any]]:
-    """Return the entries of OpenAPI for these problems, and for the two that every address can answer."""
+    """Return the OpenAPI entries for these problems and for the two that every address can answer."""
     by_status: dict[int | str, list[ProblemKind]] = {}
     for kind in (*kinds, ProblemKind.UNAVAILABLE, ProblemKind.INTERNAL):
         by_status.setdefault(kind.status, []).append(kind)
@@ -174,7 +174,7 @@ def problems(*kinds: ProblemKind) -> dict[int | str, dict[str, Any]]:
 
 
 def with_nulls(document: Any) -> Any:
-    """Return a document in which every mark of a null is a null."""
+    """Return a document in which nulls replace the null marks."""
     if isinstance(document, dict):
         return {key: with_nulls(value) for key, value in document.items()}
     if isinstance(document, list):
@@ -183,7 +183,7 @@ def with_nulls(document: Any) -> Any:
 
 
 def as_sent(document: dict[str, Any]) -> dict[str, Any]:
-    """Return an OpenAPI document in which every problem that is not named has the media type that it is sent with."""
+    """Return an OpenAPI document in which every unnamed problem has the media type that the service sends."""
     for operations in document["paths"].values():
         for operation in operations.values():
             operation["responses"]["default"] = _ANY_PROBLEM_AS_SENT
@@ -191,8 +191,12 @@ def as_sent(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def guarded(document: dict[str, Any]) -> dict[str, Any]:
-    """Return an OpenAPI document in which whatever needs a key asks for one, and says how it refuses."""
-    scheme = {"type": "http", "scheme": "bearer", "description": "A key of `galloping keys create`; none without keys"}
+    """Return an OpenAPI document that requires a key where the service does, and lists the refusals."""
+    scheme = {
+        "type": "http",
+        "scheme": "bearer",
+        "description": "A key from `galloping keys create`; not needed while no key exists",
+    }
     document["components"]["securitySchemes"] = {"key": scheme}
     refusals = problems(ProblemKind.UNAUTHENTICATED, ProblemKind.FORBIDDEN, ProblemKind.TOO_MANY_REQUESTS)
     for path, operations in document["paths"].items():
@@ -203,7 +207,7 @@ def guarded(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def body(description: str, *media_types: tuple[str, Any]) -> dict[str, Any]:
-    """Return the entry of OpenAPI for a good answer with an example for each media type."""
+    """Return the OpenAPI entry for a successful answer, with an example for each media type."""
     content = {name: {"example": _marked(value)} for name, value in media_types}
     return {"description": description, "content": content}
 

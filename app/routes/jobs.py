@@ -1,4 +1,4 @@
-"""Jobs: submitted, looked at, listed, cancelled."""
+"""Submit, read, list and cancel jobs."""
 
 from datetime import UTC, datetime
 from functools import partial
@@ -54,17 +54,19 @@ Moment = Annotated[AwareDatetime, AfterValidator(_in_utc)]
 
 
 class ListQuery(BaseModel):
-    """Which jobs a list holds, and where the page begins."""
+    """Filters of a list of jobs, and where the page begins."""
 
     model_config = ConfigDict(extra="forbid")
 
     status: JobStatus | None = Field(default=None, description="Only jobs in this state")
     asset_id: Label | None = Field(default=None, description="Only jobs of this asset")
     tag: list[Label] = Field(default=[], max_length=10, description="Only jobs with these tags, each as key:value")
-    batch_id: UUID | None = Field(default=None, description="The chunks of this batch, which no other list holds")
-    created_after: Moment | None = Field(default=None, description="Only jobs made later, with a time zone")
-    limit: int = Field(default=50, ge=1, le=_MOST_ON_PAGE, description="Jobs on a page")
-    cursor: str | None = Field(default=None, max_length=200, description="Place that a `next` address holds")
+    batch_id: UUID | None = Field(default=None, description="Chunks of this batch, which appear in no other list")
+    created_after: Moment | None = Field(
+        default=None, description="Only jobs created after this time, with a time zone"
+    )
+    limit: int = Field(default=50, ge=1, le=_MOST_ON_PAGE, description="Most jobs on the page")
+    cursor: str | None = Field(default=None, max_length=200, description="Cursor from a `next` address")
 
     def as_filters(self) -> JobFilters:
         """Return the filters.
@@ -99,7 +101,7 @@ async def _ordered(
 
 
 async def _check(request: Request, document: schemas.JobRequest) -> None:
-    # Every point of a study is looked at, which may take a while; a line alone takes less than the way to a thread.
+    # Checking every point of a study takes time; checking a single line takes less than a switch to a thread.
     check = partial(convert.request_faults, document)
     faults = check() if document.study is None else await to_thread.run_sync(check)
     if faults:
@@ -110,12 +112,13 @@ async def _check(request: Request, document: schemas.JobRequest) -> None:
 
 @router.post(
     "",
+    summary="Submit a job",
     status_code=202,
     response_model=JobDocument,
     responses={
         202: {
             **documentation.body(
-                "Accepted; Location leads to its status", ("application/json", documentation.ACCEPTED_JOB)
+                "Accepted; Location is the address of its status", ("application/json", documentation.ACCEPTED_JOB)
             ),
             "headers": documentation.ACCEPTED_HEADERS,
         },
@@ -124,13 +127,14 @@ async def _check(request: Request, document: schemas.JobRequest) -> None:
         ),
     },
 )
-async def submit(request: Request, order: Annotated[Order, Depends(_ordered)]) -> Response:
-    """Accept a line for analysis. The job is kept before this answers, whether or not a worker is there already.
+async def submit_job(request: Request, order: Annotated[Order, Depends(_ordered)]) -> Response:
+    """Accept a line for analysis. The service stores the job before it answers, whether or not a worker is running.
 
-    If the owner has results of the same input by this version of the engine, of a job or of a line in a batch, the job
-    has ended with them already, and `reused_from` names where they come from. `Cache-Control: no-cache` computes anew.
+    If the owner has stored results of the same input by this engine version, from a job or a line of a batch, the job
+    ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new
+    computation.
     """
-    # Every dependency costs as much as the check of the line, so what is shared is taken from where it is.
+    # A FastAPI dependency costs as much as checking the line, so read the shared state directly.
     shared = request.app.state
     try:
         job: Draft = await shared.inbox.ask(order)
@@ -149,6 +153,7 @@ def _accepted(job: Draft) -> JSONResponse:
 
 @router.get(
     "/{job_id}",
+    summary="Get the status of a job",
     response_model=JobDocument,
     responses={
         200: {
@@ -158,8 +163,8 @@ def _accepted(job: Draft) -> JSONResponse:
         **_COMMON,
     },
 )
-async def status(request: Request, job_id: UUID, wait: Wait) -> JSONResponse:
-    """Tell how far a job is, at once or, with `Prefer: wait=N`, at its end."""
+async def job_status(request: Request, job_id: UUID, wait: Wait) -> JSONResponse:
+    """Return the status of a job, at once or, with `Prefer: wait=N`, when it ends or after N seconds."""
     statuses, caller = request.app.state.statuses, request.state.caller
     job = await find_status(statuses, caller, job_id)
     if wait and job.status not in ENDED:
@@ -171,6 +176,7 @@ async def status(request: Request, job_id: UUID, wait: Wait) -> JSONResponse:
 
 @router.get(
     "",
+    summary="List jobs",
     response_model=JobPage,
     responses={
         200: documentation.body("A page of jobs, newest first", ("application/json", documentation.JOB_PAGE)),
@@ -184,7 +190,7 @@ def list_jobs(
     caller: CallerOf,
     readers: Readers,
 ) -> JSONResponse:
-    """List jobs, newest first, a page at a time; `next` is the address of the following page."""
+    """Return one page of the jobs, newest first; `next` is the address of the next page."""
     key = signing_key(settings)
     after = _place(key, filters.cursor) if filters.cursor else None
     with readers() as session:
@@ -199,22 +205,23 @@ def list_jobs(
 
 @router.delete(
     "/{job_id}",
+    summary="Cancel or remove a job",
     response_model=None,
     responses={
         200: {
-            **documentation.body("A queued job is dismissed", ("application/json", documentation.DISMISSED_JOB)),
+            **documentation.body("The queued job is dismissed", ("application/json", documentation.DISMISSED_JOB)),
             "model": JobDocument,
         },
         202: {
-            **documentation.body("A running job will stop", ("application/json", documentation.STOPPING_JOB)),
+            **documentation.body("The running job will stop", ("application/json", documentation.STOPPING_JOB)),
             "model": JobDocument,
         },
-        204: {"description": "A job that had ended is removed with its results"},
+        204: {"description": "The finished job and its results are removed"},
         **_COMMON,
     },
 )
-def cancel(job_id: UUID, caller: CallerOf, writers: Writers) -> Response:
-    """Cancel a job, or remove one that has ended."""
+def cancel_job(job_id: UUID, caller: CallerOf, writers: Writers) -> Response:
+    """Cancel a job, or remove a finished one with its results."""
     with writers.begin() as session:
         outcome = job_records.cancel(session, caller, job_id)
         if outcome is CancelOutcome.REMOVED:

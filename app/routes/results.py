@@ -1,4 +1,4 @@
-"""Results of a job: the whole document, single tables as JSON, CSV or Parquet, and pictures. Everything is streamed."""
+"""Results of a job, streamed: the whole document, single tables as JSON, CSV or Parquet, and pictures."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
@@ -42,17 +42,18 @@ _TABLE_PROBLEMS = {
 
 @router.get(
     "/results",
+    summary="Get the results of a job",
     response_class=StreamingResponse,
     responses={
         200: {
-            **documentation.body("Everything that was found", ("application/json", documentation.RESULT)),
+            **documentation.body("All results", ("application/json", documentation.RESULT)),
             "model": ResultDocument,
         },
         **_PROBLEMS,
     },
 )
-def whole(finished: FinishedJob, readers: Readers) -> StreamingResponse:
-    """Return everything that was found; a failed job answers with the rows that it has and its failure."""
+def job_results(finished: FinishedJob, readers: Readers) -> StreamingResponse:
+    """Return all results; for a failed job, those of its finished points and its failure."""
     job, headers = finished.job, finished.headers("json")
 
     def pieces(session: Session) -> Iterator[str]:
@@ -65,17 +66,18 @@ def whole(finished: FinishedJob, readers: Readers) -> StreamingResponse:
 
 @router.get(
     "/results/{table}",
+    summary="Get a result table of a job",
     response_class=StreamingResponse,
     responses={200: documentation.TABLE_ANSWER, **_TABLE_PROBLEMS},
 )
-def table(
+def result_table(
     table: TableName,
     request: Request,
     finished: FinishedJob,
     readers: Readers,
-    format: Annotated[Format | None, Query(description="Wins over the Accept header")] = None,  # noqa: A002
+    format: Annotated[Format | None, Query(description="Format; takes precedence over the Accept header")] = None,  # noqa: A002
 ) -> StreamingResponse:
-    """Return one table of flat rows, as JSON, CSV or Parquet by `?format=` or the Accept header."""
+    """Return one table of flat rows as JSON, CSV or Parquet, chosen by `?format=` or the Accept header."""
     chosen = format or formats.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {formats.PARQUET}.")
@@ -95,6 +97,7 @@ def table(
 
 @router.get(
     "/plots/study.{extension}",
+    summary="Draw the study of a job",
     response_class=Response,
     responses={200: documentation.PICTURE_ANSWER, **_PICTURE_PROBLEMS},
 )
@@ -103,10 +106,11 @@ def study_plot(
     finished: FinishedJob,
     readers: Readers,
     abscissa: Annotated[
-        Literal["reduced", "parameter"], Query(description="The source's ratios, or values in the field's own unit")
+        Literal["reduced", "parameter"],
+        Query(description="Abscissa: ratios as in the source, or values in the field's unit"),
     ] = "reduced",
 ) -> Response:
-    """Draw all points of a study over what it varies; a study of two fields gives a map."""
+    """Draw all points of a study over the varied field, or as a map over two fields."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
     job, headers = finished.job, finished.headers(extension)
@@ -119,17 +123,18 @@ def study_plot(
 
 @router.get(
     "/plots/{picture}.{extension}",
+    summary="Draw a point of a job",
     response_class=Response,
     responses={200: documentation.PICTURE_ANSWER, **_PICTURE_PROBLEMS},
 )
-def plot(
+def point_plot(
     picture: Picture,
     extension: PictureFormat,
     finished: FinishedJob,
     readers: Readers,
-    point: Annotated[int, Query(ge=0, description="Point of a study")] = 0,
+    point: Annotated[int, Query(ge=0, description="Number of the study's point, from 0")] = 0,
 ) -> Response:
-    """Draw the amplitudes over wind speed, the orbits where they are observed, or the mode shapes of both models."""
+    """Draw amplitudes over wind speed, orbits at the observation point, or mode shapes of both models."""
     from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
 
     job, headers = finished.job, finished.headers(extension)
@@ -143,12 +148,12 @@ def plot(
 
 
 def _shapes(session: Session, job: Job, point: int) -> list[dict[str, Any]]:
-    """Compute the mode shapes of a point anew, which takes less than it would to keep them.
+    """Compute the mode shapes of a point anew, which costs less than storing them.
 
     Raises
     ------
     ProblemError
-        404 if the line of the point has none.
+        404 if the line of the point has no mode shapes.
     """
     try:
         return convert.mode_shapes(*request_of_point(session, job, point))
@@ -157,7 +162,7 @@ def _shapes(session: Session, job: Job, point: int) -> list[dict[str, Any]]:
 
 
 def request_of_point(session: Session, job: Job, point: int) -> tuple[Mapping[str, Any], int]:
-    """Return the request that a point of a job belongs to, and its number there; a chunk's points are lines."""
+    """Return the request and the point number for a point of a job; the points of a chunk are lines."""
     if job.batch_id is None:
         return job.document, point
     analysis, lines = batch_records.lines_of_chunk(session, job.id, job.batch_id)
@@ -173,13 +178,13 @@ def _parquet(job: Job, name: str, rows: Rows) -> Iterator[bytes]:
 
 
 def _axes(job: Job) -> list[str]:
-    """Return the names of the columns that stand before the others in every row of a job."""
+    """Return the names of the first columns of every row of a job."""
     study = job.document.get("study") or {"axes": []}
     return ["number"] if job.batch_id is not None else [axis["parameter"] for axis in study["axes"]]
 
 
 def point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dict[str, Any]]]:
-    """Return the rows that pictures show of one point of a job.
+    """Return the rows of one point of a job that pictures show.
 
     Raises
     ------
@@ -201,7 +206,7 @@ def point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dic
 
 
 def _study_rows(session: Session, job_id: UUID) -> dict[str, list[dict[str, Any]]]:
-    """Return what the picture of a study shows, each row after the values of the axes."""
+    """Return the rows that the picture of a study shows, each after the values of the axes."""
     points = list(stored_results.points(session, job_id))
     solved = [{**point["axes"], **point["static"]} for point in points if point["static"]]
     failed = [{**point["axes"], "failure": point["failure"]} for point in points if point["failure"]]

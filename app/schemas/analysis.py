@@ -1,4 +1,4 @@
-"""What is asked of a line: the analysis, a study over fields of the line, and the request that holds all three."""
+"""Request documents: the analysis, a study over fields of the line, and the request that combines them."""
 
 import math
 from typing import Annotated, Any, Literal, Self
@@ -49,7 +49,7 @@ WindSpeeds = Annotated[
 
 
 class Analysis(Document):
-    """What is computed, and with which choices of the model."""
+    """What to compute, and the model's options."""
 
     loops: list[Loops] = Field(
         default=[1, 2],
@@ -63,7 +63,7 @@ class Analysis(Document):
         default=["hybrid", "finite_element"],
         min_length=1,
         max_length=2,
-        description="Three degrees of freedom per number of loops, or several modes a direction",
+        description="hybrid: three degrees of freedom per number of loops; finite_element: several modes a direction",
         examples=[["hybrid", "finite_element"]],
     )
     wind_speeds: WindSpeeds = Field(
@@ -78,40 +78,50 @@ class Analysis(Document):
     )
     aerodynamic_model: Literal["published", "relative_wind"] = Field(
         default="published",
-        description="Which velocities turn the wind; relative_wind needs aerodynamics_at_rest",
+        description="How the section's velocity changes the wind; relative_wind needs aerodynamics_at_rest",
         examples=["published"],
     )
     longitudinal_inertia: Literal["neglected", "condensed"] = Field(
         default="neglected", description="Longitudinal inertia in the hybrid model", examples=["neglected"]
     )
     critical_wind_limit: float = quantity(
-        "critical_wind_limit_m_per_s", "Critical wind speeds are sought up to here", "m/s", (0.1, 100.0), 30.0, 30.0
+        "critical_wind_limit_m_per_s",
+        "Upper limit of the search for critical wind speeds",
+        "m/s",
+        (0.1, 100.0),
+        30.0,
+        30.0,
     )
     harmonics: int = Field(
-        default=5, ge=1, le=20, description="Harmonics of a cycle [1]", examples=[5], json_schema_extra={"unit": "1"}
+        default=5,
+        ge=1,
+        le=20,
+        description="Harmonics of the harmonic balance [1]",
+        examples=[5],
+        json_schema_extra={"unit": "1"},
     )
     finite_element_loops: list[Loops] = Field(
         default=[1, 2, 3],
         max_length=10,
-        description="Loops of the modes in the finite element model; without any it gives its frequencies only [1]",
+        description="Loops of the modes in the finite element model; an empty list gives its frequencies only [1]",
         examples=[[1, 2, 3]],
         json_schema_extra={"unit": "1"},
     )
 
     static_twist: Literal["neglected", "solved"] = Field(
         default="neglected",
-        description="Whether eccentric ice turns the sections at rest; solved, mass, weight and tables turn with them",
+        description="Whether eccentric ice twists the span at rest; solved: mass, weight and tables turn with it",
         examples=["neglected"],
     )
     loop_competition: Literal["neglected", "checked"] = Field(
         default="neglected",
-        description="Whether stable cycles of the hybrid model are held against motions of the other loops asked for",
+        description="Whether to check that the hybrid model's stable cycles stay stable among the other loops",
         examples=["checked"],
     )
 
     device_effect: Literal["neglected", "reported"] = Field(
         default="neglected",
-        description="Whether the line is analysed without its devices too, to tell what they change",
+        description="Whether to analyse the line also without its devices, to report their effect",
         examples=["reported"],
     )
 
@@ -123,14 +133,14 @@ class Analysis(Document):
 
     quasi_periodic: Literal["lasting", "every"] = Field(
         default="lasting",
-        description="Which quasi-periodic motions are sought: those that may last, or unstable ones too",
+        description="Which quasi-periodic motions to search for: those that may be stable, or also unstable ones",
         examples=["every"],
     )
 
     check: Literal["none", "direct"] = Field(
         default="none",
-        description="Whether every stable motion is held against 50 periods of direct integration, and further cycles "
-        "are sought by integrating from large starts at up to three of the wind speeds",
+        description="Whether to compare every stable motion with 50 periods of direct integration, and to search for "
+        "more cycles by integrating from large initial motions at up to three of the wind speeds",
         examples=["direct"],
     )
 
@@ -143,7 +153,7 @@ class Analysis(Document):
         return self
 
     def speeds(self) -> tuple[float, ...]:
-        """Return the wind speeds one by one [m/s]."""
+        """Return the wind speeds as a list [m/s]."""
         if isinstance(self.wind_speeds, WindSpeedRange):
             span = self.wind_speeds
             step = (span.stop - span.start) / (span.count - 1)
@@ -152,19 +162,19 @@ class Analysis(Document):
 
 
 def _number_or_word(value: object) -> float | str:
-    """Take a finite number or a short word as it is.
+    """Return a finite number or a short word unchanged.
 
     Raises
     ------
     PydanticCustomError
-        If it is anything else.
+        If the value is anything else.
     """
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if number and -_LARGEST <= value <= _LARGEST:  # type: ignore[operator]  # false for NaN too
         return value  # type: ignore[return-value]
     if isinstance(value, str) and len(value) <= 40:
         return value
-    raise PydanticCustomError("number_or_word", "must be a finite number, or a word that the field allows")
+    raise PydanticCustomError("number_or_word", "must be a finite number or a word that the field allows")
 
 
 AxisValue = Annotated[
@@ -178,10 +188,10 @@ ParameterPath = Annotated[str, Field(min_length=1, max_length=120, pattern=r"^[a
 
 
 class Axis(Document):
-    """One field of the line, or several together, and the values that it takes in turn."""
+    """A field of the line, or several fields together, and the values that they take in turn."""
 
     parameter: ParameterPath = Field(
-        description="Dotted path of a number or word of the line; list items by number: devices.0.position_m",
+        description="Dotted path to a number or word of the line; a list item by its number: devices.0.position_m",
         examples=["span.horizontal_tension_n"],
     )
     also: list[ParameterPath] = Field(
@@ -199,19 +209,19 @@ class Axis(Document):
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """All fields that take the values, the one that names the axis first."""
+        """Return all fields that take the values, beginning with the one that names the axis."""
         return (self.parameter, *self.also)
 
 
 class Study(Document):
-    """One or two fields of the line varied; every combination is a point."""
+    """A study that varies one or two fields of the line; every combination of values is a point."""
 
     axes: list[Axis] = Field(
-        min_length=1, max_length=2, description="The fields that vary; the last one fastest", examples=[[_AXIS]]
+        min_length=1, max_length=2, description="The fields to vary; the last one varies fastest", examples=[[_AXIS]]
     )
     follow: bool = Field(
         default=False,
-        description="Whether the hybrid model's cycles are followed over the one field that varies, through folds",
+        description="Whether to follow the hybrid model's cycles over the single varied field, through folds",
         examples=[True],
     )
 
@@ -223,9 +233,9 @@ class Study(Document):
         points = math.prod(len(axis.values) for axis in self.axes)
         if points > STUDY_POINTS_LIMIT:
             context = {"points": points, "limit": STUDY_POINTS_LIMIT}
-            raise PydanticCustomError("too_many_points", "{points} points are more than {limit}", context)
+            raise PydanticCustomError("too_many_points", "the study has {points} points, more than {limit}", context)
         if self.follow and (len(self.axes) > 1 or not _distinct_numbers(self.axes[0].values)):
-            raise PydanticCustomError("one_field", "follow takes one axis of two or more distinct numbers")
+            raise PydanticCustomError("one_field", "follow needs a single axis with two or more distinct numbers")
         return self
 
 
@@ -234,31 +244,31 @@ def _distinct_numbers(values: list[Any]) -> bool:
 
 
 class JobRequest(Document):
-    """A line, what is asked of it, and a study over some of its fields or a search for the places of devices."""
+    """A line with its analysis and, optionally, a study over its fields or a search for the placement of devices."""
 
-    line: Line = Field(description="The span", examples=[example("c11-twin")])
-    analysis: Analysis = Field(default=Analysis(), description="What is asked", examples=[{"loops": [1, 2]}])
+    line: Line = Field(description="The line", examples=[example("c11-twin")])
+    analysis: Analysis = Field(default=Analysis(), description="What to compute", examples=[{"loops": [1, 2]}])
     study: Study | None = Field(
-        default=None, description="Fields of the line to vary; none if absent", examples=[{"axes": [_AXIS]}]
+        default=None, description="Fields of the line to vary, if any", examples=[{"axes": [_AXIS]}]
     )
     placement: Placement | None = Field(
-        default=None, description="Devices to be placed; none if absent, and not beside a study", examples=[PLACEMENT]
+        default=None, description="Devices to place, if any; not together with a study", examples=[PLACEMENT]
     )
 
     webhook_url: str | None = Field(
         default=None,
         max_length=2000,
-        description="https address that is told when the job has ended; none if absent",
+        description="https address to which the service posts a signed message when the job ends",
         examples=["https://assets.example.com/galloping"],
     )
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
         if self.study is not None and self.placement is not None:
-            raise PydanticCustomError("exclusive", "study and placement exclude each other")
+            raise PydanticCustomError("exclusive", "must have a study or a placement, not both")
         return self
 
     def kept(self) -> dict[str, Any]:
-        """Return the request with all defaults as it is kept and given back; what was not asked for is left out."""
+        """Return the request with all defaults, as it is stored and returned, without an absent study or placement."""
         absent = {name for name in ("study", "placement") if getattr(self, name) is None}
         return self.model_dump(mode="json", by_alias=True, exclude={*absent, "webhook_url"})

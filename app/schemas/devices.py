@@ -1,4 +1,4 @@
-"""Devices that are mounted on a span."""
+"""Devices mounted on a span."""
 
 from typing import Annotated, Literal
 
@@ -26,17 +26,20 @@ class DetuningPendulum(Document):
     position: float = quantity("position_m", "Distance from the left support", "m", ON_SPAN, 62.94)
     mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 12.0)
     arm: float = quantity("arm_m", "Length of the arm from the reference curve", "m", (1e-3, 10.0), 0.35)
-    angle: float = quantity("angle_deg", "From straight down, positive downwind", "deg", (-360.0, 360.0), 0.0, 0.0)
+    angle: float = quantity(
+        "angle_deg", "Angle of the arm from straight down, positive downwind", "deg", (-360.0, 360.0), 0.0, 0.0
+    )
 
 
 class AirflowSpoiler(Document):
-    """A stretch on which the wind acts otherwise."""
+    """A spoiler: a stretch of the span with other aerodynamic coefficients."""
 
     type: Literal["airflow_spoiler"] = Field(description="Kind of device", examples=["airflow_spoiler"])
-    start: float = quantity("from_m", "Where the stretch begins", "m", ON_SPAN, 30.0)
-    stop: float = quantity("to_m", "Where the stretch ends", "m", ON_SPAN, 60.0)
+    start: float = quantity("from_m", "Start of the stretch", "m", ON_SPAN, 30.0)
+    stop: float = quantity("to_m", "End of the stretch", "m", ON_SPAN, 60.0)
     aerodynamics: AerodynamicsForm = Field(
-        description="Coefficients of one sub-conductor on the stretch, or their table", examples=[COEFFICIENTS]
+        description="Coefficients of one sub-conductor on the stretch, or a table of measured ones",
+        examples=[COEFFICIENTS],
     )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,

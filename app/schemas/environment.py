@@ -50,7 +50,7 @@ AerodynamicsForm = Annotated[
     Annotated[Aerodynamics, Tag("coefficients")] | Annotated[MeasuredCoefficients, Tag("measured")],
     Discriminator(_form),
 ]
-"""Cubic coefficients, or the table that they are fitted to; with a table they follow the static twist."""
+"""Cubic coefficients, or a table of measured ones to fit; coefficients from a table follow the static twist."""
 
 
 class AerodynamicsAtRest(Document):
@@ -62,12 +62,12 @@ class AerodynamicsAtRest(Document):
 
 
 class IceSegment(Document):
-    """A stretch of other ice; what it names overrides what holds on the span."""
+    """A stretch with other ice; its fields override those of the span."""
 
-    start: float = quantity("from_m", "Where the stretch begins", "m", ON_SPAN, 0.0)
-    stop: float = quantity("to_m", "Where the stretch ends", "m", ON_SPAN, 62.94)
+    start: float = quantity("from_m", "Start of the stretch", "m", ON_SPAN, 0.0)
+    stop: float = quantity("to_m", "End of the stretch", "m", ON_SPAN, 62.94)
     aerodynamics: AerodynamicsForm | None = Field(
-        default=None, description="Coefficients or their table on the stretch", examples=[COEFFICIENTS]
+        default=None, description="Coefficients on the stretch, or a table of measured ones", examples=[COEFFICIENTS]
     )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,
@@ -86,14 +86,14 @@ class IceSegment(Document):
     )
 
     @model_validator(mode="after")
-    def _rest_of_something(self) -> Self:
+    def _has_coefficients(self) -> Self:
         if self.at_rest is not None and self.aerodynamics is None:
-            raise PydanticCustomError("missing", "aerodynamics_at_rest needs aerodynamics beside it")
+            raise PydanticCustomError("missing", "aerodynamics_at_rest needs aerodynamics in the same segment")
         return self
 
 
 class Ice(Document):
-    """Ice of the span: where its mass lies and how the wind acts on it."""
+    """The ice of the span: its mass centre and its aerodynamic coefficients."""
 
     eccentricity_y: float = quantity(
         "eccentricity_y_m", "Mass centre of the iced section, upward", "m", _ECCENTRICITY, 2.05e-3, 0.0
@@ -102,50 +102,52 @@ class Ice(Document):
         "eccentricity_z_m", "Mass centre of the iced section, downwind", "m", _ECCENTRICITY, -0.63e-3, 0.0
     )
     aerodynamics: AerodynamicsForm = Field(
-        description="Coefficients of one iced sub-conductor, or the table that they are fitted to",
+        description="Coefficients of one iced sub-conductor, or a table of measured ones",
         examples=[COEFFICIENTS],
     )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,
         alias="aerodynamics_at_rest",
-        description="Coefficients at rest, for the relative-wind model",
+        description="Coefficients at the static angle, for the relative-wind model",
         examples=[AT_REST],
     )
     segments: list[IceSegment] = Field(
         default=[],
         max_length=200,
-        description="Stretches of other ice; none overlap",
+        description="Stretches with other ice, without overlap",
         examples=[[{"from_m": 0.0, "to_m": 62.94, "mass_kg_per_m": 2.3}]],
     )
 
 
 class ProfilePoint(Document):
-    """The wind at one position, as a multiple of the wind speed of the analysis."""
+    """The wind at one position, as a multiple of the analysis' wind speed."""
 
     position: float = quantity("position_m", "Distance from the left support", "m", ON_SPAN, 0.0)
-    factor: float = quantity("factor", "Wind speed there over the wind speed", "1", (0.01, 10.0), 0.7)
+    factor: float = quantity(
+        "factor", "Wind speed at this position over the wind speed of the analysis", "1", (0.01, 10.0), 0.7
+    )
 
 
 class BlowOut(Document):
-    """Mean drag that turns the plane of the sag."""
+    """The mean drag that swings the plane of the sag downwind."""
 
     wind_speed: float = quantity("wind_speed_m_per_s", "Reference wind speed", "m/s", (0.0, 100.0), 10.0)
     drag_coefficient: float = quantity("drag_coefficient", "Mean drag coefficient", "1", (0.0, 10.0), 1.0)
 
 
 class Wind(Document):
-    """The wind apart from its speed."""
+    """The wind, except its speed."""
 
     air_density: float = quantity("air_density_kg_per_m3", "Density of the air", "kg/m3", (0.3, 2.0), 1.2929, 1.2929)
     blow_out: BlowOut | None = Field(
         default=None,
-        description="Blow-out by the mean drag; none if null",
+        description="Blow-out by the mean drag, if any",
         examples=[{"wind_speed_m_per_s": 10.0, "drag_coefficient": 1.0}],
     )
     profile: list[ProfilePoint] = Field(
         default=[],
         max_length=200,
-        description="Wind along the span, linear between the points; uniform if empty",
+        description="Wind profile along the span, linear between the points; uniform if empty",
         examples=[[{"position_m": 0.0, "factor": 0.7}, {"position_m": 125.88, "factor": 1.3}]],
     )
 
@@ -158,6 +160,6 @@ class Damping(Document):
     torsional_ratio: float = quantity("torsional_ratio", "Torsional damping ratio", "1", _RATIO, 0.308)
     model: Literal["constant_coefficient", "constant_ratio"] = Field(
         default="constant_coefficient",
-        description="What is the same for every number of loops",
+        description="Quantity that is the same for every number of loops",
         examples=["constant_coefficient"],
     )

@@ -1,4 +1,4 @@
-"""Faults of a request: where in the document, a code and a sentence. All of them are gathered before any is told."""
+"""Faults of a request: the place in the document, a code and a sentence. All are collected before any is reported."""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -12,7 +12,7 @@ MOST_FAULTS = 1000
 _MOST_CHARACTERS = 200
 _MOST_SHOWN = 80
 
-# A tagged union puts the name of its branch into a location, behind the field or the item that it is the type of.
+# pydantic adds the name of a tagged union's branch to the location, after the field or the list item.
 _SPEEDS, _DEVICES, _DEVICE, _AERODYNAMICS = "wind_speeds_m_per_s", "devices", "device", "aerodynamics"
 _UNION_BRANCHES = frozenset(
     {"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range", "coefficients", "measured"}
@@ -21,19 +21,19 @@ _UNION_BRANCHES = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One fault: JSON pointer (RFC 6901) of the field, a code for programs and a sentence for people."""
+    """One fault: JSON pointer (RFC 6901) to the field, a code for programs, and a sentence for people."""
 
     pointer: str
     code: str
     detail: str
 
     def __str__(self) -> str:
-        """Say where and what."""
+        """Return the place and the sentence."""
         return f"{self.pointer or '/'}: {self.detail}"
 
 
 class BadInput(ValueError):
-    """Raised when a document cannot be taken; `faults` holds everything that is wrong with it."""
+    """Raised when a document is not valid; `faults` holds all its faults."""
 
     def __init__(self, faults: Sequence[Fault]) -> None:
         """Take at least one fault."""
@@ -42,12 +42,12 @@ class BadInput(ValueError):
 
 
 def parse_json(raw: bytes) -> Any:
-    """Return the value that a JSON text stands for; NaN and infinities pass, since the schema names their fields.
+    """Return the value of a JSON text; NaN and infinities pass, and the schema then names their fields.
 
     Raises
     ------
     BadInput
-        If it is no JSON, is not UTF-8, is nested too deeply, or an object holds a name twice.
+        If the text is not JSON or not UTF-8, is nested too deeply, or an object repeats a name.
     """
     try:
         value = from_json(raw)
@@ -61,13 +61,13 @@ def parse_json(raw: bytes) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class _Members:
-    """An object of a JSON text as it stands there."""
+    """The members of a JSON object as the text lists them."""
 
     pairs: Sequence[tuple[str, Any]]
 
 
 def _repeated_names(text: str) -> Iterator[Fault]:
-    """Yield a fault for every name that an object has more than once: nobody can tell which value was meant."""
+    """Yield a fault for every repeated name in an object, because its meaning would be ambiguous."""
     unique = True
 
     def note(pairs: Sequence[tuple[str, Any]]) -> None:
@@ -84,27 +84,27 @@ def _repetitions(node: Any, path: Sequence[object]) -> Iterator[Fault]:
     seen: set[object] = set()
     for name, value in pairs:
         if name in seen:
-            yield Fault(json_pointer([*path, name]), "repeated_name", "stands more than once in its object")
+            yield Fault(json_pointer([*path, name]), "repeated_name", "appears more than once in its object")
         seen.add(name)
         yield from _repetitions(value, [*path, name])
 
 
 def json_pointer(tokens: Iterable[object]) -> str:
-    """Join tokens into a JSON pointer; what a stranger wrote too long is cut."""
+    """Join tokens to a JSON pointer; shorten tokens that are too long."""
     texts = (str(token)[:_MOST_CHARACTERS] for token in tokens)
     return "".join("/" + text.replace("~", "~0").replace("/", "~1") for text in texts)
 
 
 def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0, root: str = "") -> list[Fault]:
-    """Turn pydantic's errors into faults that say what was found, if the errors hold it.
+    """Convert pydantic's errors to faults that show the value found, if the errors contain it.
 
     Parameters
     ----------
     errors : iterable of mappings
     skip : int
-        So many tokens at the beginning of each location are left out.
+        Number of tokens to drop from the beginning of each location.
     root : str
-        What the pointers begin with.
+        Beginning of every pointer.
     """
     return [_fault(error, error["loc"][skip:], root) for error in errors]
 
@@ -125,7 +125,7 @@ def _is_branch(location: Sequence[int | str], place: int) -> bool:
 
 
 def _found(error: Mapping[str, Any]) -> str:
-    """Return the value at fault as JSON, cut; nothing for what has parts, or where the name is at fault."""
+    """Return the wrong value as short JSON; empty for objects and lists, and if the field's name is wrong."""
     value = error.get("ctx", {}).get("tag") if error["type"] == "union_tag_invalid" else error.get("input", ...)
     if error["type"] in {"extra_forbidden", "missing"} or not isinstance(value, str | int | float | None):
         return ""

@@ -1,4 +1,4 @@
-"""The table of input fields, read out of the schemas: name, type, unit, bounds, default and description of each."""
+"""The table of input fields, generated from the schemas: name, type, unit, bounds, default and description."""
 
 from collections.abc import Iterator, Mapping
 from functools import cache
@@ -13,14 +13,14 @@ _Schema = Mapping[str, Any]
 def input_fields() -> tuple[dict[str, Any], ...]:
     """Return a row for every field of a request, in the order of the document.
 
-    Names are dotted. `[]` follows a list whose items have fields, `[spacer]` names the type of item that has them.
+    Names are dotted. `[]` marks a list of objects, and `[spacer]` the type of its items to which the field belongs.
     """
     document = JobRequest.model_json_schema(by_alias=True)
     return tuple(_fields("", _inlined(document, document["$defs"])))
 
 
 def _inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:
-    """Return a schema with every reference replaced by what it leads to."""
+    """Return a schema with every reference replaced by its target."""
     if isinstance(node, list):
         return [_inlined(item, definitions) for item in node]
     if not isinstance(node, dict):
@@ -32,7 +32,7 @@ def _inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:
 
 
 def _fields(prefix: str, schema: _Schema) -> Iterator[dict[str, Any]]:
-    """Yield the rows of an object's fields, each followed by those of what lies below it."""
+    """Yield the rows of an object's fields, each followed by the rows of its inner fields."""
     for name, field in schema.get("properties", {}).items():
         path = prefix + name
         yield _row(path, field, required=name in schema.get("required", ()))
@@ -45,13 +45,13 @@ def _fields(prefix: str, schema: _Schema) -> Iterator[dict[str, Any]]:
 
 
 def _kind(form: _Schema) -> str:
-    """Return the type of which one form of several is; nothing where there is only one."""
+    """Return the type name of one of several forms; empty if there is only one form."""
     kind: str = form.get("properties", {}).get("type", {}).get("const", "")
     return kind
 
 
 def _forms(schema: _Schema) -> list[_Schema]:
-    """Return what a schema allows beside null, one by one."""
+    """Return the forms that a schema allows apart from null."""
     several = schema.get("anyOf") or schema.get("oneOf")
     if several is None:
         return [] if schema.get("type") == "null" else [schema]

@@ -1,4 +1,4 @@
-"""The line document: what a utility knows of one span. Attributes carry the engine's names, aliases the contract's."""
+"""The line document: a utility's data of one span. Attributes have the engine's names, aliases the names in JSON."""
 
 from typing import Annotated, Self
 
@@ -17,12 +17,12 @@ Position = Annotated[list[Annotated[float, Field(ge=-5.0, le=5.0)]], Field(min_l
 
 
 def _one_way(given: list[bool], ways: str) -> None:
-    """Ask that exactly one of several ways to say the same is used.
+    """Check that exactly one of several alternatives is given.
 
     Raises
     ------
     PydanticCustomError
-        If none or more than one is.
+        If none or several are given.
     """
     if sum(given) != 1:
         raise PydanticCustomError("exactly_one", "give exactly one of {ways}", {"ways": ways})
@@ -33,7 +33,12 @@ class Conductor(Document):
 
     diameter: float = quantity("diameter_m", "Diameter of the bare sub-conductor", "m", (1e-3, 0.2), 0.0286)
     axial_rigidity: float | None = quantity(
-        "axial_rigidity_n", "Axial rigidity EA; or give area and Young's modulus", "N", (1e4, 1e10), 28418105.8, None
+        "axial_rigidity_n",
+        "Axial rigidity EA; alternatively give area and Young's modulus",
+        "N",
+        (1e4, 1e10),
+        28418105.8,
+        None,
     )
     area: float | None = quantity(
         "area_m2", "Metallic area, with youngs_modulus_pa", "m2", (1e-6, 0.01), 4.2324e-4, None
@@ -47,7 +52,11 @@ class Conductor(Document):
     )
     mass: float = quantity("mass_kg_per_m", "Mass per length, iced", "kg/m", ICED_MASS, 2.379)
     polar_inertia: float = quantity(
-        "polar_inertia_kg_m", "Polar inertia per length about the bare centre, iced", "kg m", (1e-7, 10.0), 3.334e-4
+        "polar_inertia_kg_m",
+        "Polar inertia per length about the centre of the bare sub-conductor, iced",
+        "kg m",
+        (1e-7, 10.0),
+        3.334e-4,
     )
 
     @model_validator(mode="after")
@@ -60,23 +69,33 @@ class Conductor(Document):
 
 
 class Bundle(Document):
-    """Arrangement of the sub-conductors: regular on a circle, or any positions."""
+    """Arrangement of the sub-conductors: regular on a circle, or at given positions."""
 
     subconductors: int | None = Field(
-        default=None, ge=1, le=12, description="Number on the circle [1]", examples=[2], json_schema_extra={"unit": "1"}
+        default=None,
+        ge=1,
+        le=12,
+        description="Number of sub-conductors on the circle [1]",
+        examples=[2],
+        json_schema_extra={"unit": "1"},
     )
     radius: float | None = quantity(
         "radius_m", "Radius of the circle; 0 or absent for one sub-conductor", "m", (0.0, 5.0), 0.2355, None
     )
     orientation: float | None = quantity(
-        "orientation_deg", "First sub-conductor, clockwise from straight up", "deg", (-360.0, 360.0), 90.0, None
+        "orientation_deg",
+        "Angle of the first sub-conductor, clockwise from straight up",
+        "deg",
+        (-360.0, 360.0),
+        90.0,
+        None,
     )
     positions: list[Position] | None = Field(
         default=None,
         alias="positions_m",
         min_length=1,
         max_length=32,
-        description="Or positions (y up, z downwind) of the centres about the reference curve [m]",
+        description="Alternatively, positions (y up, z downwind) of the centres about the reference curve [m]",
         examples=[[[0.0, -0.2], [0.0, 0.2]]],
         json_schema_extra={"unit": "m"},
     )
@@ -93,7 +112,7 @@ class Bundle(Document):
 
 
 class Span(Document):
-    """A level span, and exactly one measure of how tight it is."""
+    """A level span with exactly one measure of its tension."""
 
     length: float = quantity("length_m", "Horizontal length", "m", (1.0, LENGTH_LIMIT_M), 125.88)
     horizontal_tension: float | None = quantity(
@@ -101,13 +120,13 @@ class Span(Document):
     )
     catenary_parameter: float | None = quantity(
         "catenary_parameter_m",
-        "Or catenary parameter: tension over weight per length, iced",
+        "Alternatively, catenary parameter: tension over weight per length, iced",
         "m",
         (1.0, 1e5),
         1285.5,
         None,
     )
-    sag: float | None = quantity("sag_m", "Or sag at mid-span, iced", "m", (1e-3, 1000.0), 1.54, None)
+    sag: float | None = quantity("sag_m", "Alternatively, sag at mid-span, iced", "m", (1e-3, 1000.0), 1.54, None)
     elements: int = Field(
         default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"unit": "1"}
     )
@@ -123,10 +142,10 @@ class Span(Document):
 class Support(Document):
     """One end of the span."""
 
-    dead_end: bool = Field(default=False, description="Whether the end holds the conductor fast", examples=[False])
+    dead_end: bool = Field(default=False, description="Whether the end fixes the conductor", examples=[False])
     adjacent_span: float | None = quantity(
         "adjacent_span_m",
-        "Length of the span beyond; this one's length if null",
+        "Length of the adjacent span; if null, the length of this span",
         "m",
         (1.0, LENGTH_LIMIT_M),
         150.0,
@@ -141,11 +160,11 @@ class Support(Document):
 
 
 class Supports(Document):
-    """Both ends; a given longitudinal stiffness overrides what they would give."""
+    """Both ends; a given longitudinal stiffness replaces the one computed from them."""
 
     longitudinal_stiffness: float | None = quantity(
         "longitudinal_stiffness_n_per_m",
-        "Stiffness at both ends, per sub-conductor",
+        "Longitudinal stiffness of both ends together, per sub-conductor",
         "N/m",
         (1e-3, 1e12),
         1.285e5,
@@ -158,23 +177,23 @@ class Supports(Document):
 class Line(Document):
     """One iced span with everything that its motion depends on."""
 
-    name: Label | None = Field(default=None, description="Name for people", examples=["C11 twin, 126 m"])
+    name: Label | None = Field(default=None, description="Name to show to people", examples=["C11 twin, 126 m"])
     asset_id: Label | None = Field(default=None, description="Identity in the owner's records", examples=["L204-S017"])
     tags: Annotated[dict[TagKey, Label], Field(max_length=50)] = Field(
-        default={}, description="Labels to find jobs by; a key has no colon", examples=[{"region": "north"}]
+        default={}, description="Labels for finding jobs; a key contains no colon", examples=[{"region": "north"}]
     )
     conductor: Conductor = Field(description="One iced sub-conductor", examples=[_TWIN["conductor"]])
     bundle: Bundle = Field(
         default=Bundle(subconductors=1),
-        description="Arrangement; one sub-conductor if absent",
+        description="Arrangement of the sub-conductors; a single one if absent",
         examples=[_TWIN["bundle"]],
     )
-    span: Span = Field(description="Length and tightness", examples=[_TWIN["span"]])
+    span: Span = Field(description="Length and tension", examples=[_TWIN["span"]])
     supports: Supports = Field(
-        default=Supports(), description="What holds the ends", examples=[{"left": {"dead_end": True}}]
+        default=Supports(), description="Supports at both ends", examples=[{"left": {"dead_end": True}}]
     )
-    ice: Ice = Field(description="Ice", examples=[_TWIN["ice"]])
-    wind: Wind = Field(default=Wind(), description="Wind apart from its speed", examples=[_TWIN["wind"]])
+    ice: Ice = Field(description="Ice on the span", examples=[_TWIN["ice"]])
+    wind: Wind = Field(default=Wind(), description="The wind, except its speed", examples=[_TWIN["wind"]])
     damping: Damping = Field(description="Structural damping", examples=[_TWIN["damping"]])
     devices: list[Device] = Field(
         default=[], max_length=200, description="Spacers, pendulums and spoilers", examples=[[_SPACER]]

@@ -1,4 +1,4 @@
-"""Measured coefficients over the angle of the ice: what is fitted by itself, or stands in a line instead of cubics."""
+"""Measured coefficients over the angle of the ice, to fit alone or to give in a line instead of cubics."""
 
 from itertools import pairwise
 
@@ -13,9 +13,9 @@ _ROW = {"angle_deg": 40.0, "lift": 0.31, "drag": 1.18, "moment": -0.12}
 
 
 class CoefficientRow(Document):
-    """What was measured at one angle, of one iced sub-conductor."""
+    """The coefficients measured at one angle, for one iced sub-conductor."""
 
-    angle: float = quantity("angle_deg", "Angle of the ice against the wind", "deg", FULL_TURN, 40.0)
+    angle: float = quantity("angle_deg", "Angle of the ice to the wind", "deg", FULL_TURN, 40.0)
     lift: float = quantity("lift", "Lift coefficient, positive upward, over the diameter", "1", _COEFFICIENT, 0.31)
     drag: float = quantity("drag", "Drag coefficient, positive downwind, over the diameter", "1", _COEFFICIENT, 1.18)
     moment: float = quantity("moment", "Moment coefficient, over the squared diameter", "1", _COEFFICIENT, -0.12)
@@ -25,13 +25,13 @@ class MeasuredCoefficients(Document):
     """A table of measured coefficients, and the angle about which they are fitted."""
 
     table: list[CoefficientRow] = Field(
-        min_length=5, max_length=10_000, description="Rows in the order of rising angles", examples=[[_ROW] * 5]
+        min_length=5, max_length=10_000, description="Rows in order of increasing angle", examples=[[_ROW] * 5]
     )
     static_angle: float = quantity(
-        "static_angle_deg", "Angle at which the ice rests: alpha is counted from it", "deg", FULL_TURN, 40.0
+        "static_angle_deg", "Angle of the ice at rest, from which alpha is measured", "deg", FULL_TURN, 40.0
     )
     half_range: float = quantity(
-        "half_range_deg", "Rows within this angle of the static one are used", "deg", (0.01, 180.0), 20.0
+        "half_range_deg", "Largest distance from the static angle of the rows to fit", "deg", (0.01, 180.0), 20.0
     )
 
     @field_validator("table")
@@ -40,6 +40,6 @@ class MeasuredCoefficients(Document):
         for number, (before, here) in enumerate(pairwise(table), start=1):
             if not before.angle < here.angle:
                 found = {"number": number, "angle": here.angle, "before": before.angle}
-                message = "angles must rise, but row {number} (from 0) has {angle} after {before}"
+                message = "angles must increase, but row {number} (from 0) has {angle} after {before}"
                 raise PydanticCustomError("rising", message, found)
         return table

@@ -1,4 +1,4 @@
-"""A search for the places of devices: what is to be placed where, and what it is to reach."""
+"""A search for the placement of devices: which devices, where, and for which objective."""
 
 from typing import Annotated, Literal, Self
 
@@ -10,7 +10,7 @@ from app.schemas.fields import ON_SPAN, Document, quantity
 
 
 class _Range(Document):
-    """A lowest and a highest value; equal ones keep the quantity as it is."""
+    """A lowest and a highest value; equal values fix the quantity."""
 
     lowest: float
     highest: float
@@ -18,12 +18,12 @@ class _Range(Document):
     @model_validator(mode="after")
     def _rising(self) -> Self:
         if self.lowest > self.highest:
-            raise PydanticCustomError("rising", "lowest must not be above highest")
+            raise PydanticCustomError("rising", "lowest must be at most highest")
         return self
 
     @property
     def pair(self) -> tuple[float, float]:
-        """Both values."""
+        """Return both values."""
         return self.lowest, self.highest
 
 
@@ -55,28 +55,35 @@ _PENDULUMS = {"type": "detuning_pendulum", "count": 2, "position_m": _POSITIONS,
 
 
 class PendulumChoice(Document):
-    """Equal pendulums, each anywhere within a range."""
+    """Equal pendulums, each at a position within a range."""
 
     type: Literal["detuning_pendulum"] = Field(description="Kind of device", examples=["detuning_pendulum"])
-    count: int = Field(ge=1, le=20, description="Their number [1]", examples=[2], json_schema_extra={"unit": "1"})
-    position: PositionRange = Field(alias="position_m", description="Where they may hang [m]", examples=[_POSITIONS])
-    mass: MassRange = Field(
-        alias="mass_kg", description="What each may weigh, the same for all [kg]", examples=[_MASSES]
+    count: int = Field(
+        ge=1, le=20, description="Number of pendulums [1]", examples=[2], json_schema_extra={"unit": "1"}
     )
-    arm: ArmRange = Field(alias="arm_m", description="How long the arms may be, the same for all [m]", examples=[_ARMS])
-    angle: float = quantity("angle_deg", "From straight down, positive downwind", "deg", (-360.0, 360.0), 0.0, 0.0)
+    position: PositionRange = Field(
+        alias="position_m", description="Range of their positions [m]", examples=[_POSITIONS]
+    )
+    mass: MassRange = Field(alias="mass_kg", description="Range of the mass, equal for all [kg]", examples=[_MASSES])
+    arm: ArmRange = Field(alias="arm_m", description="Range of the arm's length, equal for all [m]", examples=[_ARMS])
+    angle: float = quantity(
+        "angle_deg", "Angle of the arm from straight down, positive downwind", "deg", (-360.0, 360.0), 0.0, 0.0
+    )
 
 
 class SpoilerChoice(Document):
-    """One airflow spoiler of given length, anywhere within a range."""
+    """One airflow spoiler of given length, at a position within a range."""
 
     type: Literal["airflow_spoiler"] = Field(description="Kind of device", examples=["airflow_spoiler"])
     length: float = quantity("length_m", "Length along the span", "m", (0.1, ON_SPAN[1]), 30.0)
     position: PositionRange = Field(
-        alias="position_m", description="Where it may begin and end [m]", examples=[{"lowest": 0.0, "highest": 125.88}]
+        alias="position_m",
+        description="Range within which it begins and ends [m]",
+        examples=[{"lowest": 0.0, "highest": 125.88}],
     )
     aerodynamics: AerodynamicsForm = Field(
-        description="Coefficients of one sub-conductor on the spoiler, or their table", examples=[COEFFICIENTS]
+        description="Coefficients of one sub-conductor on the spoiler, or a table of measured ones",
+        examples=[COEFFICIENTS],
     )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,
@@ -88,14 +95,14 @@ class SpoilerChoice(Document):
 
 
 class Placement(Document):
-    """Which devices are to be placed, for which end, and how long the search may go on."""
+    """Which devices to place, for which objective, and how long to search."""
 
     choice: Annotated[PendulumChoice | SpoilerChoice, Field(discriminator="type")] = Field(
-        alias="device", description="What is to be placed beside the devices of the line", examples=[_PENDULUMS]
+        alias="device", description="Devices to place in addition to those of the line", examples=[_PENDULUMS]
     )
     objective: Literal["highest_critical_wind_speed", "lowest_amplitude"] = Field(
         default="highest_critical_wind_speed",
-        description="Of the hybrid model, over all loops asked for: the lowest onset, or the largest stable amplitude",
+        description="For the hybrid model over all loops: the lowest onset, or the largest stable amplitude",
         examples=["lowest_amplitude"],
     )
     generations: int = Field(
@@ -118,7 +125,7 @@ class Placement(Document):
         default=0,
         ge=0,
         le=2**31,
-        description="The same seed finds the same places [1]",
+        description="Seed of the random search; equal seeds give equal results [1]",
         examples=[0],
         json_schema_extra={"unit": "1"},
     )

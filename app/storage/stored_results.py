@@ -106,7 +106,7 @@ def _as_columns(point: "PointResult", compressor: zstandard.ZstdCompressor) -> d
         "warnings": point.warnings,
         "engine_version": point.engine_version,
         "failure": point.failure,
-        **{name: point.peaks.get(name) for name in RANKING_FIGURES},
+        **{name: point.ranking_figures.get(name) for name in RANKING_FIGURES},
         "tables": None if failed else compressor.compress(point.tables_json),
         "orbits": None if failed else compressor.compress(point.orbits_json),
         "input_hash": point.input_hash,

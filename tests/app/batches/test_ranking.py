@@ -34,7 +34,7 @@ def filled(sessions: sessionmaker[Session], seed: int) -> tuple[UUID, dict[int, 
                 figures[line.number] = {
                     name: draw.choice([None, 0.1 + 0.2, 1.5, 2.5, 1e-300]) for name in RANKING_FIGURES
                 }
-            found = [replace(point_result(line.number), peaks=figures[line.number]) for line in lines]
+            found = [replace(point_result(line.number), ranking_figures=figures[line.number]) for line in lines]
             assert leases.finish(session, held, found)
     return batch_id, figures
 
@@ -91,7 +91,7 @@ def test_a_page_is_read_along_the_index(sessions: sessionmaker[Session]) -> None
 def test_a_resubmitted_line_is_ranked_by_its_last_result(sessions: sessionmaker[Session]) -> None:
     batch_id, chunks = add_batch(sessions, 2)
     held = claim(sessions, chunks[0])
-    sound = replace(point_result(1), peaks={"largest_vertical_m": 1.0})
+    sound = replace(point_result(1), ranking_figures={"largest_vertical_m": 1.0})
     with sessions.begin() as session:
         assert leases.finish(session, held, [sound, point_result(2, failure="Bad.")])
     assert pages(sessions, batch_id, AMPLITUDE, 10) == [1]
@@ -100,7 +100,7 @@ def test_a_resubmitted_line_is_ranked_by_its_last_result(sessions: sessionmaker[
     assert pages(sessions, batch_id, AMPLITUDE, 10) == [1]
     held = claim(sessions, again)
     with sessions.begin() as session:
-        assert leases.finish(session, held, [replace(point_result(2), peaks={"largest_vertical_m": 2.0})])
+        assert leases.finish(session, held, [replace(point_result(2), ranking_figures={"largest_vertical_m": 2.0})])
     assert pages(sessions, batch_id, AMPLITUDE, 10) == [2, 1]
 
 

@@ -161,7 +161,7 @@ def test_what_cannot_be_read_ends_with_2_and_names_the_file(tmp_path: Path) -> N
     assert str(tmp_path) in refused("analyse", str(tmp_path))
     assert str(broken) in refused("analyse", line, "--analysis", str(broken))
     assert "not valid JSON" in refused("analyse", "-", text="[" * 100_000)
-    assert "/span/sag_m: stands more than once" in refused("analyse", "-", text='{"span": {"sag_m": 1, "sag_m": 2}}')
+    assert "/span/sag_m: appears more than once" in refused("analyse", "-", text='{"span": {"sag_m": 1, "sag_m": 2}}')
 
 
 def test_what_is_given_twice_is_refused(tmp_path: Path) -> None:

@@ -23,9 +23,9 @@ def found(line: dict[str, Any], winds: list[float], loops: list[int] | None = No
 def test_peaks_are_those_of_the_motions_that_last() -> None:
     point = found(TWIN, [4.0, 6.0], [1, 2])
     stable = [(i, row) for i, row in enumerate(point.tables["limit_cycles"]) if row["stability"] == "stable"]
-    assert point.peaks["largest_vertical_m"] == max(row["vertical_m"] for _, row in stable)
+    assert point.ranking_figures["largest_vertical_m"] == max(row["vertical_m"] for _, row in stable)
     winds = [row["wind_speed_m_per_s"] for row in point.tables["critical_wind_speeds"]]
-    assert point.peaks["lowest_critical_wind_speed_m_per_s"] == min(winds)
+    assert point.ranking_figures["lowest_critical_wind_speed_m_per_s"] == min(winds)
     assert len(stable) < len(point.tables["limit_cycles"])
 
 
@@ -45,25 +45,25 @@ def test_height_and_width_are_of_all_sub_conductors_over_the_whole_orbit() -> No
         y = np.concatenate([v - z * theta for z in (0.2355, -0.2355)])
         z = np.concatenate([z + w for z in (0.2355, -0.2355)])
         height, width = max(height, float(np.ptp(y))), max(width, float(np.ptp(z)))
-    assert point.peaks["largest_height_m"] == pytest.approx(height, rel=1e-3)
-    assert point.peaks["largest_width_m"] == pytest.approx(width, rel=1e-3)
+    assert point.ranking_figures["largest_height_m"] == pytest.approx(height, rel=1e-3)
+    assert point.ranking_figures["largest_width_m"] == pytest.approx(width, rel=1e-3)
     assert width > WIDTH + 0.9  # two loops at 6 m/s move sideways by 0.94 m
 
 
 def test_a_line_at_rest_is_as_wide_as_its_bundle() -> None:
     point = found(TWIN, [1.0])
-    assert point.peaks["largest_vertical_m"] == 0.0
-    assert point.peaks["largest_height_m"] == pytest.approx(0.0, abs=1e-12)
-    assert point.peaks["largest_width_m"] == pytest.approx(WIDTH)
+    assert point.ranking_figures["largest_vertical_m"] == 0.0
+    assert point.ranking_figures["largest_height_m"] == pytest.approx(0.0, abs=1e-12)
+    assert point.ranking_figures["largest_width_m"] == pytest.approx(WIDTH)
 
 
 def test_a_line_that_is_unstable_without_wind_has_the_critical_wind_speed_0() -> None:
     line = changed("span.length_m", 400.0, example("c11-single"))
     point = found(line, [4.0])
     assert point.tables["frequencies"][0]["outcome"] == "statically_unstable"
-    assert point.peaks["lowest_critical_wind_speed_m_per_s"] == 0.0
-    assert point.peaks["largest_vertical_m"] is None
-    assert point.peaks["largest_height_m"] is None
+    assert point.ranking_figures["lowest_critical_wind_speed_m_per_s"] == 0.0
+    assert point.ranking_figures["largest_vertical_m"] is None
+    assert point.ranking_figures["largest_height_m"] is None
 
 
 def test_lines_side_by_side_have_the_peaks_that_each_has_alone() -> None:
@@ -76,15 +76,15 @@ def test_lines_side_by_side_have_the_peaks_that_each_has_alone() -> None:
     points = [item for item in convert.run_stack(analysis, numbered) if isinstance(item, PointResult)]
     assert [point.point for point in points] == list(range(len(lines)))
     for line, point in zip(lines, points, strict=True):
-        alone = found(line, [4.0, 6.0], [1, 2]).peaks
+        alone = found(line, [4.0, 6.0], [1, 2]).ranking_figures
         for name, value in alone.items():
-            assert point.peaks[name] == (None if value is None else pytest.approx(value, rel=1e-6, abs=1e-12))
-    widths = [point.peaks["largest_width_m"] for point in points]
+            assert point.ranking_figures[name] == (None if value is None else pytest.approx(value, rel=1e-6, abs=1e-12))
+    widths = [point.ranking_figures["largest_width_m"] for point in points]
     assert widths[1] is None
     assert len(set(widths)) == len(widths)
 
 
 def test_many_orbits_are_followed_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    together = found(TWIN, [4.0, 6.0], [1, 2]).peaks
+    together = found(TWIN, [4.0, 6.0], [1, 2]).ranking_figures
     monkeypatch.setattr(ranking_figures, "_ORBITS_AT_ONCE", 1)
-    assert found(TWIN, [4.0, 6.0], [1, 2]).peaks == together
+    assert found(TWIN, [4.0, 6.0], [1, 2]).ranking_figures == together

@@ -52,7 +52,7 @@ def test_a_line_that_is_at_fault_fails_alone() -> None:
     slack = changed("span.horizontal_tension_n", 11.0, TWIN)
     found = results([NumberedLine(1, TWIN), NumberedLine(2, slack), NumberedLine(3, {}), NumberedLine(4, TWIN)])
     assert [found[n].failure is None for n in (1, 2, 3, 4)] == [True, False, False, True]
-    assert "sag less than its length" in (found[2].failure or "")
+    assert "sag smaller than the span's length" in (found[2].failure or "")
     assert found[1].tables == found[4].tables
 
 
