@@ -10,5 +10,5 @@ class Health(Answer):
 
     status: Literal["ok", "unavailable"] = described("Health of the whole service", "ok")
     checks: dict[str, str] = described(
-        "What was looked at, and how it is", {"database": "ok", "migrations": "ok", "broker": "ok"}
+        "State of each part of the service", {"database": "ok", "migrations": "ok", "broker": "ok"}
     )

@@ -1,4 +1,4 @@
-"""What goes out without any job: the conductor catalogue, the fields of a request, and the tables of a result."""
+"""Answers with reference data: the conductor catalogue, the fields of a request, and the tables of a result."""
 
 from typing import Any, Literal
 
@@ -8,7 +8,7 @@ Number = float | None
 
 
 class ConductorRow(Answer):
-    """A bare conductor. A line's `conductor` takes diameter, area and modulus unchanged, and the mass with the ice added."""
+    """A bare conductor; a line's `conductor` takes diameter, area and modulus unchanged, mass with the ice added."""
 
     name: str = described("Code word or usual name", "Drake")
     designation: str = described("Designation of its standard", "795 kcmil 26/7")
@@ -47,7 +47,7 @@ class FieldRow(Answer):
     most_items: int | None = described("Most items of a list", 3)
     choices: list[str] | None = described("Allowed words, if only these", ["constant_coefficient", "constant_ratio"])
     description: str = described("Meaning of the field", "Axial-torsional coupling B_T [N m]")
-    example: Any = described("A usual value", 0.0)
+    example: Any = described("A typical value", 0.0)
 
 
 class FieldList(Answer):
@@ -60,10 +60,10 @@ class ColumnRow(Answer):
     """One column of a result table; any value may be null where nothing is known."""
 
     name: str = described("Name in JSON, CSV and Parquet", "vertical_m")
-    kind: Literal["number", "integer", "truth", "text"] = described("What its values are", "number")
+    kind: Literal["number", "integer", "truth", "text"] = described("Type of the values", "number")
     unit: str | None = described("Unit; null if it is no number", "m")
-    description: str = described("What it holds", "Vertical amplitude")
-    example: Any = described("A usual value", 0.1568)
+    description: str = described("Meaning of the column", "Vertical amplitude")
+    example: Any = described("A typical value", 0.1568)
 
 
 class TableRow(Answer):
@@ -71,7 +71,7 @@ class TableRow(Answer):
 
     name: str = described("Name in the result document", "limit_cycles")
     address: str = described("Name in addresses, `/results/limit-cycles`", "limit-cycles")
-    title: str = described("What it holds", "Motions at every wind speed")
+    title: str = described("Content of the table", "Motions at every wind speed")
     columns: list[ColumnRow] = described("Its columns in order", [example_of(ColumnRow)])
 
 

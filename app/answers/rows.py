@@ -35,7 +35,7 @@ def row_schema(row: type[Any], *, nullable: bool = False) -> type[Row]:
     row : type
         A dataclass of `engine.result`; the first paragraph of its docstring becomes the schema's.
     nullable : bool
-        Whether any column may be null, as in SQL: what is not finite is null there.
+        Whether any column may be null, as in SQL, where null replaces a value that is not finite.
     """
     columns: dict[str, Any] = {
         name: (_inlined(kind) | None if nullable else _inlined(kind), _field(column))
@@ -75,7 +75,7 @@ def _inlined(kind: Any) -> Any:
     return kind
 
 
-# Type checkers see the engine's rows, which have the same attributes: what is made at run time has no types for them.
+# Type checkers cannot see models created at run time, so show them the engine's rows with the same attributes.
 if TYPE_CHECKING:
     from app.convert import DenHartog, StaticState
 else:

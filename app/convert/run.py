@@ -82,7 +82,7 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
     pydantic.ValidationError
         If the document does not pass its schema.
     ValueError, ArithmeticError
-        If the line of a job without study is at fault (`InvalidSpec`) or numerically out of reach.
+        If the line of a job without a study is not valid (`InvalidSpec`) or its computation fails.
     """
     request = schemas.JobRequest.model_validate(document)
     total = study.count(request.study)
@@ -177,7 +177,7 @@ def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[
     Raises
     ------
     pydantic.ValidationError, InvalidSpec
-        If the line is at fault there.
+        If the line is not valid at this point.
     """
     line, analysis, faults = gather(
         SoundParts.of(study.varied(request.line, study.settings(request.study, values))), request.analysis
@@ -193,7 +193,7 @@ def specification_of_point(document: Mapping[str, object], point: int) -> tuple[
     Raises
     ------
     pydantic.ValidationError, InvalidSpec
-        If the line is at fault there.
+        If the line is not valid at this point.
     LookupError
         If there is no such point.
     """

@@ -18,7 +18,7 @@ _UNIT = re.compile(r" \[(.+)\]$")
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column: its name, the kind of its values (each may be null), its unit if it has one, and what it is."""
+    """One column: name, kind of values (each may be null), unit if it has one, and description."""
 
     name: str
     kind: Kind

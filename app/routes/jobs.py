@@ -74,7 +74,7 @@ class ListQuery(BaseModel):
         Raises
         ------
         ProblemError
-            400 if a tag is not key:value, or one key is asked for twice.
+            400 if a tag is not key:value, or a key appears twice.
         """
         pairs = [text.partition(":") for text in self.tag]
         tags = {key: value for key, _, value in pairs}

@@ -22,12 +22,10 @@ class BatchRequest(Document):
     lines: list[BatchLine] = Field(
         min_length=1, max_length=100_000, description="The lines", examples=[[example("c11-twin")]]
     )
-    analysis: Analysis = Field(
-        default=Analysis(), description="What is asked of every line", examples=[{"loops": [1, 2]}]
-    )
+    analysis: Analysis = Field(default=Analysis(), description="Analysis of every line", examples=[{"loops": [1, 2]}])
     webhook_url: str | None = Field(
         default=None,
         max_length=2000,
-        description="https address that is told when the batch has ended; none if absent",
+        description="https address to which the service posts a signed message when the batch ends",
         examples=["https://assets.example.com/galloping"],
     )

@@ -102,7 +102,7 @@ def database_moment(session: Session) -> datetime | ColumnElement[datetime]:
 def insert_rows(session: Session, kind: type[Base], records: Sequence[Mapping[str, Any]]) -> None:
     """Insert any number of rows in one statement: by binary COPY on PostgreSQL, at a quarter of the time of INSERTs.
 
-    All of them name the same columns; what they do not name is null, or what the database itself puts there.
+    All rows name the same columns; any other column gets its default or null.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def insert_rows(session: Session, kind: type[Base], records: Sequence[Mapping[st
     statement, types = _copying(table, names)
     cursor: Any = session.connection().connection.cursor()
     with _as_sqlalchemy_errors(), cursor, cursor.copy(statement) as copy:
-        copy.set_types(types)  # a value in binary does not say what it is
+        copy.set_types(types)  # binary values carry no type
         for record in records:
             copy.write_row([_as_json(record[n]) if n in as_json else record[n] for n in names])
 
