@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 def read_request(line: Path, analysis: Path | None, study: Path | None, placement: Path | None = None) -> Any:
     """Build the request from its files; a file may add to a whole request, but not repeat a part of it."""
-    whole = _read_json(line)
-    document = whole if isinstance(whole, dict) and "line" in whole else {"line": whole}
+    given = _read_json(line)
+    document = given if isinstance(given, dict) and "line" in given else {"line": given}
     for name, path in (("analysis", analysis), ("study", study), ("placement", placement)):
         if path is None:
             continue

@@ -98,7 +98,7 @@ class Gathered:
         return any(f"{path}.".startswith(f"{place}.") for place in self.neutral)
 
 
-def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line | None, spec.Analysis, list[Fault]]:
+def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Line | None, spec.Analysis, list[Fault]]:
     """Build a line and an analysis, and return all faults of each and of their combination.
 
     Returns
@@ -115,17 +115,17 @@ def gather(sound: SoundParts, asked: schemas.Analysis | None) -> tuple[spec.Line
     line = gathered.attempt("", lambda: spec.Line(**values))
     if line is not None and not gathered.neutral:
         gathered.faults.extend(_slack_faults(line))
-    analysis = gathered.make("analysis", asked, parts.analysis, _NEUTRAL_ANALYSIS)
+    analysis = gathered.make("analysis", options, parts.analysis, _NEUTRAL_ANALYSIS)
     comparable = line or _apart_from_positions(values)
-    if comparable is not None and asked is not None:
-        _compare(gathered, comparable, asked)
+    if comparable is not None and options is not None:
+        _compare(gathered, comparable, options)
     return line, analysis, gathered.faults
 
 
-def _compare(gathered: Gathered, line: spec.Line, asked: schemas.Analysis) -> None:
+def _compare(gathered: Gathered, line: spec.Line, options: schemas.Analysis) -> None:
     """Check a line against the options of an analysis; check conflicting options one by one to find all faults."""
-    loops, more_loops = tuple(asked.loops), tuple(asked.finite_element_loops)
-    for choice in _choices(loops, more_loops, asked.closure, asked.aerodynamic_model):
+    loops, more_loops = tuple(options.loops), tuple(options.finite_element_loops)
+    for choice in _choices(loops, more_loops, options.closure, options.aerodynamic_model):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
 
 
@@ -134,13 +134,13 @@ def _choices(
     loops: tuple[int, ...], more_loops: tuple[int, ...], closure: str, aerodynamic_model: str
 ) -> tuple[spec.Analysis, ...]:
     # Cached, because all lines of a batch have the same options.
-    asked = replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops)
+    options = replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops)
     closed = replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(closure))
     modelled = replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(aerodynamic_model))
     try:
-        return (replace(asked, closure=closed.closure, aerodynamic_model=modelled.aerodynamic_model),)
+        return (replace(options, closure=closed.closure, aerodynamic_model=modelled.aerodynamic_model),)
     except InvalidSpec:
-        return asked, closed, modelled
+        return options, closed, modelled
 
 
 def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:

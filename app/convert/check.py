@@ -67,17 +67,17 @@ def with_further_faults(document: object, faults: Sequence[Fault]) -> list[Fault
     body: Mapping[str, Any] = pruned(document, faults) if isinstance(document, dict) else {}
     raw = body.get("line")
     line: Mapping[str, Any] = raw if isinstance(raw, dict) else {}
-    asked = sound_analysis(body.get("analysis", {}))
-    return [*faults, *_combined(line, sound_parts(line), asked, sound_axes(body.get("study")))]
+    options = sound_analysis(body.get("analysis", {}))
+    return [*faults, *_combined(line, sound_parts(line), options, sound_axes(body.get("study")))]
 
 
 def _combined(
-    line: Mapping[str, Any], parts: SoundParts, asked: schemas.Analysis | None, axes: Sequence[SoundAxis]
+    line: Mapping[str, Any], parts: SoundParts, options: schemas.Analysis | None, axes: Sequence[SoundAxis]
 ) -> list[Fault]:
     """Return the faults of valid parts together, and the faults that the axes of a study add."""
-    _, _, found = gather(parts, asked)
-    faults = [to_pointer(fault, parts, asked) for fault in found]
+    _, _, found = gather(parts, options)
+    faults = [to_pointer(fault, parts, options) for fault in found]
     if axes:
-        ground = Ground.of(line, parts, asked)
+        ground = Ground.of(line, parts, options)
         faults += islice(study.faults(ground, axes), MOST_FAULTS)
     return faults

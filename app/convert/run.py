@@ -137,8 +137,8 @@ def _followed(request: schemas.JobRequest, held: list[_Solved]) -> Iterator[Poin
         try:
             results = followed(line_at, [point.values[parameter] for point in rising], results, analysis)
         except (ArithmeticError, ValueError) as error:
-            said = f"The cycles were not followed over {parameter}: {error}"
-            results = [replace(result, warnings=(*result.warnings, said)) for result in results]
+            warning = f"The cycles were not followed over {parameter}: {error}"
+            results = [replace(result, warnings=(*result.warnings, warning)) for result in results]
     for point, result in zip(rising, results, strict=True):
         yield replace(point, result=result).as_result()
 

@@ -71,8 +71,8 @@ def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
         line = schemas.Line.model_validate(document)
     except ValidationError as error:
         rooted = faults_of(error.errors(include_url=False), root=_LINE)
-        asked = analysis.model_dump(mode="json", by_alias=True)
-        raise BadInput(_unrooted(with_further_faults({"line": document, "analysis": asked}, rooted))) from error
+        options = analysis.model_dump(mode="json", by_alias=True)
+        raise BadInput(_unrooted(with_further_faults({"line": document, "analysis": options}, rooted))) from error
     faults = request_faults(schemas.JobRequest.model_construct(line=line, analysis=analysis, study=None))
     if faults:
         raise BadInput(_unrooted(faults))
@@ -117,12 +117,12 @@ def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> 
     pydantic.ValidationError
         If the analysis does not pass its schema.
     """
-    asked = schemas.Analysis.model_validate(analysis)
+    options = schemas.Analysis.model_validate(analysis)
     done = 0
     made: list[_Made] = []
     for line in lines:
         try:
-            made.append((line.number, *_specification(line, asked)))
+            made.append((line.number, *_specification(line, options)))
         except (ArithmeticError, ValueError) as error:
             yield failed_point(error, line.number, _axes(line.number))
             done += 1
@@ -148,8 +148,8 @@ def _stacks(made: Iterable[_Made]) -> Iterator[list[_Made]]:
             yield equal[first : first + STACK]
 
 
-def _specification(line: NumberedLine, asked: schemas.Analysis) -> tuple[spec.Line, spec.Analysis]:
-    made, analysis, faults = gather(SoundParts.of(schemas.Line.model_validate(line.document)), asked)
+def _specification(line: NumberedLine, options: schemas.Analysis) -> tuple[spec.Line, spec.Analysis]:
+    made, analysis, faults = gather(SoundParts.of(schemas.Line.model_validate(line.document)), options)
     if made is None or faults:
         raise InvalidSpec(*faults)
     return made, analysis

@@ -66,11 +66,11 @@ class Ground:
 
     document: dict[str, Any]
     unsound: frozenset[tuple[str, ...]]
-    asked: schemas.Analysis | None
+    options: schemas.Analysis | None
     known: frozenset[str]
 
     @classmethod
-    def of(cls, line: Mapping[str, Any], parts: SoundParts, asked: schemas.Analysis | None) -> "Ground":
+    def of(cls, line: Mapping[str, Any], parts: SoundParts, options: schemas.Analysis | None) -> "Ground":
         """Take a line document, its valid parts, and the valid options of the analysis."""
         document: dict[str, Any] = {"devices": []}
         unsound: set[tuple[str, ...]] = set()
@@ -83,8 +83,8 @@ class Ground:
             unsound |= {("devices", str(number))} if device is None else set()
         if not isinstance(line.get("devices", []), list):
             unsound.add(("devices",))
-        known = {fault.pointer for fault in _document_faults(document, asked)}
-        return cls(document, frozenset(unsound), asked, frozenset(known))
+        known = {fault.pointer for fault in _document_faults(document, options)}
+        return cls(document, frozenset(unsound), options, frozenset(known))
 
     def is_unsound(self, path: Sequence[str]) -> bool:
         """Tell whether a path leads into a part that is not valid, so that its defaults are unknown."""
@@ -132,12 +132,12 @@ def _point_faults(ground: Ground, values: dict[str, Any], pointer: str) -> Itera
             _set(document, name.split("."), value)
     except LookupError:
         return  # the field is missing in a part that is not valid
-    for fault in _document_faults(document, ground.asked):
+    for fault in _document_faults(document, ground.options):
         if fault.pointer in own or fault.pointer not in ground.known:
             yield Fault(pointer, fault.code, f"with {assignment}: {fault}")
 
 
-def _document_faults(document: Mapping[str, Any], asked: schemas.Analysis | None) -> list[Fault]:
+def _document_faults(document: Mapping[str, Any], options: schemas.Analysis | None) -> list[Fault]:
     """Return the faults of a line document, those of its schema first."""
     wrong: list[Fault] = []
     try:
@@ -145,8 +145,8 @@ def _document_faults(document: Mapping[str, Any], asked: schemas.Analysis | None
     except ValidationError as error:
         wrong = faults_of(error.errors(include_url=False, include_input=False), root="/line")
         parts = sound_parts(document)
-    _, _, found = gather(parts, asked)
-    return [*wrong, *(to_pointer(fault, parts, asked) for fault in found)]
+    _, _, found = gather(parts, options)
+    return [*wrong, *(to_pointer(fault, parts, options) for fault in found)]
 
 
 def _dumped(part: BaseModel) -> Any:

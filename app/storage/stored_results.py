@@ -70,8 +70,8 @@ def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
     """Stream the points: number, axes, static state, Den Hartog coefficient, warnings, engine version, failure."""
     static = [getattr(PointRow, name) for name in STATIC]
     hartog = PointRow.den_hartog_coefficient, PointRow.den_hartog_unstable
-    said = PointRow.warnings, PointRow.engine_version, PointRow.failure
-    statement = select(PointRow.point, PointRow.axes, *static, *hartog, *said).where(PointRow.job_id == job_id)
+    outcome = PointRow.warnings, PointRow.engine_version, PointRow.failure
+    statement = select(PointRow.point, PointRow.axes, *static, *hartog, *outcome).where(PointRow.job_id == job_id)
     for row in session.execute(statement.order_by(PointRow.point).execution_options(yield_per=_POINTS_A_FETCH)):
         solved = row.horizontal_tension_n is not None
         found = {"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable}
