@@ -1,4 +1,4 @@
-"""What many requests ask at once is answered together: one thread, one connection, one commit for a whole group."""
+"""Answer simultaneous calls in groups: one thread, one connection and one commit for a whole group."""
 
 import asyncio
 from collections.abc import Callable, Sequence

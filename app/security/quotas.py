@@ -1,4 +1,4 @@
-"""How often an owner may ask: quotas of a minute, counted together by all processes that share a Redis.
+"""Quotas of requests per minute, counted together by all processes that share a Redis.
 
 Reads are metered apart from changes, so that watching a batch never stops the next one from being posted. The broker's
 Redis keeps the counts where there is one. Without Redis the service has a single API process, which counts in its own
@@ -25,7 +25,7 @@ _logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class Quota:
-    """So many requests of a kind in every minute."""
+    """The most requests of one kind in a minute."""
 
     name: str
     most: int
@@ -33,7 +33,7 @@ class Quota:
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """What is left of a quota after a request, None if it was exceeded; and in how many seconds it is whole again."""
+    """What is left of a quota after a request, None if the request exceeded it, and the seconds until the quota resets."""
 
     quota: Quota
     left: int | None
@@ -41,7 +41,7 @@ class Standing:
 
     @property
     def fields(self) -> dict[str, str]:
-        """Return the header fields that tell it (draft-ietf-httpapi-ratelimit-headers-10)."""
+        """Return the quota's header fields (draft-ietf-httpapi-ratelimit-headers-10)."""
         policy = f'"{self.quota.name}";q={self.quota.most};w={WINDOW_SECONDS}'
         return {
             "RateLimit-Policy": policy,
@@ -50,10 +50,10 @@ class Standing:
 
 
 class Meter:
-    """Counts requests in windows of a minute by the clock."""
+    """Counts requests in one-minute windows of the clock."""
 
     def __init__(self, settings: Settings) -> None:
-        """Take where the processes count together, if anywhere; no connection is opened before it is needed."""
+        """Take the settings, which name the shared Redis if there is one; open no connection yet."""
         self._own = MemoryStorage()
         self._pool = _pool(settings)
         self._shared = _storage(settings, self._pool) if self._pool is not None else None
