@@ -33,7 +33,7 @@ class Quota:
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """What is left of a quota after a request, None if the request exceeded it, and the seconds until the quota resets."""
+    """What is left of a quota after a request, None if it was exceeded, and the seconds until the quota resets."""
 
     quota: Quota
     left: int | None
