@@ -127,7 +127,9 @@ def test_a_batch_has_these_tables_line_by_line(
     alone = rows(shared_client, address, table)
     assert alone
     with Client(str(shared_client.base_url)) as client:
-        found = list(client.batch_rows(client.batch(batch[-36:]), table))
+        document = client.batch(batch[-36:])
+        found, frame = list(client.batch_rows(document, table)), client.batch_frame(document, table)
+    assert (list(frame), frame["number"].tolist()) == (list(found[0]), [row["number"] for row in found])
     assert [row["number"] for row in found] == [1] * len(alone) + [2] * len(alone)
     for row, expected in zip(found, alone * 2, strict=True):
         labels = {"number": row["number"], "reference": None, "asset_id": None}
