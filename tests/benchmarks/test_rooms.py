@@ -33,3 +33,7 @@ def test_the_picture_is_svg_and_each_importer_of_the_engine_has_an_arrow() -> No
     picture = ElementTree.fromstring(rooms.picture(rooms.ROOT))
     assert picture.tag.endswith("svg")
     assert len(picture.findall("{*}polygon")) == len(rooms.BORDER)
+
+
+def test_the_stored_picture_is_the_one_of_this_tree() -> None:
+    assert rooms.PICTURE.read_text() == rooms.picture(rooms.ROOT), "draw it with `python -m benchmarks.rooms`"
