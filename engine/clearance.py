@@ -1,8 +1,8 @@
-"""Room that galloping takes: envelopes of computed motions, ellipses of design practice, and clearances between them.
+"""Space that galloping takes: envelopes of computed motions, ellipses of design practice, and clearances.
 
-A region of the plane of Y (up) and Z (downwind) is kept as its support function, h(u) = max u . x over the region, at
-`DIRECTIONS` unit vectors u: it stands for the region's convex hull. A conductor that gallops at less than its full
-amplitude stays within that hull, so clearances of hulls are on the safe side.
+A region of the plane of Y (up) and Z (downwind) is represented by its support function, h(u) = max u . x over the
+region, at `DIRECTIONS` unit vectors u, which describes its convex hull. A conductor that gallops at less than its full
+amplitude stays within that hull, so clearances between hulls are on the safe side.
 """
 
 import math
@@ -24,7 +24,7 @@ AESO_TILT = math.radians(5.0)
 
 
 class EllipseMethod(StrEnum):
-    """Whose ellipse: single loop (Davison), double loop (Toye), CIGRE, or the Alberta Electric System Operator."""
+    """Method of the ellipse: single loop (Davison), double loop (Toye), CIGRE, or Alberta Electric System Operator."""
 
     DAVISON = "davison"
     TOYE = "toye"
@@ -53,7 +53,7 @@ def galloping_ellipse(
     subconductors: int = 1,
     swing: float = 0.0,
 ) -> Ellipse | None:
-    """Return the ellipse of a method.
+    """Return the galloping ellipse of a method at mid-loop.
 
     Parameters
     ----------
@@ -65,19 +65,19 @@ def galloping_ellipse(
     diameter : float, optional
         d of a sub-conductor [m], needed by CIGRE and AESO.
     subconductors : int
-        CIGRE and AESO know single conductors and bundles.
+        CIGRE and AESO distinguish single conductors and bundles.
     swing : float
         Swing angle of the span from straight down, positive downwind [rad]; Davison and Toye tilt by half of it.
 
     Returns
     -------
     Ellipse or None
-        None where the method's major axis is not positive: it sees no galloping then.
+        None if the method's major axis is not positive, which means no galloping.
 
     Raises
     ------
     InvalidSpec
-        If a length is missing or not positive, or there is no sub-conductor.
+        If a length that the method needs is missing, a length is not positive, or there is no sub-conductor.
 
     Notes
     -----
@@ -108,7 +108,7 @@ def galloping_ellipse(
 def _lengths(
     method: EllipseMethod, sag: float, span_length: float | None, diameter: float | None, subconductors: int
 ) -> tuple[float, float]:
-    """Return span length and diameter, or 1 where the method asks for none."""
+    """Return span length and diameter [m], or 1 for those that the method does not need."""
     needs_length = method is EllipseMethod.TOYE
     needs_diameter = method in {EllipseMethod.CIGRE, EllipseMethod.AESO}
     require(
@@ -123,7 +123,7 @@ def _lengths(
 
 
 def _double_loop(sag: float, length: float) -> float:
-    """Return how far half a span's slack lets a double loop rise [m]."""
+    """Return the rise of a double loop that the slack of half a span allows [m]."""
     chord = math.sqrt(0.25 * length**2 + sag**2)
     slack = length + 8.0 * sag**2 / (3.0 * length) - 2.0 * chord
     return math.sqrt(0.375 * chord * slack)
@@ -144,9 +144,9 @@ def subconductor_paths(series: FloatArray, positions: FloatArray, samples: int =
     series : (..., 3, 2 H + 1)
         Fourier coefficients of V, W [m] and Theta [rad] where the motion is observed.
     positions : (..., n, 2)
-        y_i, z_i of the sub-conductors [m], the same of all motions or each one's own.
+        y_i, z_i of the sub-conductors [m], common to all motions or one set for each.
     samples : int
-        Phases of the period; the outermost points of a path are then missed by less than 5 / samples^2 of its size.
+        Number of phases of the period; the extent of a path is exact to 5 / samples^2 of its size.
 
     Returns
     -------
@@ -166,9 +166,9 @@ def path_support(points: FloatArray) -> FloatArray:
 
 
 def ellipse_support(ellipse: Ellipse) -> FloatArray:
-    """Return the support function (DIRECTIONS,) of an ellipse, counted from the resting wire [m].
+    """Return the support function (DIRECTIONS,) of an ellipse, relative to the resting wire [m].
 
-    The centre lies M/2 - B above the resting wire along the major axis. Several ellipses count as one region.
+    The centre lies M/2 - B above the resting wire along the major axis. Several ellipses form one region.
     """
     found = np.full(DIRECTIONS, -np.inf)
     for tilt in ellipse.tilts:
@@ -180,22 +180,22 @@ def ellipse_support(ellipse: Ellipse) -> FloatArray:
 
 
 def extents(points: FloatArray) -> FloatArray:
-    """Return height and width (..., 2) [m] of all that paths (..., n, samples, 2) reach."""
+    """Return height and width (..., 2) [m] of the region that paths (..., n, samples, 2) cover."""
     return np.asarray(points.max(axis=(-3, -2)) - points.min(axis=(-3, -2)))
 
 
 def clearance(region: FloatArray, other: FloatArray, offset: FloatArray) -> FloatArray:
-    """Return how far two regions are apart; negative by how far one must move until they part [m].
+    """Return the distance of two regions [m]; if they overlap, minus the shortest shift that separates them.
 
-    Two convex regions are apart by the largest gap that any direction shows between them, and where none shows a gap
-    they overlap by the smallest overlap. `DIRECTIONS` of them leave out at most 1e-5 of the distance, on the safe side.
+    The distance of two convex regions is the largest gap between them in any direction; if there is none, they overlap
+    by the smallest overlap. `DIRECTIONS` directions underestimate the distance by at most 1e-5 of it.
 
     Parameters
     ----------
     region, other : (..., DIRECTIONS)
-        Support functions, each counted from its own phase's resting place [m].
+        Support functions, each relative to the resting position of its own phase [m].
     offset : (..., 2)
-        y, z of the other phase's resting place from the region's [m].
+        y, z of the other phase's resting position relative to the region's [m].
 
     Returns
     -------

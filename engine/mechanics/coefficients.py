@@ -1,4 +1,4 @@
-"""Cubic coefficients from tabulated lift, drag and moment. Theory section 5, paper eqs. (A18), (A19)."""
+"""Cubic fits of tabulated lift, drag and moment coefficients. Theory section 5, paper eqs. (A18), (A19)."""
 
 from dataclasses import dataclass, replace
 
@@ -13,7 +13,7 @@ ORDER = 3
 
 @dataclass(frozen=True, slots=True)
 class CoefficientTable:
-    """Measured coefficients of one iced sub-conductor: angle (rows,) rising [rad], lift, drag, moment (rows,)."""
+    """Measured coefficients of one iced sub-conductor: angle in rising order [rad], lift, drag, moment, all (rows,)."""
 
     angle: FloatArray
     lift: FloatArray
@@ -36,7 +36,7 @@ class CoefficientTable:
 
 @dataclass(frozen=True, slots=True)
 class CoefficientFit:
-    """A cubic fit about the static angle: coefficients with their range, root mean square residuals, rows used."""
+    """A cubic fit about the static angle: coefficients with their range, root mean square residuals, number of rows."""
 
     aerodynamics: Aerodynamics
     residual: Coefficients
@@ -44,9 +44,9 @@ class CoefficientFit:
 
 
 def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: float) -> CoefficientFit:
-    """Fit C_y, C_z and C_theta by cubics in the angle from the static one, constants included.
+    """Fit C_y, C_z and C_theta by cubics in the angle relative to the static angle, constants included.
 
-    Angles count modulo a turn, so that a table of the whole circle serves every static angle.
+    Angles are compared modulo a full turn, so a table of the whole circle suits any static angle.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: f
     static_angle : float
         [rad].
     half_range : float
-        Rows within this angle of the static one are used [rad].
+        Rows within this angle of the static angle are used [rad].
 
     Returns
     -------
@@ -86,12 +86,12 @@ def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: f
 
 
 def fit_measured(measured: MeasuredCoefficients, twist: float = 0.0) -> Aerodynamics:
-    """Fit anew what was measured, at the static angle plus a twist [rad].
+    """Fit measured coefficients about the static angle plus a twist [rad].
 
     Raises
     ------
     InvalidSpec
-        If the table is not sound, or does not reach around that angle.
+        If the table breaks a rule of `CoefficientTable`, or has too few rows around that angle.
     """
     columns = (measured.angle, measured.lift, measured.drag, measured.moment)
     table = CoefficientTable(*(np.array(column) for column in columns))
@@ -100,7 +100,7 @@ def fit_measured(measured: MeasuredCoefficients, twist: float = 0.0) -> Aerodyna
 
 
 def den_hartog_coefficient(table: CoefficientTable) -> FloatArray:
-    """Return dC_L/dalpha + C_D at each row of a table by central differences; negative means unstable."""
+    """Return dC_L/dalpha + C_D at each row of a table by central differences: (rows,); negative means unstable."""
     return np.asarray(np.gradient(table.lift, table.angle) + table.drag)
 
 

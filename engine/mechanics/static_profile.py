@@ -1,4 +1,4 @@
-"""Static profile of the iced spans: catenary, tension and the springs that hold U at the ends. Theory section 2."""
+"""Static profile of iced spans: catenary, tension, and the springs that restrain U at the ends. Theory section 2."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,11 +30,11 @@ class StaticProfile:
 
 
 def static_profile(lines: Sequence[Line]) -> StaticProfile:
-    """Compute the static state of each line.
+    """Return the static state of each line.
 
-    The measure of tightness that a line gives belongs to still air. A mean drag q turns that catenary rigidly about
-    the chord by atan(q/p); equilibrium under the resultant load then asks for the tension H sqrt(1 + (q/p)^2).
-    Ice of varying mass enters by its mean over the span.
+    The given tension, catenary parameter or sag belongs to still air. A mean drag q rotates that catenary rigidly about
+    its chord by atan(q/p); equilibrium under the resultant load then requires the tension H sqrt(1 + (q/p)^2). Ice of
+    varying mass enters through its mean over the span.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def _catenary_of_sag(length: float, sag: float) -> float:
 
 
 def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, float]:
-    """Return K_x of the left and the right end: a given stiffness wins over a dead end, that over (A10)."""
+    """Return K_x of both ends [N/m]: a given stiffness overrides a dead end, a dead end overrides (A10)."""
     given = line.supports.longitudinal_stiffness
     if given is not None:
         return given, given
@@ -146,10 +146,10 @@ def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, f
 
 
 def _adjacent_stiffness(line: Line, end: Support, weight: float, catenary: float) -> float:
-    """Return K_x of eq. (A10): static stiffness of the adjacent span, and of the string that carries half of both.
+    """Return K_x of eq. (A10) [N/m]: static stiffness of the adjacent span, plus that of the insulator string.
 
-    weight is the resultant of weight and mean drag per length [N/m], which bends the adjacent span and pulls at the
-    string as it does here.
+    weight is the resultant of weight and mean drag per length [N/m], assumed the same on the adjacent span. The string
+    carries half of the load of both spans.
     """
     tension = catenary * weight
     rigidity = line.conductor.axial_rigidity

@@ -1,7 +1,8 @@
 """Quasi-steady aerodynamic load as cubic polynomials. Theory section 5, paper eqs. (A11)-(A19).
 
-Whatever fills it, a load is one table of monomials and coefficients that every solver reads: divided by U^2 it depends
-on the generalized coordinates q and on q'/U alone, so integrals along the span are taken once per line.
+Every aerodynamic model yields a load of the same form, one table of monomials and coefficients that all solvers read.
+Divided by U^2 the load depends only on the generalized coordinates q and on q'/U, so the integrals along the span are
+computed once per line.
 """
 
 from collections.abc import Sequence
@@ -23,10 +24,10 @@ VERTICAL, HORIZONTAL, TORSIONAL = range(3)
 class PolynomialLoad:
     """Generalized load divided by U^2: a sum over points of cubic polynomials in linear forms of (q, q'/U).
 
-    forms: (..., points, local variables, 2 m), table: (..., points, m, monomials), for m generalized coordinates;
-    slopes: (..., points, m, local variables, lower monomials), the table differentiated. One point suffices where the
-    integral along the span was taken beforehand (hybrid model). angle: (..., points', 2 m), the linear form of the
-    angle of attack at points along the span [rad].
+    forms: (..., points, local variables, 2 m), the linear forms; table: (..., points, m, monomials), coefficients for m
+    generalized coordinates; slopes: (..., points, m, local variables, lower monomials), derivatives of the table. There
+    is a single point if the integral along the span was computed beforehand (hybrid model). angle: (..., points on the
+    span, 2 m), the linear form of the angle of attack [rad].
     """
 
     forms: FloatArray
@@ -36,7 +37,7 @@ class PolynomialLoad:
 
 
 def polynomial_load(forms: FloatArray, table: FloatArray, angle: FloatArray) -> PolynomialLoad:
-    """Make a load and differentiate its table once."""
+    """Return a load with the derivatives of its table."""
     return PolynomialLoad(forms, table, polynomial.slopes(table), angle)
 
 
@@ -46,7 +47,7 @@ def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     Parameters
     ----------
     load : PolynomialLoad
-        Of leading axes (...,).
+        With leading axes (...,).
     state : (..., samples, 2 m)
         q and q'/U.
 
@@ -81,7 +82,7 @@ def _local(load: PolynomialLoad, state: FloatArray) -> FloatArray:
 def span_load(
     lines: Sequence[Line], sections_of_lines: Sections, weight: FloatArray, fields: FloatArray, model: AerodynamicModel
 ) -> PolynomialLoad:
-    """Set up the load point by point along the span for any set of shapes.
+    """Return the load, point by point along the span, for any set of shapes.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ def span_load(
     Returns
     -------
     PolynomialLoad
-        Of leading axes (lines, groups), with every quadrature point as a point.
+        With leading axes (lines, groups) and one point for every quadrature point.
     """
     points = merge_axes(fields, -2)
     diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
@@ -133,7 +134,7 @@ def _wind_forms(points: FloatArray, diameter: FloatArray, factor: FloatArray) ->
 
 
 def relative_wind_table(coefficients: FloatArray) -> FloatArray:
-    """Expand the load of the relative wind to third order. Theory section 5.
+    """Return the load of the relative wind, expanded to third order. Theory section 5.
 
     Parameters
     ----------
@@ -198,17 +199,17 @@ def _scale(a: _Series, factor: float) -> _Series:
 
 
 def _table_of(a: _Series) -> FloatArray:
-    """Return the table without the constant: the load is counted from its value at rest."""
+    """Return the coefficients without the constant, because the load is relative to its value at rest."""
     return np.array([a.get(m, 0.0) for m in polynomial.monomials(3)])
 
 
 def integrate_along_span(load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
-    """Take the integral of a load along the span once, over the components of (q, q'/U) that it depends on.
+    """Integrate a load along the span, as polynomials in the components of (q, q'/U) that it depends on.
 
     Parameters
     ----------
     load : PolynomialLoad
-        With many points.
+        With one point for every quadrature point.
     active : sequence of int
         Indices into the 2 m components; the forms must vanish for all others.
 
@@ -226,11 +227,11 @@ def integrate_along_span(load: PolynomialLoad, active: Sequence[int]) -> Polynom
 def published_load(
     lines: Sequence[Line], sections_of_lines: Sections, weight: FloatArray, fields: FloatArray, arc_length: FloatArray
 ) -> PolynomialLoad:
-    """Set up the published closure (A14)-(A17) with f_wtheta in C_z (theory section 5): one scalar alpha'.
+    """Return the load of the published closure (A14)-(A17), with f_wtheta in C_z (theory section 5): one scalar alpha'.
 
     Parameters are those of `span_load`; fields (lines, groups, 3, 3, elements, points) holds f_v, f_w, f_theta on its
-    diagonal and arc_length is L (lines,) [m]. A varying wind enters by means weighted with f_theta^2, which makes the
-    closure an approximation that serves as a start only.
+    diagonal and arc_length is L (lines,) [m]. A wind profile enters through means weighted with f_theta^2; the load is
+    then an approximation that only serves for starts.
     """
     count = len(lines)
     f_v, f_w, f_theta = (fields[..., i, i, :, :].reshape(count, fields.shape[1], -1) for i in range(3))
@@ -257,5 +258,5 @@ def published_load(
 
 
 def take_load(load: PolynomialLoad, index: Any) -> PolynomialLoad:
-    """Pick or repeat loads along the leading axes."""
+    """Select or repeat loads along the leading axes."""
     return PolynomialLoad(*(getattr(load, field.name)[index] for field in fields(load)))

@@ -1,4 +1,4 @@
-"""Stability of the static state over wind speed and every critical wind speed. Theory section 6."""
+"""Stability of the static state over the wind speed, and all critical wind speeds. Theory section 6."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,12 +9,14 @@ from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, eigenva
 from engine.models.aerodynamic_load import force_gradient
 from engine.models.reduced_model import ReducedModel
 
-NEARLY_IMAGINARY = 1e-6  # real over imaginary part of a pair that the eigenproblem in U puts on the axis
+NEARLY_IMAGINARY = (
+    1e-6  # largest ratio of real to imaginary part of a pair that the eigenproblem in U finds on the axis
+)
 
 
 @dataclass(frozen=True, slots=True)
 class StateMatrices:
-    """A(U) = A_0 + U A_1 + U^2 A_2 with y' = A y, y = (q, q'), in coordinates of unit mass.
+    """A(U) = A_0 + U A_1 + U^2 A_2 of y' = A y, y = (q, q'), in coordinates of unit mass.
 
     constant, linear, quadratic: (members, 2 m, 2 m).
     """
@@ -29,8 +31,8 @@ class Crossings:
     """Crossings of the imaginary axis, sorted by member and wind speed; every array is (crossings,).
 
     member: index of the model; wind_speed [m/s]; angular_frequency [rad/s], 0 for a divergence; onset: whether the
-    growth rate rises through zero; oscillation: Hopf rather than divergence; coordinate: the one of largest
-    M_ii |x_i|^2; unstable_after: unstable pairs (a real eigenvalue counts as one) just above.
+    growth rate rises through zero; oscillation: True for a Hopf point, False for a divergence; coordinate: the one of
+    largest M_ii |x_i|^2; unstable_after: number of unstable pairs just above (a real eigenvalue counts as one).
     """
 
     member: IntArray
@@ -43,12 +45,12 @@ class Crossings:
 
 
 def state_matrices(model: ReducedModel) -> StateMatrices:
-    """Linearize about the static state.
+    """Linearize the equations of motion about the static state.
 
     Parameters
     ----------
     model : ReducedModel
-        Of one leading axis (members,).
+        Leading axis (members,).
 
     Returns
     -------
@@ -86,15 +88,15 @@ def at_wind(matrices: StateMatrices, wind_speed: FloatArray) -> FloatArray:
 
 
 def critical_wind_speeds(model: ReducedModel, limit: float) -> Crossings:
-    """Find every crossing of every eigenvalue for wind speeds up to a limit.
+    """Return every crossing of the imaginary axis by an eigenvalue at wind speeds up to a limit.
 
-    A pair is imaginary only where two eigenvalues sum to zero, that is where the bialternate sum 2 A(U) * I is
-    singular. It is quadratic in U, so all crossings are eigenvalues of one linear problem and none can be missed.
+    A pair is imaginary only where two eigenvalues sum to zero, that is, where the bialternate sum 2 A(U) * I is
+    singular. It is quadratic in U, so all crossings are eigenvalues of one linear problem and none is missed.
 
     Parameters
     ----------
     model : ReducedModel
-        Of one leading axis (members,); statically unstable members have no crossings.
+        Leading axis (members,); statically unstable members have no crossings.
     limit : float
         Largest wind speed [m/s].
 
@@ -115,20 +117,20 @@ def critical_wind_speeds(model: ReducedModel, limit: float) -> Crossings:
 
 
 def critical_modes(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> ComplexArray:
-    """Return the mode nearest to the imaginary axis at wind speeds (k,) of models (k,): (k, m), of any size."""
+    """Return the mode nearest to the imaginary axis at wind speeds (k,) of models (k,): (k, m), not normalized."""
     _, _, vector = _nearest_pair(_select(state_matrices(model), member), wind_speed)
     m = model.mass.shape[-1]
     return np.asarray(vector[:, :m] / np.sqrt(model.modal_masses)[member])
 
 
 def crossing_error(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> FloatArray:
-    """Return how far crossings (k,) would still move in a step of Newton's method on the growth rate: (k,) [m/s]."""
+    """Return the size of one more Newton step on the growth rate at crossings (k,): (k,) [m/s]."""
     value, slope, _ = _nearest_pair(_select(state_matrices(model), member), wind_speed)
     return np.asarray(np.abs(value.real / slope.real))
 
 
 def unstable_pairs(values: ComplexArray) -> IntArray:
-    """Count unstable pairs, a real eigenvalue as one, of eigenvalues (..., n): (...)."""
+    """Return the number of unstable pairs of eigenvalues (..., n), a real one counting as a pair: (...)."""
     size = np.abs(values).max(axis=-1, keepdims=True)
     unstable = (values.real > 1e-12 * size) & (values.imag >= 0.0)
     return np.asarray(unstable.sum(axis=-1))
@@ -160,10 +162,10 @@ def _select(matrices: StateMatrices, members: IntArray) -> StateMatrices:
 
 
 def _oscillations(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
-    """Return members and wind speeds of all imaginary pairs, polished by Newton's method on the growth rate."""
+    """Return members and wind speeds of all imaginary pairs, refined by Newton's method on the growth rate."""
     member, speed = _singular_speeds(matrices, limit)
     value, _, _ = _nearest_pair(_select(matrices, member), speed)
-    # Two real eigenvalues of equal size also sum to zero: such a speed has no pair near the axis, or only by chance.
+    # Two real eigenvalues of opposite sign also sum to zero; such a speed has no imaginary pair, unless by chance.
     imaginary = np.abs(value.real) < NEARLY_IMAGINARY * np.abs(value.imag)
     member, speed = member[imaginary], speed[imaginary]
     here = _select(matrices, member)
@@ -175,7 +177,7 @@ def _oscillations(matrices: StateMatrices, limit: float) -> tuple[IntArray, Floa
 
 
 def _distinct(member: IntArray, speed: FloatArray) -> BoolArray:
-    """Tell which crossings are not repetitions of an earlier one of the same member: (crossings,)."""
+    """Return which crossings do not repeat an earlier one of the same member: (crossings,)."""
     order = np.lexsort((speed, member))
     new = np.ones(member.size, dtype=np.bool_)
     same = (np.diff(member[order]) == 0) & (np.abs(np.diff(speed[order])) <= 1e-9 * speed[order][1:])
@@ -198,7 +200,7 @@ def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, F
 
 
 def _nearest_pair(matrices: StateMatrices, speed: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return the eigenvalue nearest to the imaginary axis, its slope over wind speed and its vector."""
+    """Return the eigenvalue nearest to the imaginary axis, its derivative by the wind speed, and its eigenvector."""
     if speed.size == 0:
         none = np.zeros(0, dtype=np.complex128)
         return none, none, np.zeros((0, matrices.constant.shape[-1]), dtype=np.complex128)
@@ -232,7 +234,7 @@ def _classified(
     oscillation: BoolArray,
     limit: float,
 ) -> Crossings:
-    """Find direction of crossing, frequency, dominant coordinate and the pairs unstable up to the next crossing."""
+    """Return crossings with direction, frequency, dominant coordinate and number of unstable pairs above each."""
     value, slope, vector = _nearest_pair(matrices, speed)
     m = matrices.constant.shape[-1] // 2
     same = member[1:] == member[:-1]

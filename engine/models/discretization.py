@@ -1,4 +1,4 @@
-"""From lines to finite element matrices: what both reduced models are made from. Theory sections 2 and 3."""
+"""From lines to finite element matrices, the basis of both reduced models. Theory sections 2 and 3."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from engine.spec import Line, StaticTwist
 
 @dataclass(frozen=True, slots=True)
 class Discretization:
-    """Everything of a stack of lines that both reduced models are made from; twist is None where it is neglected."""
+    """Static profile, sections and matrices of a stack of lines; twist is None if it is neglected."""
 
     lines: tuple[Line, ...]
     profile: StaticProfile
@@ -25,12 +25,12 @@ class Discretization:
 
 
 def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NEGLECTED) -> Discretization:
-    """Go from lines with equal numbers of elements to their matrices, about the twisted state if it is to be solved.
+    """Discretize lines with equal numbers of elements, about the twisted static state if that is to be solved.
 
     Raises
     ------
     InvalidSpec
-        If a table of coefficients does not reach around the angle to which its section is twisted.
+        If a table of coefficients has too few rows around the angle to which its section is twisted.
     """
     profile = static_profile(lines)
     sections_of_lines = sections(lines, profile)
@@ -41,7 +41,7 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
 
 
 def observation(discretization: Discretization, shapes: FloatArray, loops: int) -> FloatArray:
-    """Return V, W, Theta at s = L/(2 loops), (..., m, 3), of coordinates with shapes (..., m, 3, nodes)."""
+    """Return V, W, Theta at s = L/(2 loops) of coordinates with shapes (..., m, 3, nodes): (..., m, 3)."""
     elements = discretization.lines[0].span.elements
     scaled = elements / (2.0 * loops)
     element = min(int(scaled), elements - 1)

@@ -1,4 +1,4 @@
-"""The finite element model: several modes a direction, with the exact load. Theory section 7.4."""
+"""The finite element model: several modes per direction, with the exact load. Theory section 7.4."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ TRANSVERSE = (V, W, THETA)
 def finite_element_model(
     discretization: Discretization, modes: FullModes, shapes: DirectionalShapes, analysis: Analysis
 ) -> ReducedModel:
-    """Reduce to the full modes of several loops a direction, with the exact load; leading axis (lines,).
+    """Return the model reduced to the full modes of several loops per direction, with the exact load: (lines,).
 
     Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
     2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi. Theory section 7.4.
@@ -58,7 +58,7 @@ def _modal_damping(
     )
     damping = np.zeros((*vectors.shape[:2], vectors.shape[1]))
     for i, own_fields in enumerate(((U, V), (W,), (THETA,))):
-        # Only the mass of the direction itself: the momentum that eccentric ice lends to the others is not damped.
+        # Only the mass of the direction itself: momentum coupled into it by eccentric ice is not damped.
         own_field = np.isin(np.arange(vectors.shape[-1]) % FIELDS, own_fields)
         mass = discretization.matrices.mass * (own_field[:, None] & own_field)
         psi = np.swapaxes(shapes.nodal[:, selected], -1, -2).reshape(vectors.shape[0], len(loops), -1) * own_field

@@ -1,4 +1,4 @@
-"""The hybrid model: one finite element mode shape a direction.
+"""The hybrid model: one finite element mode shape per direction.
 
 Theory section 4; paper eqs. (10)-(20) and (A1)-(A9).
 """
@@ -19,16 +19,16 @@ from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, Longi
 def hybrid_model(
     discretization: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
 ) -> ReducedModel:
-    """Reduce to one mode a direction; leading axes (lines, loops).
+    """Return the model reduced to one mode per direction, with leading axes (lines, loops).
 
     Parameters
     ----------
     discretization : Discretization
     shapes : DirectionalShapes
-        Of at least these loops and of one loop.
+        Of these loops and of one loop at least.
     loops : tuple of int
     analysis : Analysis
-        Its closure, aerodynamic model and longitudinal inertia.
+        Its closure, aerodynamic model and longitudinal inertia are used.
 
     Returns
     -------
@@ -51,10 +51,10 @@ def hybrid_model(
 def joint_model(
     discretization: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
 ) -> ReducedModel:
-    """Reduce to the hybrid model's shapes of several loops that may move together, with the exact load.
+    """Return the model in which the hybrid shapes of several loops move together, with the exact load.
 
     Parameters are those of `hybrid_model`; leading axis (lines,). The coordinates are f_v of each number of loops,
-    then f_w, then f_theta; damping is that which each has alone.
+    then f_w, then f_theta; each has the damping of its own hybrid model.
     """
     alone = hybrid_model(discretization, shapes, loops, analysis)
     selected = [shapes.loops.index(k) for k in loops]
@@ -86,7 +86,7 @@ def joint_model(
 
 
 def with_published_load(discretization: Discretization, model: ReducedModel) -> ReducedModel:
-    """Return the hybrid model under the published closure, which the explicit formula of section 7.1 needs."""
+    """Return the hybrid model with the load of the published closure, which section 7.1's formula needs."""
     values = at_points(discretization.matrices, model.shapes)
     load = published_load(
         discretization.lines,
@@ -101,7 +101,7 @@ def with_published_load(discretization: Discretization, model: ReducedModel) -> 
 def _condensed(system: Matrices, nodal: FloatArray, inertia: LongitudinalInertia) -> tuple[FloatArray, FloatArray]:
     """Project onto f_u, f_v, f_w, f_theta and condense f_u, eqs. (18)-(20).
 
-    nodal: (lines, groups, 4, k, nodes), k shapes of each direction that may move together; returns M and K
+    nodal: (lines, groups, 4, k, nodes), k shapes per direction that move together; returns M and K
     (lines, groups, 3 k, 3 k).
     """
     lines, groups, _, k, nodes = nodal.shape
@@ -139,5 +139,5 @@ def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: An
 
 
 def _diagonal_fields(shapes: FloatArray) -> FloatArray:
-    """Spread f_v, f_w, f_theta (..., 3, nodes) to the fields of three coordinates (..., 3, 3, nodes)."""
+    """Return V, W, Theta of the coordinates with shapes f_v, f_w, f_theta (..., 3, nodes): (..., 3, 3, nodes)."""
     return shapes[..., None, :] * np.eye(3)[..., None]

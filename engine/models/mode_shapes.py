@@ -1,4 +1,4 @@
-"""The mode shapes of both models of a line, at the nodes, for pictures and for comparison."""
+"""Mode shapes of both models of a line at its nodes, for pictures and for comparison."""
 
 from dataclasses import dataclass
 
@@ -17,10 +17,9 @@ class ModeShapes:
     """Shapes of one line by direction (vertical, horizontal, torsional) and number of loops, at its nodes.
 
     position: (nodes,), horizontal distance from the left support [m]. hybrid, finite_element: (3, loops, 4, nodes),
-    with U, V, W and Theta in this order; those of the hybrid model are the directional shapes, in which a direction
-    moves alone but for f_u beside f_v. Its own component of a finite element mode is scaled to the hybrid's by least
-    squares, its others with it: in SI units Theta is per metre in the first two directions, U, V, W are times metre in
-    the third.
+    components U, V, W, Theta. In the hybrid shapes only the component of the direction itself moves, with f_u beside
+    f_v. Each finite element mode is scaled so that its own component fits the hybrid shape by least squares. In SI
+    units Theta is then per metre in the first two directions, and U, V, W are in metres in the third.
     """
 
     position: FloatArray
@@ -29,13 +28,13 @@ class ModeShapes:
 
 
 def mode_shapes(line: Line, analysis: Analysis) -> ModeShapes:
-    """Compute the shapes of both models, theory section 4.
+    """Return the mode shapes of both models, theory section 4.
 
     Parameters
     ----------
     line : Line
     analysis : Analysis
-        Its loops, and whether the static twist is solved for.
+        Its loops and static twist are used.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Reduced models of either kind: M q'' + C q' + K q = U^2 f(q, q'/U). Theory section 4."""
+"""The reduced model, hybrid or finite element: M q'' + C q' + K q = U^2 f(q, q'/U). Theory section 4."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,8 +16,9 @@ class ReducedModel:
     """M q'' + C q' + K q = U^2 f(q, q'/U) for a stack of models with m generalized coordinates.
 
     mass, damping, stiffness: (..., m, m); load: f, of the same leading axes; shapes: (..., m, 3, nodes), the fields V,
-    W, Theta of each coordinate; direction: (m,), the direction of each coordinate (0 vertical, 1 horizontal,
-    2 torsional); statically_unstable: (...), True where the stiffness is not positive: damping there has no meaning.
+    W, Theta of each coordinate; direction: (m,), the direction of each coordinate (0 vertical, 1 horizontal, 2
+    torsional); statically_unstable: (...), True where the stiffness is not positive definite; damping has no meaning
+    there.
     """
 
     mass: FloatArray
@@ -45,7 +46,7 @@ def lowest_frequency(model: ReducedModel) -> FloatArray:
 
 
 def take(model: ReducedModel, index: Any) -> ReducedModel:
-    """Pick or repeat models along the leading axes; index is any numpy index of those axes."""
+    """Select or repeat models along the leading axes; index is any numpy index of these axes."""
     return ReducedModel(
         mass=model.mass[index],
         damping=model.damping[index],

@@ -1,7 +1,7 @@
 """Branches of limit cycles over a field of the line at a fixed wind speed, through folds. Theory section 7.2.
 
-A point of a branch holds the coefficients of the cycle, its angular frequency and the value of the field, which stands
-where `families` has the wind speed. The models of any value are made as an analysis makes them.
+A point of a branch holds the coefficients of the cycle, its angular frequency and, in place of the wind speed, the
+value of the field. The models at any value are built as an analysis builds them.
 """
 
 from collections.abc import Callable
@@ -21,21 +21,21 @@ from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.continuation import NewtonStart, correct_by_newton
 from engine.numerics.newton import NewtonOptions, Solution
 
-PARTS = 5  # of the range, the length by which the field is measured
-DIFFERENCE = 1e-3  # of the range, to either side, for the slope by the field
-HOPF = 1e-10  # of the range, to which the growth rate's zero is found
-DOUBLINGS = 12  # doublings of the interval in which a Hopf point is looked for
+PARTS = 5  # the scale of the field is this part of its range
+DIFFERENCE = 1e-3  # of the range, to either side, for the derivative by the field
+HOPF = 1e-10  # of the range, the accuracy of the zero of the growth rate
+DOUBLINGS = 12  # of the interval that is searched for a Hopf point
 
 ModelsAt = Callable[[FloatArray, IntArray], tuple[ReducedModel, BoolArray]]
-"""Makes models (k,) of values of the field (k,) for members (k,), and tells which of them have a meaning."""
+"""Returns the models at values of the field (k,) of members (k,), and which of them exist."""
 
 
 @dataclass(frozen=True, slots=True)
 class FieldProblem(CycleProblem):
     """Harmonic balance at fixed wind speeds with a field of the line as parameter.
 
-    model: leading axis (members,), at some value of the field: phases and sizes are measured in it; made: the models at
-    any value; wind_speed: (members,) [m/s]; width: length of the range of values.
+    model: leading axis (members,), at some value of the field: phases and sizes are measured in it; models_at: the
+    models at any value; wind_speed: (members,) [m/s]; width: length of the range of values.
     """
 
     models_at: ModelsAt
@@ -43,7 +43,7 @@ class FieldProblem(CycleProblem):
     width: float
 
     def repeated(self, branch: IntArray) -> "FieldProblem":
-        """Return the problem with these of its branches."""
+        """Return the problem for selected, possibly repeated branches."""
         member, reference = self.member[branch], self.reference[branch]
         return FieldProblem(self.model, member, reference, self.models_at, self.wind_speed, self.width)
 
@@ -54,11 +54,11 @@ class FieldProblem(CycleProblem):
         return Orbits(coefficients, z[:, -2], self.wind_speed[self.member[branch]])
 
     def models(self, z: FloatArray, branch: IntArray) -> tuple[ReducedModel, IntArray]:
-        """Return a model for each of the points (k, n + 1) of branches (k,), and their numbers."""
+        """Return a model for each of the points (k, n + 1) of branches (k,), and their indices."""
         return self.models_at(z[:, -1], self.member[branch])[0], np.arange(branch.size)
 
     def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return the balance and the phase condition with their slopes; NaN where the field has no meaning."""
+        """Return residuals and slopes of balance and phase condition; NaN where the field's value has no model."""
         count, step = branch.size, DIFFERENCE * self.width
         values = np.concatenate([z[:, -1] + shift for shift in (0.0, step, -step)])
         models, defined = self.models_at(values, np.tile(self.member[branch], 3))
@@ -76,11 +76,11 @@ class FieldProblem(CycleProblem):
     def correct(
         self, start: NewtonStart, branch: IntArray, condition: tuple[FloatArray, FloatArray], options: NewtonOptions
     ) -> tuple[Solution, FloatArray]:
-        """Solve together with one linear condition more; the compiled form knows one model a branch only."""
+        """Solve with one additional linear condition in numpy; the compiled kernel takes only one model per branch."""
         return correct_by_newton(self, start, branch, condition, options)
 
     def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
-        """Measure cycles as over the wind speed, and the field by a part of its range."""
+        """Return the scales of cycles as over the wind speed, and a part of the field's range as its scale."""
         size = CycleProblem.scale(self, z, branch)
         size[:, -1] = self.width / PARTS
         return size
@@ -91,7 +91,7 @@ class FieldCycles:
     """Cycles at values of a field and the bifurcations between them.
 
     member, value: (cycles,), indices; branch: (cycles,), number of the connected family within its member; orbits: of
-    the cycles; given: (cycles,), whether the cycle was there before following; bifurcations: their
+    the cycles; given: (cycles,), whether the cycle was known before branches were followed; bifurcations: their
     parameter is the field.
     """
 
@@ -104,16 +104,16 @@ class FieldCycles:
 
 
 def follow_over_field(problem: FieldProblem, values: FloatArray, known: Starts) -> FieldCycles:
-    """Follow the branch of every known cycle over a field both ways, until nothing new appears at its values.
+    """Follow the branch of every known cycle over a field in both directions until no new cycle appears.
 
     Parameters
     ----------
     problem : FieldProblem
-        With one entry a member: its branches are set here.
+        With one entry per member; its branches are replaced.
     values : (values,)
         In rising order.
     known : Starts
-        Cycles with their member and the index of their value.
+        Cycles with their member and, as wind, the index of their value.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def follow_over_field(problem: FieldProblem, values: FloatArray, known: Starts) 
 
 
 def _add_cycles_on(known_cycles: KnownCycles, branch_set: BranchSet, values: FloatArray) -> IntArray:
-    """Solve for the cycles at the values that followed branches pass; return the numbers of these branches."""
+    """Solve for the cycles where followed branches cross the values; return the numbers of these branches."""
     problem = branch_set.problem
     followed = known_cycles.add_branches(problem.member, branch_set.hopf_wind_speed)
     branch, value, orbits = guessed_cycles(branch_set, values)
@@ -172,12 +172,12 @@ def _add_cycles_on(known_cycles: KnownCycles, branch_set: BranchSet, values: Flo
 
 
 def _bifurcations(branch_set: BranchSet, branch_numbers: IntArray) -> list[Bifurcations]:
-    """Locate what happens along followed branches, and the Hopf points in which they end."""
+    """Locate the bifurcations along followed branches and the Hopf points at which they end."""
     return [*bifurcations_on(branch_set, branch_numbers), _hopf_points(branch_set, branch_numbers)]
 
 
 def _hopf_points(branch_set: BranchSet, branch_numbers: IntArray) -> Bifurcations:
-    """Locate the value at which the growth rate of the static state vanishes, for branches that ended there."""
+    """Locate the Hopf points at which branches ended: values where the growth rate of the static state vanishes."""
     problem = branch_set.problem
     assert isinstance(problem, FieldProblem)
     ended = np.flatnonzero(branch_set.ended_at_equilibrium)
@@ -201,7 +201,7 @@ def _hopf_points(branch_set: BranchSet, branch_numbers: IntArray) -> Bifurcation
 
 
 def _hopf_point(problem: FieldProblem, branch_set: BranchSet, branch: int) -> tuple[float | None, float]:
-    """Return the value and the angular frequency at which a branch meets the static state; None if it is not found."""
+    """Return the value and the angular frequency at which a branch meets the static state; or None."""
     last = branch_set.points.z[branch_set.last[branch]]
     member = problem.member[[branch]]
     speed = problem.wind_speed[member]

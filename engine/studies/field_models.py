@@ -1,7 +1,7 @@
-"""Reduced models as functions of a field of the line: polynomials between values at which they were made.
+"""Reduced models as functions of a field of the line, by polynomial interpolation.
 
-A model is a smooth function of lengths, tensions, damping ratios and the like. Nine values a panel and a check between
-them give it everywhere in the panel; where that does not hold the panel is halved, down to what has no meaning.
+A model is a smooth function of lengths, tensions, damping ratios and so on. Its range is divided into panels; nine
+values per panel define the polynomial, and values between them check it. A panel in which the check fails is halved.
 """
 
 from collections.abc import Callable
@@ -14,14 +14,14 @@ from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.models.aerodynamic_load import PolynomialLoad
 from engine.models.reduced_model import ReducedModel, take
 
-NODES = 9  # values a panel
+NODES = 9  # values per panel
 HALVINGS = 6
 ACCURACY = 1e-9  # relative error of each part of the model between the values
-SMALLEST = 1e-6  # of the largest number of an array: smaller ones are measured by it
-CHECKED = (-0.93, 0.11, 0.76)  # places in a panel from -1 to 1 where the polynomial is held against the model
+SMALLEST = 1e-6  # of the largest number of an array: smallest scale of its errors
+CHECKED = (-0.93, 0.11, 0.76)  # places in a panel, from -1 to 1, at which the polynomial is checked
 
 ModelsOf = Callable[[FloatArray], ReducedModel | None]
-"""Makes models, leading axes (values, columns), or nothing where one of the values has no line."""
+"""Returns the models at values, leading axes (values, columns), or None if one of the values has no line."""
 
 _NODES = np.cos(np.pi * np.arange(NODES) / (NODES - 1))
 _WEIGHTS = np.where(np.arange(NODES) % 2 == 0, 1.0, -1.0) * np.where(np.isin(np.arange(NODES), (0, NODES - 1)), 0.5, 1)
@@ -31,8 +31,8 @@ _WEIGHTS = np.where(np.arange(NODES) % 2 == 0, 1.0, -1.0) * np.where(np.isin(np.
 class FieldModels:
     """Models over a range of values of a field.
 
-    like: one model a column, for what does not vary; low, high: (panels,), ends of the panels in rising order; parts:
-    (panels, nodes, columns, numbers), the numbers of the models at the nodes; defined: (panels, columns).
+    template: one model per column, for what does not vary; low, high: (panels,), ends of the panels in rising
+    order; parts: (panels, nodes, columns, numbers), all numbers of the models at the nodes; defined: (panels, columns).
     """
 
     template: ReducedModel
@@ -42,9 +42,9 @@ class FieldModels:
     defined: BoolArray
 
     def at(self, values: FloatArray, column: IntArray) -> tuple[ReducedModel, BoolArray]:
-        """Return the models at values (k,) in columns (k,), and which of them have a meaning.
+        """Return the models at values (k,) in columns (k,), and which of them exist.
 
-        Beyond the range the polynomials of the last panels go on.
+        Beyond the range the polynomials of the outer panels are extrapolated.
         """
         panel = np.clip(np.searchsorted(self.high, values), 0, self.high.size - 1)
         place = (2.0 * values - self.low[panel] - self.high[panel]) / (self.high[panel] - self.low[panel])
@@ -53,13 +53,13 @@ class FieldModels:
 
 
 def field_models(models_of: ModelsOf, low: float, high: float) -> FieldModels:
-    """Make the models over a range of values.
+    """Return the models over a range of values.
 
     Parameters
     ----------
     models_of : callable
     low, high : float
-        Both ends must have a line.
+        Ends of the range, which must both have a line.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def field_models(models_of: ModelsOf, low: float, high: float) -> FieldModels:
 
 
 def _panel(models_of: ModelsOf, low: float, high: float) -> tuple[FloatArray | None, BoolArray]:
-    """Return the numbers at the nodes of a panel and in which columns they give the models between them."""
+    """Return the numbers at the nodes of a panel, and the columns in which they reproduce the models between them."""
     places = np.concatenate([_NODES, CHECKED])
     models = models_of(0.5 * (low + high) + 0.5 * (high - low) * places)
     if models is None:
@@ -121,13 +121,13 @@ def _arrays(model: ReducedModel) -> list[FloatArray]:
 
 
 def _to_rows(model: ReducedModel) -> FloatArray:
-    """Write all numbers of models as rows: (..., numbers)."""
+    """Return all numbers of models as rows: (..., numbers)."""
     lead = model.statically_unstable.shape
     return np.concatenate([array.reshape(*lead, -1) for array in _arrays(model)], axis=-1)
 
 
 def _slices(model: ReducedModel) -> list[tuple[slice, int]]:
-    """Return the place of each array in a row, and its length."""
+    """Return the slice of each array in a row, and its length."""
     lead = model.statically_unstable.ndim
     lengths = [prod(array.shape[lead:]) for array in _arrays(model)]
     ends = np.cumsum(lengths).tolist()
@@ -135,7 +135,7 @@ def _slices(model: ReducedModel) -> list[tuple[slice, int]]:
 
 
 def _from_rows(template: ReducedModel, numbers: FloatArray) -> ReducedModel:
-    """Read rows (k, numbers) as models (k,) shaped like others."""
+    """Convert rows (k, numbers) to models (k,) of the template's shapes."""
     arrays = [
         numbers[:, here].reshape(array.shape)
         for (here, _), array in zip(_slices(template), _arrays(template), strict=True)

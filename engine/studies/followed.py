@@ -1,4 +1,4 @@
-"""A study over one field as branches: the cycles of its points joined over the field, and where they turn."""
+"""A study over one field with its cycles joined to branches over the field, and their bifurcations."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from engine.spec import Analysis, Line, Model
 from engine.studies.field_branches import FieldCycles, FieldProblem, follow_over_field
 from engine.studies.field_models import field_models
 
-MORE_HARMONICS = 4  # than are asked for: near a fold the fifth moves the field more than the cycle's amplitude
+MORE_HARMONICS = 4  # added to those asked for: near a fold truncation shifts the field's value more than the amplitude
 
 LineAt = Callable[[float], Line]
 
@@ -31,17 +31,17 @@ def followed(line_at: LineAt, values: Sequence[float], results: Sequence[Result]
     Parameters
     ----------
     line_at : callable
-        Makes the line of a value of the field; what it raises (ValueError, ArithmeticError) ends a branch there.
+        Returns the line at a value of the field; a branch ends where it raises ValueError or ArithmeticError.
     values : sequence of float
         At least two, in rising order.
     results : sequence of Result
-        Of the lines at these values under this analysis.
+        Of the lines at these values with this analysis.
     analysis : Analysis
 
     Returns
     -------
     list of Result
-        With `followed_cycles`, and `followed_bifurcations` at the nearest value.
+        The results with `followed_cycles`, and with `followed_bifurcations` at the nearest value.
     """
     study = _Study(line_at, np.array(values, dtype=np.float64), analysis)
     discretization, grid = study.models_of([line_at(value) for value in values])
@@ -60,7 +60,7 @@ def followed(line_at: LineAt, values: Sequence[float], results: Sequence[Result]
 
 @dataclass(frozen=True, slots=True)
 class _Study:
-    """A line over a field; members are its numbers of loops, each at every wind speed."""
+    """A line over a field; the members are its numbers of loops, each at every wind speed."""
 
     line_at: LineAt
     values: FloatArray
@@ -76,21 +76,21 @@ class _Study:
         return np.repeat(np.arange(len(self.analysis.loops)), self.winds.size)
 
     def models_of(self, lines: Sequence[Line]) -> tuple[Discretization, ReducedModel]:
-        """Return the hybrid models (lines, loops) as an analysis makes them."""
+        """Return the hybrid models (lines, loops) as an analysis builds them."""
         discretization = discretize(lines, self.analysis.static_twist)
         loops = tuple(sorted({*self.analysis.loops, 1, 2}))
         shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, loops)
         return discretization, hybrid_model(discretization, shapes, self.analysis.loops, self.analysis)
 
     def models_at(self, values: FloatArray) -> ReducedModel | None:
-        """Make the models of values, leading axes (values, loops); None where one of them has no line."""
+        """Return the models at values, leading axes (values, loops); None if one of them has no line."""
         try:
             return self.models_of([self.line_at(value) for value in values.tolist()])[1]
         except (ValueError, ArithmeticError):
             return None
 
     def problem(self, grid: ReducedModel) -> FieldProblem:
-        """Set up the equations; sizes are measured in the middle of the range."""
+        """Return the equations; sizes are measured with the model in the middle of the range."""
         members, column = self.column.size, self.column
         models = field_models(self.models_at, float(self.values[0]), float(self.values[-1]))
 
@@ -107,7 +107,7 @@ class _Study:
         )
 
     def starts(self, discretization: Discretization, grid: ReducedModel, results: Sequence[Result]) -> Starts:
-        """Read the cycles of the hybrid model back from results."""
+        """Return the cycles of the hybrid model, read back from results."""
         size = 2 * (self.analysis.harmonics + MORE_HARMONICS) + 1
         member, value, rate, coefficients = [], [], [], []
         for i, result in enumerate(results):
@@ -128,7 +128,7 @@ class _Study:
         return self.balanced(grid, Starts(places, np.array(value, dtype=np.intp), orbits))
 
     def balanced(self, grid: ReducedModel, starts: Starts) -> Starts:
-        """Solve for the cycles with the harmonics that they have here."""
+        """Solve for the cycles with the number of harmonics used here; return those that converged."""
         models = take(grid, (starts.wind, self.column[starts.member]))
         solved, good = solve_starts(models, Starts(np.arange(starts.wind.size), starts.wind, starts.orbits))
         return Starts(starts.member[good], starts.wind[good], select(solved.orbits, np.flatnonzero(good)))
