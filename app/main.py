@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from sqlalchemy import Engine
 from starlette.types import ASGIApp
 
-from app.coalescing.grouped_calls import Groups, committed_together
+from app.coalescing.grouped_calls import GroupedCalls, committed_together
 from app.coalescing.shared_watch import SharedWatch
 from app.convert import ENGINE_VERSION
 from app.http import problems
@@ -17,7 +17,7 @@ from app.http.head_as_get import HeadAsGet
 from app.http.request_log import RequestLog
 from app.http.security_headers import SecurityHeaders
 from app.jobs import submissions
-from app.jobs.dispatch import Dispatcher, Sender, celery_application
+from app.jobs.dispatch import Sender, celery_application
 from app.jobs.job_records import look_up
 from app.jobs.watched_states import batches_seen, jobs_seen
 from app.operation import metrics
@@ -43,8 +43,6 @@ from app.security.gate import Gate
 from app.security.quotas import Meter
 from app.storage.database import make_engine, session_factory
 
-_GATHERING_SECONDS = 0.006  # about what one group of posts takes
-_NOTES_A_SWEEP = 4.0
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
 
 Post a line to `/v1/jobs`, follow `Location` until the status is `successful`, then read `/results`.
@@ -81,8 +79,8 @@ def create_app(settings: Settings | None = None) -> Service:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         yield
-        for groups in (app.state.inbox, app.state.dispatcher, app.state.statuses):  # each passes work to the next
-            await groups.close()
+        for calls in (app.state.inbox, app.state.messages, app.state.statuses):  # in the order of their work
+            await calls.close()
         await meter.close()
         for watch in (app.state.job_watch, app.state.batch_watch):
             await watch.close()
@@ -124,9 +122,8 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
-    accepted = partial(committed_together, app.state.writers, submissions.accept)
-    app.state.inbox = Groups("inbox", accepted, _GATHERING_SECONDS)
-    app.state.dispatcher = Dispatcher(app.state.sender, settings.sweep_seconds / _NOTES_A_SWEEP)
-    app.state.statuses = Groups("statuses", partial(look_up, app.state.readers))
+    app.state.inbox = GroupedCalls("inbox", partial(committed_together, app.state.writers, submissions.accept))
+    app.state.messages = GroupedCalls("messages", lambda job_ids: [app.state.sender.send(job_ids)] * len(job_ids))
+    app.state.statuses = GroupedCalls("statuses", partial(look_up, app.state.readers))
     app.state.job_watch = SharedWatch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
     app.state.batch_watch = SharedWatch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)

@@ -9,12 +9,12 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.convert import TABLES, PointResult
-from app.jobs import job_records
-from app.jobs.job_records import Draft, Submission
+from app.jobs import job_records, submissions
+from app.jobs.job_records import Submission
+from app.jobs.submissions import Order
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.security.caller import LOCAL, Caller, Scope
-from app.storage.database import database_time
 from app.tables import Job, JobEvent, PointRow
 
 STRANGER = Caller("stranger", frozenset(Scope))
@@ -67,10 +67,10 @@ def hasty_settings(directory: Path) -> Settings:
     )
 
 
-def create_job(session: Session, caller: Caller, document: dict[str, Any], **labels: Any) -> Draft:
+def create_job(session: Session, caller: Caller, document: dict[str, Any], **labels: Any) -> Job:
     """Make a job that waits for a worker, for the caller of this to commit."""
-    job = job_records.draft(Submission(caller, document, **labels), database_time(session))
-    job_records.insert(session, [(caller, job)])
+    (job,) = submissions.accept(session, [Order(Submission(caller, document, **labels), may_reuse=False)])
+    assert isinstance(job, Job)
     return job
 
 

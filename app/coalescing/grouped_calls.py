@@ -3,126 +3,111 @@
 import asyncio
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from typing import Generic, TypeVar
 
 from sqlalchemy.orm import Session, sessionmaker
 
-Question = TypeVar("Question")
-Answer = TypeVar("Answer")
+Argument = TypeVar("Argument")
+Result = TypeVar("Result")
 
 _MOST_AT_ONCE = 100
 
 
-class Groups(Generic[Question, Answer]):
-    """Gathers questions while a group is being answered, then answers what has gathered as the next group.
+class GroupedCalls(Generic[Argument, Result]):
+    """Gathers calls while a group is at work, then works on all that have gathered as the next group.
 
-    Alone a question waits for nobody. Under load the cost of a transaction is shared, and only one thread competes with
-    the event loop, where a thread for every request would make all of them wait for each other.
+    A single call does not wait for others. Under load the calls share the cost of a transaction, and only one thread
+    competes with the event loop for the interpreter; a thread for every request would slow all of them down.
     """
 
-    def __init__(
-        self,
-        name: str,
-        answer: Callable[[Sequence[Question]], Sequence[Answer | Exception]],
-        rest_seconds: float = 0.0,
-    ) -> None:
-        """Take the function that answers a group, called in a thread of this object's own.
+    def __init__(self, name: str, work: Callable[[Sequence[Argument]], Sequence[Result | Exception]]) -> None:
+        """Take the function that works on a group, which is called in a thread of this object's own.
 
-        It returns an answer for every question, or the exception that shall be raised where the question was asked.
-        After a group of several a rest lets the next one gather, unless that is full: under load larger groups cost
-        less than they wait.
+        It returns for every argument its result, or the exception that is raised in the call of that argument.
         """
-        self._answer = answer
+        self._work = work
         self._thread = ThreadPoolExecutor(1, thread_name_prefix=name)
-        self._waiting: list[tuple[Question, asyncio.Future[Answer]]] = []
-        self._work: asyncio.Task[None] | None = None
-        self._rest_seconds = rest_seconds
-        self._closing = asyncio.Event()
+        self._waiting: list[tuple[Argument, asyncio.Future[Result]]] = []
+        self._worker: asyncio.Task[None] | None = None
 
-    async def ask(self, question: Question) -> Answer:
-        """Return the answer to a question.
+    async def call(self, argument: Argument) -> Result:
+        """Return the result for an argument.
 
         Raises
         ------
         Exception
-            What the answering function gave for this question, or raised for its whole group.
+            What the function returned for this argument, or raised for its whole group.
         """
-        return await self.put(question)
+        return await self.submit(argument)
 
-    def put(self, question: Question) -> "asyncio.Future[Answer]":
-        """Add a question to the next group without waiting for its answer."""
-        future: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
-        self._waiting.append((question, future))
-        if self._work is None:
-            self._work = asyncio.create_task(self._answer_all())
+    def submit(self, argument: Argument) -> "asyncio.Future[Result]":
+        """Add an argument to the next group without waiting for its result."""
+        future: asyncio.Future[Result] = asyncio.get_running_loop().create_future()
+        self._waiting.append((argument, future))
+        if self._worker is None:
+            self._worker = asyncio.create_task(self._work_on_all())
         return future
 
     async def close(self) -> None:
-        """Answer what is still waiting, then end the thread."""
-        self._closing.set()
-        if self._work is not None:
-            await self._work
+        """Work on what is still waiting, then end the thread."""
+        if self._worker is not None:
+            await self._worker
         self._thread.shutdown()
 
-    async def _answer_all(self) -> None:
+    async def _work_on_all(self) -> None:
         try:
             while self._waiting:
                 group = self._waiting[:_MOST_AT_ONCE]
                 del self._waiting[:_MOST_AT_ONCE]
-                for (_, future), answer in zip(group, await self._answers([q for q, _ in group]), strict=True):
-                    _settle(future, answer)
-                await self._rest(len(group))
+                results = await self._results([argument for argument, _ in group])
+                for (_, future), result in zip(group, results, strict=True):
+                    _settle(future, result)
         finally:
-            self._work = None
+            self._worker = None
 
-    async def _rest(self, answered: int) -> None:
-        if self._rest_seconds and answered > 1 and len(self._waiting) < _MOST_AT_ONCE:
-            with suppress(TimeoutError):
-                await asyncio.wait_for(self._closing.wait(), self._rest_seconds)
-
-    async def _answers(self, questions: Sequence[Question]) -> Sequence[Answer | Exception]:
+    async def _results(self, arguments: Sequence[Argument]) -> Sequence[Result | Exception]:
         try:
-            return await asyncio.get_running_loop().run_in_executor(self._thread, self._answer, questions)
+            return await asyncio.get_running_loop().run_in_executor(self._thread, self._work, arguments)
         except Exception as error:
-            return [error] * len(questions)
+            return [error] * len(arguments)
 
 
 def committed_together(
     sessions: sessionmaker[Session],
-    work: Callable[[Session, Sequence[Question]], Sequence[Answer | Exception]],
-    questions: Sequence[Question],
-) -> Sequence[Answer | Exception]:
-    """Answer several questions in one transaction; if that fails, each anew in a transaction of its own.
+    work: Callable[[Session, Sequence[Argument]], Sequence[Result | Exception]],
+    arguments: Sequence[Argument],
+) -> Sequence[Result | Exception]:
+    """Work on a group in one transaction; if that fails, on each argument again in a transaction of its own.
 
-    So the others know nothing of one that fails. The work may be done twice and must change nothing but the database.
+    So an argument that fails does not affect the others. The work may be done twice, so it must change nothing but the
+    database.
     """
-    if len(questions) > 1:
+    if len(arguments) > 1:
         try:
             with sessions.begin() as session:
-                return work(session, questions)
-        except Exception:  # whoever's fault it is is found below
+                return work(session, arguments)
+        except Exception:  # which argument caused it is found below
             pass
-    return [_alone(sessions, work, question) for question in questions]
+    return [_alone(sessions, work, argument) for argument in arguments]
 
 
 def _alone(
     sessions: sessionmaker[Session],
-    work: Callable[[Session, Sequence[Question]], Sequence[Answer | Exception]],
-    question: Question,
-) -> Answer | Exception:
+    work: Callable[[Session, Sequence[Argument]], Sequence[Result | Exception]],
+    argument: Argument,
+) -> Result | Exception:
     try:
         with sessions.begin() as session:
-            (answer,) = work(session, [question])
+            (result,) = work(session, [argument])
     except Exception as error:
         return error
-    return answer
+    return result
 
 
-def _settle(future: "asyncio.Future[Answer]", answer: Answer | Exception) -> None:
-    if future.done():  # whoever asked has gone
+def _settle(future: "asyncio.Future[Result]", result: Result | Exception) -> None:
+    if future.done():  # the request was cancelled
         return
-    if isinstance(answer, Exception):
-        future.set_exception(answer)
+    if isinstance(result, Exception):
+        future.set_exception(result)
     else:
-        future.set_result(answer)
+        future.set_result(result)

@@ -1,11 +1,9 @@
 """The way to the workers: a message carries the id of a job, nothing else. SQL is the truth; messages may be lost."""
 
-import asyncio
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -17,7 +15,6 @@ from redis.exceptions import RedisError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.coalescing.grouped_calls import Groups
 from app.jobs import leases
 from app.runtime.settings import Settings
 
@@ -99,71 +96,29 @@ class Sender:
     sessions: sessionmaker[Session]
 
     def send(self, job_ids: Sequence[UUID], *, chunk: bool = False) -> bool:
-        """Send committed jobs, or chunks, and mark them as dispatched; on any fault leave them to the sweeper.
+        """Send committed jobs, or chunks, then mark them as dispatched; on any fault leave them to the sweeper.
 
         True means that the messages are with the broker. False does not prove the opposite: a second one is harmless.
         """
-        return self.hand_over(job_ids, chunk=chunk) and self.mark(job_ids)
-
-    def hand_over(self, job_ids: Sequence[UUID], *, chunk: bool = False) -> bool:
-        """Send messages, in one exchange with a broker that can take many; on any fault leave all to the sweeper."""
         try:
-            with self.application.producer_or_acquire() as producer, producer.batch():
-                queue = self.application.amqp.queues[_queue_name(chunk)].bind(producer.channel)  # once for all
-                for job_id in job_ids:
-                    _send(self.application, job_id, queue, producer=producer)
-        except _BROKER_FAULTS as error:
-            return _left(job_ids, error)
-        return True
-
-    def mark(self, job_ids: Sequence[UUID]) -> bool:
-        """Note that the messages of jobs are with the broker; on any fault leave all to the sweeper."""
-        try:
+            self._hand_over(job_ids, chunk=chunk)
             with self.sessions.begin() as session:
                 leases.mark_dispatched(session, job_ids)
-        except SQLAlchemyError as error:
-            return _left(job_ids, error)
+        except (*_BROKER_FAULTS, SQLAlchemyError) as error:
+            _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids), error)
+            return False
         return True
 
     def close(self) -> None:
         """Close the connections to the broker."""
         self.application.close()
 
-
-class Dispatcher:
-    """Sends the jobs of many requests together, without letting any of them wait.
-
-    That they are sent is noted a moment later, for all since the last time in one transaction. Where the process dies
-    meanwhile, the sweeper sends them again.
-    """
-
-    def __init__(self, sender: Sender, note_seconds: float) -> None:
-        """Take what sends, and the time between two notes, which is less than the sweeper's patience."""
-        self._messages: Groups[UUID, bool] = Groups("messages", _for_all(sender.hand_over))
-        self._notes: Groups[UUID, bool] = Groups("notes", _for_all(sender.mark), note_seconds)
-
-    def put(self, job_id: UUID) -> None:
-        """Send a committed job soon."""
-        self._messages.put(job_id).add_done_callback(partial(self._note, job_id))
-
-    async def close(self) -> None:
-        """Send and note what is left."""
-        await self._messages.close()
-        await asyncio.sleep(0)  # for the last callback
-        await self._notes.close()
-
-    def _note(self, job_id: UUID, sent: "asyncio.Future[bool]") -> None:
-        if not sent.cancelled() and sent.exception() is None and sent.result():
-            self._notes.put(job_id)
-
-
-def _for_all(act: Callable[[Sequence[UUID]], bool]) -> Callable[[Sequence[UUID]], list[bool]]:
-    return lambda job_ids: [act(job_ids)] * len(job_ids)
-
-
-def _left(job_ids: Sequence[UUID], error: Exception) -> bool:
-    _logger.warning("%d jobs are left to the sweeper: %s", len(job_ids), error)
-    return False
+    def _hand_over(self, job_ids: Sequence[UUID], *, chunk: bool) -> None:
+        """Send messages in one exchange with a broker that can take many."""
+        with self.application.producer_or_acquire() as producer, producer.batch():
+            queue = self.application.amqp.queues[_queue_name(chunk)].bind(producer.channel)  # once for all
+            for job_id in job_ids:
+                _send(self.application, job_id, queue, producer=producer)
 
 
 def _send(application: Celery, job_id: UUID, queue: Any, **by: Any) -> None:

@@ -3,10 +3,10 @@
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
-from typing import Any, NamedTuple
+from typing import Any
 from uuid import UUID
 
 from sqlalchemy import ColumnElement, Select, delete, select, tuple_
@@ -18,8 +18,8 @@ from app.runtime.correlation import Ids
 from app.security import audit
 from app.security.caller import Caller, Owned
 from app.storage import counters
-from app.storage.database import database_time, insert_rows
-from app.tables import AuditAction, BatchItem, FailureKind, Job, JobEvent, JobEventKind, JobStatus, JobTag
+from app.storage.database import database_time
+from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
 LABELS = frozenset({"name", "asset_id", "tags"})
 
@@ -59,82 +59,32 @@ class Submission:
     ids: Ids = field(default_factory=correlation.of_this_work)
 
 
-class Tag(NamedTuple):
-    """A label of a job."""
-
-    key: str
-    value: str
-
-
-@dataclass(frozen=True, slots=True)
-class Draft:
-    """A job before it is stored, with the attribute names of `Job`."""
-
-    id: UUID
-    owner: str
-    created_at: datetime
-    name: str | None
-    asset_id: str | None
-    document: Mapping[str, Any]
-    input_hash: str
-    request_id: str | None
-    trace_parent: str | None
-    status: JobStatus = JobStatus.ACCEPTED
-    progress: float = 0.0
-    step: str = ""
-    attempt: int = 0
-    cancel_requested: bool = False
-    started_at: datetime | None = None
-    finished_at: datetime | None = None
-    failure_kind: FailureKind | None = None
-    failure_detail: str | None = None
-    engine_version: str | None = None
-    reused_from: UUID | None = None
-    tags: Sequence[Tag] = ()
-
-
-_COLUMNS = tuple(field.name for field in fields(Draft) if field.name != "tags")
-
-
-def draft(submission: Submission, now: datetime) -> Draft:
-    """Return the job for a submission.
+def make(submission: Submission, now: datetime) -> Job:
+    """Return the job of a submission with its tags and its first event, to be added to a session.
 
     Raises
     ------
     ValueError
         If the document holds NaN or an infinity, which JSON cannot carry.
     """
-    return Draft(
+    return Job(
         id=uuid7(),
         owner=submission.caller.owner,
         created_at=now,
+        status=JobStatus.ACCEPTED,
+        progress=0.0,
+        step="",
+        attempt=0,
+        cancel_requested=False,
         name=submission.name,
         asset_id=submission.asset_id,
         document=submission.document,
         input_hash=input_hash(submission.document),
         request_id=submission.ids.request_id,
         trace_parent=submission.ids.trace_parent,
-        tags=[Tag(*tag) for tag in sorted(submission.tags.items())],
+        tags=[JobTag(key=key, value=value) for key, value in sorted(submission.tags.items())],
+        events=[JobEvent(at=now, kind=JobEventKind.ACCEPTED, attempt=0)],
     )
-
-
-def insert(session: Session, made: Sequence[tuple[Caller, Draft]]) -> None:
-    """Insert jobs with their tags, first events and audit records, one statement for each table.
-
-    Raises
-    ------
-    sqlalchemy.exc.SQLAlchemyError
-        If the database refuses a row, or fails.
-    """
-    insert_rows(session, Job, [{name: getattr(job, name) for name in _COLUMNS} for _, job in made])
-    tags = [{"job_id": job.id, **tag._asdict()} for _, job in made for tag in job.tags]
-    insert_rows(session, JobTag, tags)
-    kind = JobEventKind.ACCEPTED
-    insert_rows(
-        session, JobEvent, [{"job_id": job.id, "at": job.created_at, "kind": kind, "attempt": 0} for _, job in made]
-    )
-    action = AuditAction.JOB_SUBMITTED
-    audit.record_all(session, [(caller, action, job.id, job.created_at) for caller, job in made])
 
 
 def input_hash(document: Mapping[str, Any]) -> str:

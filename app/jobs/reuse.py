@@ -7,7 +7,7 @@ placements is found as a whole, by its job.
 
 import hashlib
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, cast
 from uuid import UUID
 
@@ -17,7 +17,6 @@ from sqlalchemy.orm import Session
 
 from app.convert import NumberedLine, PointResult
 from app.jobs import job_records
-from app.jobs.job_records import Draft
 from app.storage import counters
 from app.storage.stored_results import RANKING_FIGURES, STATIC, unpacked
 from app.tables import Job, JobEventKind, JobStatus, PointRow
@@ -78,21 +77,15 @@ def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engi
     return Source(job_id) if job_id is not None else None
 
 
-def adopt(job: Draft, source: Source, engine_version: str) -> Draft:
-    """Return a job that ends with stored results; after it is stored, `copy` copies the results to it."""
-    return replace(
-        job,
-        status=JobStatus.SUCCESSFUL,
-        progress=1.0,
-        started_at=job.created_at,
-        finished_at=job.created_at,
-        engine_version=engine_version,
-        reused_from=source.job_id,
-    )
+def adopt(job: Job, source: Source, engine_version: str) -> None:
+    """End a job that is not stored yet with the results of another job or line; `copy` gives it those later."""
+    job.status, job.progress = JobStatus.SUCCESSFUL, 1.0
+    job.started_at = job.finished_at = job.created_at
+    job.engine_version, job.reused_from = engine_version, source.job_id
 
 
 def copy(session: Session, job_id: UUID, source: Source) -> None:
-    """Copy stored results to a job that adopted them, and record its end."""
+    """Copy the results that a stored job has adopted, and record its end."""
     table = cast(Table, PointRow.__table__)
     copied, detail = [table.c.job_id == source.job_id], f"results of job {source.job_id}"
     own: dict[str, ColumnElement[Any]] = {"job_id": literal(job_id, table.c.job_id.type)}

@@ -1,31 +1,31 @@
-"""Jobs as they are asked for over HTTP: many at once in one transaction, each under its key, if it has one."""
+"""Jobs as they are posted: all posts of a group in one transaction, each under its Idempotency-Key if it has one."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from datetime import datetime
 
 from sqlalchemy.orm import Session
 
 from app.convert import ENGINE_VERSION
 from app.jobs import idempotency, job_records, reuse, webhooks
 from app.jobs.idempotency import Answer, Kept, Key, KeyTaken
-from app.jobs.job_records import Draft, Submission
-from app.jobs.reuse import Source
+from app.jobs.job_records import Submission
+from app.security import audit
 from app.storage.database import database_time
+from app.tables import AuditAction, Job
 
 
 @dataclass(frozen=True, slots=True)
 class Keyed:
-    """The key of a request, and what makes its fingerprint and, of its job, the answer that is kept."""
+    """The key of a post, the fingerprint of its request, and the function that makes the answer from the job."""
 
     key: Key
-    fingerprint: Callable[[], str]
-    answer: Callable[[Draft], Answer]
+    fingerprint: str
+    answer: Callable[[Job], Answer]
 
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A job that is asked for: whom to tell of its end, whether stored results will do, and under which key."""
+    """A posted job: where to report its end, whether stored results may be reused, and its key, if there is one."""
 
     submission: Submission
     webhook_url: str | None = None
@@ -33,18 +33,11 @@ class Order:
     keyed: Keyed | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class _Drafted:
-    order: Order
-    job: Draft
-    source: Source | None
+def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
+    """Store the jobs of orders; a job with stored results of the same input ends with these, others wait for a worker.
 
-
-def accept(session: Session, orders: Sequence[Order]) -> list[Draft | KeyTaken]:
-    """Make the jobs of orders: those of the same input as stored results end with these, the others wait for a worker.
-
-    An order whose key is in use gets that in the place of a job, and nothing is made for it. However many orders there
-    are, the statements are as few as for one, but for those that are answered from what is stored or have a webhook.
+    If the key of an order is taken, its place holds `KeyTaken` and nothing is stored for it. A group takes as few
+    statements as one order, apart from results that are copied.
 
     Raises
     ------
@@ -53,40 +46,32 @@ def accept(session: Session, orders: Sequence[Order]) -> list[Draft | KeyTaken]:
     sqlalchemy.exc.SQLAlchemyError
         If the database refuses a row, or fails.
     """
-    drafted = _drafts(session, orders)
-    free = _take_keys(session, drafted)
-    made = [item for item in drafted if _may_be_made(item, free)]
-    job_records.insert(session, [(item.order.submission.caller, item.job) for item in made])
-    for item in made:
-        if item.source is not None:
-            reuse.copy(session, item.job.id, item.source)
-        if item.order.webhook_url is not None:
-            owner = item.order.submission.caller.owner
-            webhooks.register(session, owner, item.order.webhook_url, job_id=item.job.id)
-    return [item.job if _may_be_made(item, free) else KeyTaken() for item in drafted]
-
-
-def _drafts(session: Session, orders: Sequence[Order]) -> list[_Drafted]:
     now = database_time(session)
+    jobs = [job_records.make(order.submission, now) for order in orders]
     asked = [(order.submission.caller.owner, order.submission.document) for order in orders if order.may_reuse]
-    sources = iter(reuse.find(session, asked, ENGINE_VERSION))
-    return [_drafted(order, now, next(sources, None) if order.may_reuse else None) for order in orders]
+    found = iter(reuse.find(session, asked, ENGINE_VERSION))
+    sources = [next(found) if order.may_reuse else None for order in orders]
+    for job, source in zip(jobs, sources, strict=True):
+        if source is not None:
+            reuse.adopt(job, source, ENGINE_VERSION)
+    taken = _taken(session, orders, jobs)
+    new = [item for item in zip(orders, jobs, sources, strict=True) if item[1] not in taken]
+    for order, job, _ in new:
+        session.add(job)
+        audit.record(session, order.submission.caller, AuditAction.JOB_SUBMITTED, job.id, at=now)
+        if order.webhook_url is not None:
+            webhooks.register(session, job.owner, order.webhook_url, job_id=job.id)
+    session.flush()
+    for _, job, source in new:
+        if source is not None:
+            reuse.copy(session, job.id, source)
+    return [KeyTaken() if job in taken else job for job in jobs]
 
 
-def _drafted(order: Order, now: datetime, source: Source | None) -> _Drafted:
-    job = job_records.draft(order.submission, now)
-    return _Drafted(order, job if source is None else reuse.adopt(job, source, ENGINE_VERSION), source)
-
-
-def _take_keys(session: Session, drafted: Sequence[_Drafted]) -> set[object]:
-    """Keep the answers of those that have a key, and return the holders of the keys that were free."""
-    kept = [
-        Kept(keyed.key, keyed.fingerprint(), keyed.answer(item.job))
-        for item in drafted
-        if (keyed := item.order.keyed) is not None
-    ]
-    return set(idempotency.keep(session, kept)) if kept else set()
-
-
-def _may_be_made(item: _Drafted, free: set[object]) -> bool:
-    return item.order.keyed is None or item.order.keyed.key.holder in free
+def _taken(session: Session, orders: Sequence[Order], jobs: Sequence[Job]) -> set[Job]:
+    """Keep the answers of the orders that have a key, and return the jobs whose key was taken."""
+    keyed = [(order.keyed, job) for order, job in zip(orders, jobs, strict=True) if order.keyed is not None]
+    if not keyed:
+        return set()
+    free = idempotency.keep(session, [Kept(item.key, item.fingerprint, item.answer(job)) for item, job in keyed])
+    return {job for item, job in keyed if item.key.holder not in free}

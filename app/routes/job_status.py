@@ -5,10 +5,9 @@ from uuid import UUID
 
 from sqlalchemy.orm import Session
 
-from app.coalescing.grouped_calls import Groups
+from app.coalescing.grouped_calls import GroupedCalls
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import job_records
-from app.jobs.job_records import Draft
 from app.routes.dependencies import PREFIX
 from app.security.caller import Caller, Owned
 from app.tables import Job, JobStatus
@@ -17,7 +16,7 @@ _TABLE_LINKS = ("frequencies", "internal-resonances", "critical-wind-speeds", "l
 _PLOT_LINKS = ("amplitude", "orbit", "modes", "study")
 
 
-async def find_status(statuses: Groups[Owned, Job | None], caller: Caller, job_id: UUID) -> Job:
+async def find_status(statuses: GroupedCalls[Owned, Job | None], caller: Caller, job_id: UUID) -> Job:
     """Return a job of the caller's owner without its document.
 
     Raises
@@ -25,7 +24,7 @@ async def find_status(statuses: Groups[Owned, Job | None], caller: Caller, job_i
     ProblemError
         404 if the owner has no job of that id, even if another owner has.
     """
-    job = await statuses.ask(Owned(caller.owner, job_id))
+    job = await statuses.call(Owned(caller.owner, job_id))
     if job is None:
         raise _no_job(job_id)
     return job
@@ -54,12 +53,12 @@ def job_address(job_id: UUID) -> str:
     return f"{PREFIX}/jobs/{job_id}"
 
 
-def failure_of(job: Job | Draft) -> dict[str, Any] | None:
+def failure_of(job: Job) -> dict[str, Any] | None:
     """Return the kind and the sentence of a job's failure, None if it has not failed."""
     return {"kind": job.failure_kind.value, "detail": job.failure_detail} if job.failure_kind else None
 
 
-def job_document(job: Job | Draft) -> dict[str, Any]:
+def job_document(job: Job) -> dict[str, Any]:
     """Return the status document of a job."""
     return {
         "id": str(job.id),
@@ -81,7 +80,7 @@ def job_document(job: Job | Draft) -> dict[str, Any]:
     }
 
 
-def _links(job: Job | Draft) -> list[dict[str, str]]:
+def _links(job: Job) -> list[dict[str, str]]:
     address = job_address(job.id)
     links = [{"rel": "self", "href": address}]
     if job.status in {JobStatus.SUCCESSFUL, JobStatus.FAILED}:

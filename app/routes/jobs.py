@@ -7,7 +7,7 @@ from urllib.parse import urlencode
 from uuid import UUID
 
 from anyio import to_thread
-from fastapi import APIRouter, Body, Depends, Query, Request, Response
+from fastapi import APIRouter, Body, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
@@ -17,8 +17,8 @@ from app.answers.jobs import JobDocument, JobPage
 from app.http import paging
 from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document, query_fault
 from app.jobs import idempotency, job_records
-from app.jobs.idempotency import KeyTaken
-from app.jobs.job_records import CancelOutcome, Draft, JobFilters, Submission
+from app.jobs.idempotency import Key, KeyTaken
+from app.jobs.job_records import CancelOutcome, JobFilters, Submission
 from app.jobs.submissions import Keyed, Order
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers, vet_webhook
@@ -27,8 +27,8 @@ from app.routes.job_status import find_job, find_status, job_address, job_docume
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import signing_key
 from app.schemas.fields import Label
-from app.security.caller import Owned
-from app.tables import ENDED, JobStatus
+from app.security.caller import Caller, Owned
+from app.tables import ENDED, Job, JobStatus
 
 router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
 
@@ -83,23 +83,6 @@ class ListQuery(BaseModel):
         return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after)
 
 
-async def _ordered(
-    request: Request,
-    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
-    key: KeyOf,
-    may_reuse: MayReuse,
-) -> Order:
-    await _check(request, document)
-    line, kept = document.line, document.kept()
-
-    def fingerprint() -> str:
-        return idempotency.fingerprint(router.prefix, job_records.canonical(kept), document.webhook_url or "")
-
-    submission = Submission(request.state.caller, kept, line.name, line.asset_id, line.tags)
-    keyed = Keyed(key, fingerprint, lambda job: stored_answer(_accepted(job))) if key is not None else None
-    return Order(submission, document.webhook_url, may_reuse, keyed)
-
-
 async def _check(request: Request, document: schemas.JobRequest) -> None:
     # Checking every point of a study takes time; checking a single line takes less than a switch to a thread.
     check = partial(convert.request_faults, document)
@@ -127,26 +110,43 @@ async def _check(request: Request, document: schemas.JobRequest) -> None:
         ),
     },
 )
-async def submit_job(request: Request, order: Annotated[Order, Depends(_ordered)]) -> Response:
+async def submit_job(
+    request: Request,
+    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
+    key: KeyOf,
+    may_reuse: MayReuse,
+) -> Response:
     """Accept a line for analysis. The service stores the job before it answers, whether or not a worker is running.
 
     If the owner has stored results of the same input by this engine version, from a job or a line of a batch, the job
     ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new
     computation.
     """
-    # A FastAPI dependency costs as much as checking the line, so read the shared state directly.
-    shared = request.app.state
+    await _check(request, document)
+    order = _order(request.state.caller, document, key, may_reuse=may_reuse)
+    shared = request.app.state  # read directly, since a FastAPI dependency costs as much as checking the line
     try:
-        job: Draft = await shared.inbox.ask(order)
+        job: Job = await shared.inbox.call(order)
     except KeyTaken:
-        assert order.keyed is not None
-        return await to_thread.run_sync(replayed_answer, shared.readers, order.keyed.key, order.keyed.fingerprint)
+        keyed = order.keyed
+        assert keyed is not None
+        return await to_thread.run_sync(replayed_answer, shared.readers, keyed.key, lambda: keyed.fingerprint)
     if job.status is JobStatus.ACCEPTED:
-        shared.dispatcher.put(job.id)
+        shared.messages.submit(job.id)
     return _accepted(job)
 
 
-def _accepted(job: Draft) -> JSONResponse:
+def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Order:
+    line, kept = document.line, document.kept()
+    submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
+    keyed = None
+    if key is not None:
+        fingerprint = idempotency.fingerprint(router.prefix, job_records.canonical(kept), document.webhook_url or "")
+        keyed = Keyed(key, fingerprint, lambda job: stored_answer(_accepted(job)))
+    return Order(submission, document.webhook_url, may_reuse, keyed)
+
+
+def _accepted(job: Job) -> JSONResponse:
     headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
     return JSONResponse(job_document(job), 202, headers)
 

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
 from app.security.caller import Caller
-from app.storage.database import database_time, insert_rows
+from app.storage.database import database_time
 from app.tables import AuditAction, AuditEvent
 
 OPERATOR = Caller("operator", frozenset())
@@ -32,15 +32,6 @@ def record(
             id=uuid7(), at=at or database_time(session), action=action, subject=subject, detail=detail, **made_by
         )
     )
-
-
-def record_all(session: Session, done: Sequence[tuple[Caller, AuditAction, UUID, datetime]]) -> None:
-    """Add the actions of several callers, each on a subject at a moment, in one statement."""
-    events = [
-        {"id": uuid7(), "at": at, "owner": caller.owner, "key_id": caller.key_id, "action": action, "subject": subject}
-        for caller, action, subject, at in done
-    ]
-    insert_rows(session, AuditEvent, events)
 
 
 def latest(session: Session, owner: str | None, since: datetime | None, limit: int) -> Sequence[AuditEvent]:

@@ -17,12 +17,13 @@ from app.batches.intake import Incoming, Receipt, receive
 from app.coalescing.grouped_calls import committed_together
 from app.convert import PointResult
 from app.jobs import job_records, leases, submissions
-from app.jobs.job_records import Draft, Submission
+from app.jobs.job_records import Submission
 from app.jobs.submissions import Order
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.schemas import JobRequest
 from app.security.caller import LOCAL, Owned
+from app.tables import Job
 from engine import clearance, spec
 from tests.app.lines import SHORT, changed
 from tests.documents import create_job, point_result, short_request
@@ -34,18 +35,19 @@ LINES = 400
 def test_posts_that_come_together_are_as_few_statements_as_one(
     settings: Settings, sessions: sessionmaker[Session]
 ) -> None:
-    """A server is asked for the time and for stored results; jobs, tags, events and who made them are a COPY each."""
+    """A server is asked for the time and for stored results; jobs, tags, events and audit take a statement each."""
     on_server = settings.database_url.startswith("postgresql")
     for posts in (1, 40):
         documents = [with_tension(29e3 + number) for number in range(posts)]
         orders = [Order(Submission(LOCAL, document, tags={"a": "b", "c": "d"})) for document in documents]
         with counted() as statements:
             made = committed_together(sessions, submissions.accept, orders)
-        assert len({job.id for job in made if isinstance(job, Draft)}) == posts
+        assert len({job.id for job in made if isinstance(job, Job)}) == posts
         looks = [text for text in statements if not text.startswith("INSERT")]
         written = [text.split()[2] for text in statements if text.startswith("INSERT")]
         assert len(looks) == (2 if on_server else posts)
-        assert written == ([] if on_server else ["jobs", "job_tags", "job_events", "audit_events"])
+        events = 1 if on_server else posts  # SQLite, in this process, numbers its rows one by one
+        assert sorted(written) == ["audit_events", *["job_events"] * events, "job_tags", "jobs"]
 
 
 def with_tension(tension: float) -> dict[str, Any]:

@@ -9,11 +9,11 @@ import pytest
 import redis
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.coalescing.grouped_calls import GroupedCalls
 from app.jobs.dispatch import (
     QUEUE_NAME,
     TASK_NAME,
     BrokerUnavailable,
-    Dispatcher,
     Sender,
     celery_application,
     open_queue,
@@ -71,38 +71,38 @@ def test_refusing_broker_leaves_the_job_to_the_sweeper(sessions: sessionmaker[Se
     assert look(sessions, job_id).dispatched_at is None
 
 
-def dispatched(sessions: sessionmaker[Session], settings: Settings, count: int) -> list[UUID]:
-    """Let a dispatcher send jobs and end; return them."""
+def sent_together(sessions: sessionmaker[Session], settings: Settings, count: int) -> list[UUID]:
+    """Send jobs as the API does for its posts; return them."""
     jobs = [add_job(sessions) for _ in range(count)]
     sender = Sender(celery_application(settings), sessions)
 
-    async def dispatch_all() -> None:
-        dispatcher = Dispatcher(sender, note_seconds=3600.0)
+    async def send_all() -> None:
+        messages = GroupedCalls[UUID, bool]("messages", lambda job_ids: [sender.send(job_ids)] * len(job_ids))
         for job_id in jobs:
-            dispatcher.put(job_id)
-        await dispatcher.close()
+            messages.submit(job_id)
+        await messages.close()
 
-    asyncio.run(dispatch_all())
+    asyncio.run(send_all())
     sender.close()
     return jobs
 
 
-def test_a_dispatcher_sends_at_once_and_notes_together(
+def test_jobs_of_a_group_are_sent_in_one_exchange_and_marked_in_one_statement(
     sessions: sessionmaker[Session], settings: Settings, redis_address: str
 ) -> None:
     with counted() as statements:
-        jobs = dispatched(sessions, on_broker(settings, redis_address), 30)
+        jobs = sent_together(sessions, on_broker(settings, redis_address), 30)
     with redis.Redis.from_url(redis_address) as client:
         messages = [json.loads(text)["headers"]["id"] for text in client.lrange(QUEUE_NAME, 0, -1)]
     assert len(set(messages)) == 30
     assert all(look(sessions, job_id).dispatched_at is not None for job_id in jobs)
-    assert len([text for text in statements if text.startswith("UPDATE")]) <= 2
+    assert len([text for text in statements if text.startswith("UPDATE")]) == 1
 
 
-def test_what_a_dispatcher_cannot_send_is_left_to_the_sweeper(
+def test_a_group_that_cannot_be_sent_is_left_to_the_sweeper(
     sessions: sessionmaker[Session], settings: Settings
 ) -> None:
-    jobs = dispatched(sessions, on_broker(settings, f"redis://127.0.0.1:{free_port()}/0"), 3)
+    jobs = sent_together(sessions, on_broker(settings, f"redis://127.0.0.1:{free_port()}/0"), 3)
     assert [look(sessions, job_id).dispatched_at for job_id in jobs] == [None] * 3
 
 

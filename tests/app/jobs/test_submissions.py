@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.coalescing.grouped_calls import committed_together
 from app.jobs import idempotency, submissions, webhooks
 from app.jobs.idempotency import Answer, KeyTaken, new_key
-from app.jobs.job_records import Draft, Submission
+from app.jobs.job_records import Submission
 from app.jobs.submissions import Keyed, Order
 from app.security.caller import LOCAL
 from app.tables import AuditEvent, IdempotencyKey, Job, JobEvent
@@ -14,7 +14,7 @@ from tests.documents import STRANGER, history, short_request
 
 
 def keyed(value: str, said: str = "f") -> Keyed:
-    return Keyed(new_key(LOCAL.owner, value), lambda: said, lambda job: Answer(202, {}, str(job.id)))
+    return Keyed(new_key(LOCAL.owner, value), said, lambda job: Answer(202, {}, str(job.id)))
 
 
 def order(document: dict[str, Any] | None = None, **how: Any) -> Order:
@@ -33,7 +33,7 @@ def count(sessions: sessionmaker[Session], table: type[Any]) -> int:
 def test_of_equal_keys_in_a_group_the_first_gets_a_job(sessions: sessionmaker[Session]) -> None:
     asked = [keyed("k", "first"), keyed("other"), keyed("k", "second")]
     first, other, second = accepted(sessions, *(order(keyed=item) for item in asked))
-    assert isinstance(first, Draft) and isinstance(other, Draft) and isinstance(second, KeyTaken)
+    assert isinstance(first, Job) and isinstance(other, Job) and isinstance(second, KeyTaken)
     assert (count(sessions, Job), count(sessions, JobEvent), count(sessions, AuditEvent)) == (2, 2, 2)
     with sessions() as session:
         assert idempotency.find(session, asked[2].key) == ("first", Answer(202, {}, str(first.id)))
@@ -44,7 +44,7 @@ def test_a_key_that_is_in_use_costs_the_others_of_its_group_nothing(sessions: se
     with sessions() as session:
         kept = idempotency.find(session, new_key(LOCAL.owner, "k"))
     before, again, after = accepted(sessions, order(), order(keyed=keyed("k")), order(keyed=keyed("new")))
-    assert isinstance(before, Draft) and isinstance(again, KeyTaken) and isinstance(after, Draft)
+    assert isinstance(before, Job) and isinstance(again, KeyTaken) and isinstance(after, Job)
     assert count(sessions, Job) == 3
     assert count(sessions, IdempotencyKey) == 2
     with sessions() as session:
@@ -55,7 +55,7 @@ def test_a_key_that_is_in_use_costs_the_others_of_its_group_nothing(sessions: se
 def test_a_document_that_cannot_be_kept_is_refused_alone(sessions: sessionmaker[Session]) -> None:
     hopeless = {"line": {"a": float("nan")}}
     first, refused, last = accepted(sessions, order(), order(hopeless, keyed=keyed("k")), order())
-    assert isinstance(first, Draft) and isinstance(refused, ValueError) and isinstance(last, Draft)
+    assert isinstance(first, Job) and isinstance(refused, ValueError) and isinstance(last, Job)
     assert count(sessions, Job) == 2
     assert count(sessions, IdempotencyKey) == 0
 

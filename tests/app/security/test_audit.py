@@ -19,7 +19,7 @@ def test_the_newest_events_come_first_and_may_be_of_one_owner_or_since_a_moment(
         now = database_time(session)
         audit.record(session, OTHER, AuditAction.KEY_CREATED, detail="first", at=now - timedelta(hours=2))
     with sessions.begin() as session:
-        audit.record_all(session, [(ACME, AuditAction.JOB_SUBMITTED, job, now - timedelta(hours=1))])
+        audit.record(session, ACME, AuditAction.JOB_SUBMITTED, job, at=now - timedelta(hours=1))
     with sessions.begin() as session:
         audit.record(session, ACME, AuditAction.JOB_REMOVED, job)
     with sessions() as session:
