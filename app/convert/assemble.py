@@ -18,7 +18,6 @@ from engine.outcome import Fault, InvalidSpec
 Made = TypeVar("Made")
 Source = TypeVar("Source")
 
-_GRAVITY = 9.81
 _STEEPEST = 100.0  # far beyond a sag equal to the length, and far below overflow
 _STILL = spec.Aerodynamics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), at_rest=(0.0, 0.0, 0.0))
 _NEUTRAL_CONDUCTOR = spec.Conductor(0.03, 1e7, 100.0, 1e-3, 1e3)
@@ -192,7 +191,7 @@ def _slack_faults(line: spec.Line) -> Iterator[Fault]:
         field_name, sag = "catenary_parameter", _sag(span.length, span.catenary_parameter)
     else:
         tension = span.horizontal_tension or 0.0
-        field_name, sag = "horizontal_tension", _sag(span.length, tension / (line.conductor.mass * _GRAVITY))
+        field_name, sag = "horizontal_tension", _sag(span.length, tension / (line.conductor.mass * spec.GRAVITY))
     if sag > span.length:
         yield Fault(f"span.{field_name}", getattr(span, field_name), "must give a sag smaller than the span's length")
 

@@ -5,11 +5,25 @@ knows it, otherwise at the part itself.
 """
 
 import math
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any, TypeVar
 
 from app import schemas
 from engine import spec
 from engine.outcome import Fault, InvalidSpec, require
+
+Made = TypeVar("Made", bound=spec.Device | spec.PendulumChoice | spec.SpoilerChoice)
+
+_DEVICES: Mapping[str, type[spec.Device]] = {
+    "spacer": spec.Spacer,
+    "detuning_pendulum": spec.DetuningPendulum,
+    "airflow_spoiler": spec.AirflowSpoiler,
+}
+_CHOICES: Mapping[str, type[spec.PendulumChoice | spec.SpoilerChoice]] = {
+    "detuning_pendulum": spec.PendulumChoice,
+    "airflow_spoiler": spec.SpoilerChoice,
+}
 
 
 def conductor(part: schemas.Conductor) -> spec.Conductor:
@@ -99,13 +113,21 @@ def damping(part: schemas.Damping) -> spec.Damping:
 
 def device(part: schemas.Device) -> spec.Device:
     """Build a device of any kind."""
-    match part:
-        case schemas.Spacer():
-            return spec.Spacer(part.position, part.mass, part.polar_inertia)
-        case schemas.DetuningPendulum():
-            return spec.DetuningPendulum(part.position, part.mass, part.arm, math.radians(part.angle))
-        case schemas.AirflowSpoiler():
-            return spec.AirflowSpoiler(part.start, part.stop, aerodynamics(part.aerodynamics, part.at_rest), part.mass)
+    return _by_name(_DEVICES[part.type], part)
+
+
+def _by_name(made: type[Made], part: schemas.Document) -> Made:
+    """Build what has fields of the same names: degrees become radians, ranges become pairs."""
+    return made(**{name: _value(part, name) for name in (field.name for field in fields(made))})
+
+
+def _value(part: schemas.Document, name: str) -> Any:
+    given, unit = getattr(part, name), type(part).model_fields[name].json_schema_extra
+    if name == "aerodynamics":
+        return aerodynamics(given, getattr(part, "at_rest", None))
+    if isinstance(given, schemas.Range):
+        return given.pair
+    return math.radians(given) if unit == {"unit": "deg"} else given
 
 
 def placement(part: schemas.Placement) -> spec.Placement:
@@ -121,11 +143,7 @@ def placement(part: schemas.Placement) -> spec.Placement:
 
 def _choice(part: schemas.PendulumChoice | schemas.SpoilerChoice) -> spec.PendulumChoice | spec.SpoilerChoice:
     try:
-        if isinstance(part, schemas.SpoilerChoice):
-            coefficients = aerodynamics(part.aerodynamics, part.at_rest)
-            return spec.SpoilerChoice(part.length, part.position.pair, coefficients, part.mass)
-        ranges = part.position.pair, part.mass.pair, part.arm.pair
-        return spec.PendulumChoice(part.count, *ranges, math.radians(part.angle))
+        return _by_name(_CHOICES[part.type], part)
     except InvalidSpec as error:
         raise InvalidSpec(*(replace(f, field=f"choice.{f.field}") for f in error.faults)) from error
 

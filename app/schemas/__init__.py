@@ -12,9 +12,10 @@ from app.schemas.environment import (
     ProfilePoint,
     Wind,
 )
+from app.schemas.fields import Document
 from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
-from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
+from app.schemas.placement import PendulumChoice, Placement, Range, SpoilerChoice
 
 __all__ = [
     "Aerodynamics",
@@ -29,6 +30,7 @@ __all__ = [
     "Damping",
     "DetuningPendulum",
     "Device",
+    "Document",
     "Ice",
     "IceSegment",
     "JobRequest",
@@ -37,6 +39,7 @@ __all__ = [
     "PendulumChoice",
     "Placement",
     "ProfilePoint",
+    "Range",
     "Spacer",
     "Span",
     "SpoilerChoice",

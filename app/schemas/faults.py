@@ -14,9 +14,7 @@ _MOST_SHOWN = 80
 
 # pydantic adds the name of a tagged union's branch to the location, after the field or the list item.
 _SPEEDS, _DEVICES, _DEVICE, _AERODYNAMICS = "wind_speeds_m_per_s", "devices", "device", "aerodynamics"
-_UNION_BRANCHES = frozenset(
-    {"spacer", "detuning_pendulum", "airflow_spoiler", "list", "range", "coefficients", "measured"}
-)
+_FORMS = frozenset({"list", "range", "coefficients", "measured"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,10 +116,10 @@ def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str) -
 
 
 def _is_branch(location: Sequence[int | str], place: int) -> bool:
-    owners = location[max(0, place - 2) : place]
-    return location[place] in _UNION_BRANCHES and (
-        owners[-1:] in {(_SPEEDS,), (_DEVICE,), (_AERODYNAMICS,)} or owners[:1] == (_DEVICES,)
-    )
+    *before, owner = (None, None, *location[:place])[-2:]
+    if owner in {_SPEEDS, _AERODYNAMICS}:
+        return location[place] in _FORMS
+    return owner == _DEVICE or (before == [_DEVICES] and isinstance(owner, int))
 
 
 def _found(error: Mapping[str, Any]) -> str:

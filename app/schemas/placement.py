@@ -9,7 +9,7 @@ from app.schemas.environment import AT_REST, COEFFICIENTS, AerodynamicsAtRest, A
 from app.schemas.fields import ON_SPAN, Document, quantity
 
 
-class _Range(Document):
+class Range(Document):
     """A lowest and a highest value; equal values fix the quantity."""
 
     lowest: float
@@ -27,21 +27,21 @@ class _Range(Document):
         return self.lowest, self.highest
 
 
-class PositionRange(_Range):
+class PositionRange(Range):
     """Positions from the left support."""
 
     lowest: float = quantity("lowest", "Nearest to the left support", "m", ON_SPAN, 10.0)
     highest: float = quantity("highest", "Farthest from the left support", "m", ON_SPAN, 115.0)
 
 
-class MassRange(_Range):
+class MassRange(Range):
     """Masses of one pendulum."""
 
     lowest: float = quantity("lowest", "Lightest", "kg", (0.0, 1e4), 5.0)
     highest: float = quantity("highest", "Heaviest", "kg", (0.0, 1e4), 20.0)
 
 
-class ArmRange(_Range):
+class ArmRange(Range):
     """Lengths of the arm."""
 
     lowest: float = quantity("lowest", "Shortest", "m", (1e-3, 10.0), 0.2)

@@ -9,9 +9,9 @@ from scipy.special import ellipk
 
 from benchmarks.lines import source_line
 from benchmarks.validation.common import percent, result, table
-from engine.mechanics.static_profile import GRAVITY, static_profile
+from engine.mechanics.static_profile import static_profile
 from engine.result import Result
-from engine.spec import Analysis, Line, Model, StaticTwist
+from engine.spec import GRAVITY, Analysis, Line, Model, StaticTwist
 
 LENGTHS = (120.0, 145.0, 160.0, 200.0, 300.0, 500.0)
 ASKED = Analysis(loops=(1,), models=(Model.HYBRID,), wind_speeds=(4.0,))

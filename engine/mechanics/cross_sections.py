@@ -4,7 +4,7 @@ Ice, spoilers and the wind profile change at given positions. Every integral is 
 positions, so that a boundary inside an element is integrated exactly on both sides (theory section 3).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -13,7 +13,7 @@ import numpy as np
 from engine.arrays import FloatArray
 from engine.mechanics.coefficients import fit_measured
 from engine.mechanics.static_profile import StaticProfile, arc_position, horizontal_position
-from engine.spec import Aerodynamics, AirflowSpoiler, Line, ice_properties
+from engine.spec import Aerodynamics, IceSegment, Line, StretchDevice, ice_properties
 
 PIECE_POINTS = 5  # exact to degree 9: cubic loads of quadratic shapes, times a shape
 
@@ -126,8 +126,8 @@ def gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
 
 def boundaries(line: Line) -> list[float]:
     """Return the positions strictly inside the span where a property or the wind's slope changes [m]."""
-    stretches = [(s.start, s.stop) for s in line.ice.segments]
-    stretches += [(d.start, d.stop) for d in line.devices if isinstance(d, AirflowSpoiler)]
+    parts: list[IceSegment | StretchDevice] = [*line.ice.segments, *line.stretches]
+    stretches = [(part.start, part.stop) for part in parts]
     marks = {mark for stretch in stretches for mark in stretch} | {position for position, _ in line.wind.profile}
     return sorted(mark for mark in marks if 0.0 < mark < line.span.length)
 
@@ -155,21 +155,27 @@ def _line_properties(line: Line, position: FloatArray) -> tuple[FloatArray, Floa
         e_y, e_z, iced = ice_properties(line, segment)
         mass[here] = iced
         moment[here] = iced * np.array([e_y, e_z])
-    for device in line.devices:
-        if isinstance(device, AirflowSpoiler):
-            mass[(position >= device.start) & (position < device.stop)] += device.mass
+    for part in line.stretches:
+        mass[(position >= part.start) & (position < part.stop)] += part.mass
     return mass, moment, _wind_factor(line, position), _aerodynamics(line, position, np.zeros(position.shape))
 
 
 def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatArray:
-    """Return the coefficients at positions [m], a spoiler's before a segment's before the span's: (..., 3, 4)."""
-    stretches = [(s.start, s.stop, s.aerodynamics) for s in line.ice.segments if s.aerodynamics is not None]
-    stretches += [(d.start, d.stop, d.aerodynamics) for d in line.devices if isinstance(d, AirflowSpoiler)]
+    """Return the coefficients at positions [m], a device's before a segment's before the span's: (..., 3, 4)."""
     result = np.empty((*position.shape, 3, 4))
-    for start, stop, aerodynamics in [(-np.inf, np.inf, line.ice.aerodynamics), *stretches]:
+    for start, stop, aerodynamics in _coefficients(line):
         here = (position >= start) & (position < stop)
         result[here] = _at_local_angle(aerodynamics, twist[here])
     return result
+
+
+def _coefficients(line: Line) -> Iterator[tuple[float, float, Aerodynamics]]:
+    """Yield the coefficients of the span, then those of each stretch [m] that has its own; the last one holds."""
+    yield -np.inf, np.inf, line.ice.aerodynamics
+    parts: list[IceSegment | StretchDevice] = [*line.ice.segments, *line.stretches]
+    for part in parts:
+        if part.aerodynamics is not None:
+            yield part.start, part.stop, part.aerodynamics
 
 
 def _at_local_angle(aerodynamics: Aerodynamics, twist: FloatArray) -> FloatArray:
@@ -193,7 +199,5 @@ def _table(aerodynamics: Aerodynamics) -> FloatArray:
 
 
 def _fitted_range(line: Line) -> float:
-    on_segments = [s.aerodynamics for s in line.ice.segments if s.aerodynamics is not None]
-    on_devices = [d.aerodynamics for d in line.devices if isinstance(d, AirflowSpoiler)]
-    ranges = [a.fitted_range for a in (line.ice.aerodynamics, *on_segments, *on_devices)]
+    ranges = [aerodynamics.fitted_range for _, _, aerodynamics in _coefficients(line)]
     return min((r for r in ranges if r is not None), default=np.inf)

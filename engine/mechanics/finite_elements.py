@@ -4,7 +4,6 @@ Three-node isoparametric cable elements; four freedoms a node in the order U, V,
 rigid cross-section (3) lets the sums over sub-conductors be taken once, so their number costs nothing.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -12,8 +11,8 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.cross_sections import Sections, gauss_rule
-from engine.mechanics.static_profile import GRAVITY, StaticProfile, arc_position, coordinates
-from engine.spec import AirflowSpoiler, DetuningPendulum, Line, Spacer
+from engine.mechanics.static_profile import StaticProfile, arc_position, coordinates
+from engine.spec import GRAVITY, Line, PointDevice
 
 FIELDS = 4
 U, V, W, THETA = range(FIELDS)
@@ -56,8 +55,7 @@ def matrices(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -
     stiffness = assemble(quadratic_form(at.slopes, at.weight, density))
     stiffness += assemble(quadratic_form(interpolation, weight, _ice_stiffness_density(lines, made_of)))
     for line, here, values, device in mounted(lines, profile):
-        gravity = -GRAVITY * _device_inertia(device)[W, THETA]
-        stiffness[line, here, here] += np.kron(np.outer(values, values), np.diag([0.0, 0.0, 0.0, gravity]))
+        stiffness[line, here, here] += np.kron(np.outer(values, values), device.stiffness())
     add_end_springs(lines, profile, stiffness)
     mass = mass_matrix(lines, profile, made_of)
     return Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
@@ -72,7 +70,7 @@ def mass_matrix(
     mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, made_of, sums)))
     for line, here, values, device in mounted(lines, profile):
         turn = 0.0 if twist is None else float(values @ twist[line, here.start // FIELDS : here.stop // FIELDS])
-        mass[line, here, here] += np.kron(np.outer(values, values), _device_inertia(device, turn))
+        mass[line, here, here] += np.kron(np.outer(values, values), device.inertia(turn))
     return mass
 
 
@@ -230,15 +228,12 @@ def add_end_springs(lines: Sequence[Line], profile: StaticProfile, stiffness: Fl
     stiffness[:, -FIELDS + U, -FIELDS + U] += count * springs[:, 1]
 
 
-def mounted(
-    lines: Sequence[Line], profile: StaticProfile
-) -> Iterator[tuple[int, slice, FloatArray, Spacer | DetuningPendulum]]:
-    """Yield line, freedoms of the element, shape-function values (3,) and device of every device at a point."""
+def mounted(lines: Sequence[Line], profile: StaticProfile) -> Iterator[tuple[int, slice, FloatArray, PointDevice]]:
+    """Yield line, freedoms of the element, shape-function values (3,) and device of all that acts at a point."""
     for i, line in enumerate(lines):
-        for device in line.devices:
-            if not isinstance(device, AirflowSpoiler):
-                first, values = interpolation_at(profile, i, line.span.elements, device.position)
-                yield i, slice(FIELDS * first, FIELDS * (first + 3)), values, device
+        for point in (point for device in line.devices for point in device.points):
+            first, values = interpolation_at(profile, i, line.span.elements, point.position)
+            yield i, slice(FIELDS * first, FIELDS * (first + 3)), values, point
 
 
 def interpolation_at(profile: StaticProfile, line: int, elements: int, position: float) -> tuple[int, FloatArray]:
@@ -248,21 +243,3 @@ def interpolation_at(profile: StaticProfile, line: int, elements: int, position:
     element = min(int(scaled), elements - 1)
     values, _ = shape_functions(np.array(2.0 * (scaled - element) - 1.0))
     return 2 * element, values
-
-
-def device_offset(device: Spacer | DetuningPendulum, turn: float = 0.0) -> tuple[float, float]:
-    """Return (y, z) [m] of a device's mass, its cross-section turned by an angle [rad]; a spacer is centred."""
-    if isinstance(device, Spacer):
-        return 0.0, 0.0
-    angle = device.angle - turn
-    return -device.arm * math.cos(angle), device.arm * math.sin(angle)
-
-
-def _device_inertia(device: Spacer | DetuningPendulum, turn: float = 0.0) -> FloatArray:
-    """Return the 4 x 4 inertia of a device on (U, V, W, Theta)."""
-    y, z = device_offset(device, turn)
-    inertia = np.diag([device.mass] * FIELDS)
-    inertia[THETA, THETA] = device.polar_inertia if isinstance(device, Spacer) else device.mass * device.arm**2
-    inertia[V, THETA] = inertia[THETA, V] = -device.mass * z
-    inertia[W, THETA] = inertia[THETA, W] = device.mass * y
-    return inertia

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import FloatArray
-from engine.spec import IceSegment, Line, Support
-
-GRAVITY = 9.81
+from engine.spec import GRAVITY, IceSegment, Line, Support
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,6 @@ from engine.mechanics.finite_elements import (
     Matrices,
     add_end_springs,
     assemble,
-    device_offset,
     elastic_density,
     held_freedoms,
     mass_matrix,
@@ -34,9 +33,9 @@ from engine.mechanics.finite_elements import (
     strain_points,
     turned_sums,
 )
-from engine.mechanics.static_profile import GRAVITY, StaticProfile
+from engine.mechanics.static_profile import StaticProfile
 from engine.numerics.newton import NewtonOptions, newton
-from engine.spec import Line
+from engine.spec import GRAVITY, Line
 
 FIRST_GUESS = 0.1  # rad at mid-span
 OPTIONS = NewtonOptions(tolerance=1e-9, largest_step=0.25, iterations=100)
@@ -138,10 +137,9 @@ def energy_derivatives(
     gradient = (springs @ displacement[..., None])[..., 0] + force + moment
     tangent = springs + stiffness + gravity
     for line, here, values, device in mounted(lines, profile):
-        y, z = device_offset(device, float(values @ displacement[line, here][THETA::FIELDS]))
-        weight = device.mass * GRAVITY
-        gradient[line, here][THETA::FIELDS] -= weight * z * values
-        tangent[line, here, here][THETA::FIELDS, THETA::FIELDS] -= weight * y * np.outer(values, values)
+        turn = float(values @ displacement[line, here][THETA::FIELDS])
+        gradient[line, here] -= np.kron(values, device.load(turn))
+        tangent[line, here, here] += np.kron(np.outer(values, values), device.stiffness(turn))
     return gradient, tangent
 
 

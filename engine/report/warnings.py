@@ -9,7 +9,7 @@ from engine.models.discretization import Discretization
 from engine.outcome import Outcome
 from engine.report.findings import ModelFindings
 from engine.result import LimitCycleRow
-from engine.spec import AirflowSpoiler, Ice, IceSegment, Line, ice_properties
+from engine.spec import Ice, IceSegment, Line, ice_properties
 
 HEAVY_DEVICES = 0.1  # share of the span's weight above which a warning names the devices' weight
 LEAST_INERTIA = 1e-6  # least ratio of the inertias about mass centre and reference curve: M is nearly singular below it
@@ -18,11 +18,9 @@ LEAST_INERTIA = 1e-6  # least ratio of the inertias about mass centre and refere
 def line_warnings(line: Line) -> list[str]:
     """Return a sentence for each assumption of the static profile and of the mass matrix that a line does not meet."""
     result = []
-    weight = mean_mass(line) * line.span.length * len(line.bundle.positions)
-    spoilers = [d for d in line.devices if isinstance(d, AirflowSpoiler)]
-    point_mass = sum(d.mass for d in line.devices if not isinstance(d, AirflowSpoiler))
-    spread_mass = sum(d.mass * (d.stop - d.start) for d in spoilers) * len(line.bundle.positions)
-    share = (point_mass + spread_mass) / weight
+    subconductors = len(line.bundle.positions)
+    mass = mean_mass(line) * line.span.length * subconductors
+    share = sum(device.total_mass(subconductors) for device in line.devices) / mass
     if share > HEAVY_DEVICES:
         result.append(
             f"The devices weigh {share:.0%} of the span. The static profile neglects their weight, which is accurate "

@@ -18,8 +18,9 @@ from engine.spec.analysis import (
     TorusSearch,
     check_compatible,
 )
-from engine.spec.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
+from engine.spec.devices import AirflowSpoiler, DetuningPendulum, Device, PointDevice, Spacer, StretchDevice
 from engine.spec.environment import (
+    GRAVITY,
     Aerodynamics,
     BlowOut,
     Coefficients,
@@ -35,6 +36,7 @@ from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerC
 from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 
 __all__ = [
+    "GRAVITY",
     "AerodynamicModel",
     "Aerodynamics",
     "AirflowSpoiler",
@@ -61,10 +63,12 @@ __all__ = [
     "Objective",
     "PendulumChoice",
     "Placement",
+    "PointDevice",
     "Spacer",
     "Span",
     "SpoilerChoice",
     "StaticTwist",
+    "StretchDevice",
     "Support",
     "Supports",
     "TorusSearch",

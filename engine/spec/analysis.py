@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from engine.outcome import Fault, require
-from engine.spec.devices import AirflowSpoiler
+from engine.spec.environment import Aerodynamics
 from engine.spec.line import Line
 from engine.spec.rules import positive
 
@@ -146,9 +146,9 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     most = max(analysis.loops + analysis.finite_element_loops)
     published = analysis.closure is Closure.PUBLISHED
     relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
-    owners = [("ice", line.ice.aerodynamics)]
-    owners += [(f"ice.segments.{i}", s.aerodynamics) for i, s in enumerate(line.ice.segments) if s.aerodynamics]
-    owners += [(f"devices.{i}", d.aerodynamics) for i, d in enumerate(line.devices) if isinstance(d, AirflowSpoiler)]
+    owners: list[tuple[str, Aerodynamics | None]] = [("ice", line.ice.aerodynamics)]
+    owners += [(f"ice.segments.{i}", segment.aerodynamics) for i, segment in enumerate(line.ice.segments)]
+    owners += [(f"devices.{i}", part.aerodynamics) for i, d in enumerate(line.devices) for part in d.stretches]
     require(
         Fault("loops", most, f"must not exceed the number of elements ({line.span.elements})")
         if most > line.span.elements
@@ -159,6 +159,6 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
         *(
             Fault(f"{path}.aerodynamics_at_rest", None, "must be given for the relative-wind model")
             for path, owner in owners
-            if relative and owner.at_rest is None
+            if relative and owner is not None and owner.at_rest is None
         ),
     )

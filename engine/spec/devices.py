@@ -1,60 +1,202 @@
-"""Devices that are mounted on a span."""
+"""Devices that are mounted on a span: every class says itself what the rest of the engine asks of a device.
 
+A device acts at points or on stretches, and each part of it is a `PointDevice` or a `StretchDevice`. Matrices are 4 x 4
+on U, V, W and Theta of the reference curve at its point (theory section 3), as tuples: no numpy is needed here.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from engine.outcome import require
-from engine.spec.environment import Aerodynamics
+from engine.outcome import Fault, require
+from engine.spec.environment import GRAVITY, Aerodynamics
 from engine.spec.rules import finite, not_negative, positive, stretch_faults
 
+Row = tuple[float, float, float, float]
+Matrix = tuple[Row, Row, Row, Row]
+
+NOTHING: Row = (0.0, 0.0, 0.0, 0.0)
+
 
 @dataclass(frozen=True, slots=True)
-class Spacer:
-    """Rigid spacer at a position [m]: mass m_s [kg], polar inertia I_s about the reference curve [kg m2], eq. (5)."""
+class PointDevice:
+    """A device at a position [m] with a mass [kg]; by itself a mass on the reference curve.
+
+    A device overrides what it does otherwise. turn: angle [rad] by which the cross-section stands turned at rest.
+    """
 
     position: float
     mass: float
-    polar_inertia: float
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
-        require(
-            not_negative("position", self.position),
-            not_negative("mass", self.mass),
-            not_negative("polar_inertia", self.polar_inertia),
-        )
+        require(not_negative("position", self.position), not_negative("mass", self.mass), *self.own_faults())
+
+    def own_faults(self) -> Iterable[Fault | None]:
+        """Check the rules of the fields that the device has beside position and mass."""
+        return ()
+
+    def inertia(self, turn: float = 0.0) -> Matrix:
+        """Return its part of M [kg, kg m, kg m2]."""
+        del turn
+        return mass_matrix(self.mass, 0.0)
+
+    def stiffness(self, turn: float = 0.0) -> Matrix:
+        """Return its part of K [N/m, N, N m]."""
+        del turn
+        return on_torsion(0.0)
+
+    def damping(self) -> Matrix:
+        """Return its part of C [N s/m, N s, N m s]."""
+        return on_torsion(0.0)
+
+    def load(self, turn: float = 0.0) -> Row:
+        """Return the static forces and the moment by which it turns the cross-section [N, N, N, N m]."""
+        del turn
+        return NOTHING
+
+    @property
+    def end(self) -> tuple[str, float]:
+        """The field that says where it ends, and that position [m]."""
+        return "position", self.position
+
+    @property
+    def points(self) -> tuple["PointDevice", ...]:
+        """What of it acts at a point."""
+        return (self,)
+
+    @property
+    def stretches(self) -> tuple["StretchDevice", ...]:
+        """What of it acts on a stretch."""
+        return ()
+
+    @property
+    def placed(self) -> Mapping[str, float]:
+        """What a search for its place may vary, by the column of a placement row."""
+        return {}
+
+    def total_mass(self, subconductors: int) -> float:
+        """Return its mass on a bundle of so many sub-conductors [kg]."""
+        del subconductors
+        return self.mass
 
 
 @dataclass(frozen=True, slots=True)
-class DetuningPendulum:
-    """Mass [kg] on a rigid arm [m] at an angle [rad] from straight down, positive downwind. Theory section 3."""
+class StretchDevice:
+    """A device on a stretch [start, stop] [m]: its aerodynamics hold there, and its mass is added.
 
-    position: float
-    mass: float
-    arm: float
-    angle: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check the rules of every field."""
-        require(
-            not_negative("position", self.position),
-            not_negative("mass", self.mass),
-            positive("arm", self.arm),
-            finite("angle", self.angle),
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class AirflowSpoiler:
-    """Stretch [start, stop] [m] on which other aerodynamics hold; mass is added per sub-conductor [kg/m]."""
+    Without aerodynamics those below it hold; mass is per length of each sub-conductor [kg/m].
+    """
 
     start: float
     stop: float
-    aerodynamics: Aerodynamics
+    aerodynamics: Aerodynamics | None
     mass: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
         require(*stretch_faults(self.start, self.stop), not_negative("mass", self.mass))
 
+    @property
+    def end(self) -> tuple[str, float]:
+        """The field that says where it ends, and that position [m]."""
+        return "stop", self.stop
 
-Device = Spacer | DetuningPendulum | AirflowSpoiler
+    @property
+    def points(self) -> tuple[PointDevice, ...]:
+        """What of it acts at a point."""
+        return ()
+
+    @property
+    def stretches(self) -> tuple["StretchDevice", ...]:
+        """What of it acts on a stretch."""
+        return (self,)
+
+    @property
+    def placed(self) -> Mapping[str, float]:
+        """What a search for its place may vary, by the column of a placement row."""
+        return {}
+
+    def total_mass(self, subconductors: int) -> float:
+        """Return its mass on a bundle of so many sub-conductors [kg]."""
+        return self.mass * (self.stop - self.start) * subconductors
+
+
+Device = PointDevice | StretchDevice
+
+
+@dataclass(frozen=True, slots=True)
+class Spacer(PointDevice):
+    """Rigid spacer at a position [m]: mass m_s [kg], polar inertia I_s about the reference curve [kg m2], eq. (5)."""
+
+    polar_inertia: float
+
+    def own_faults(self) -> Iterable[Fault | None]:
+        """Check the polar inertia."""
+        yield not_negative("polar_inertia", self.polar_inertia)
+
+    def inertia(self, turn: float = 0.0) -> Matrix:
+        """Return m_s on U, V, W and I_s on Theta."""
+        del turn
+        return mass_matrix(self.mass, self.polar_inertia)
+
+
+@dataclass(frozen=True, slots=True)
+class DetuningPendulum(PointDevice):
+    """Mass [kg] on a rigid arm [m] at an angle [rad] from straight down, positive downwind. Theory section 3."""
+
+    arm: float
+    angle: float = 0.0
+
+    def own_faults(self) -> Iterable[Fault | None]:
+        """Check the arm and its angle."""
+        yield positive("arm", self.arm)
+        yield finite("angle", self.angle)
+
+    def offset(self, turn: float = 0.0) -> tuple[float, float]:
+        """Return (y, z) of the mass about the reference curve [m]."""
+        angle = self.angle - turn
+        return -self.arm * math.cos(angle), self.arm * math.sin(angle)
+
+    def inertia(self, turn: float = 0.0) -> Matrix:
+        """Return that of a point mass at its offset."""
+        return mass_matrix(self.mass, self.mass * self.arm**2, self.offset(turn))
+
+    def stiffness(self, turn: float = 0.0) -> Matrix:
+        """Return the gravity stiffness -m g y on Theta."""
+        return on_torsion(-GRAVITY * (self.mass * self.offset(turn)[0]))
+
+    def load(self, turn: float = 0.0) -> Row:
+        """Return the moment m g z of the weight."""
+        return (0.0, 0.0, 0.0, self.mass * GRAVITY * self.offset(turn)[1])
+
+    @property
+    def placed(self) -> Mapping[str, float]:
+        """Position [m], mass [kg] and arm [m]."""
+        return {"position_m": self.position, "mass_kg": self.mass, "arm_m": self.arm}
+
+
+@dataclass(frozen=True, slots=True)
+class AirflowSpoiler(StretchDevice):
+    """Stretch [start, stop] [m] on which other aerodynamics hold; mass is added per sub-conductor [kg/m]."""
+
+    @property
+    def placed(self) -> Mapping[str, float]:
+        """Where it begins and ends [m]."""
+        return {"from_m": self.start, "to_m": self.stop}
+
+
+def mass_matrix(mass: float, polar_inertia: float, offset: tuple[float, float] = (0.0, 0.0)) -> Matrix:
+    """Return the inertia of a body: mass [kg] at (y, z) [m], polar inertia about the reference curve [kg m2]."""
+    y, z = offset
+    return (
+        (mass, 0.0, 0.0, 0.0),
+        (0.0, mass, 0.0, -mass * z),
+        (0.0, 0.0, mass, mass * y),
+        (0.0, -mass * z, mass * y, polar_inertia),
+    )
+
+
+def on_torsion(value: float) -> Matrix:
+    """Return the matrix that acts on Theta alone."""
+    return (NOTHING, NOTHING, NOTHING, (0.0, 0.0, 0.0, value))

@@ -9,6 +9,8 @@ from engine.spec.rules import finite, not_negative, overlap_faults, positive, st
 
 Coefficients = tuple[float, float, float]
 
+GRAVITY = 9.81  # m/s2
+
 
 @dataclass(frozen=True, slots=True)
 class MeasuredCoefficients:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from engine.outcome import Fault, require
-from engine.spec.devices import AirflowSpoiler, Device
+from engine.spec.devices import Device, StretchDevice
 from engine.spec.environment import Damping, Ice, IceSegment, Wind
 from engine.spec.rules import overlap_faults
 from engine.spec.span import Bundle, Conductor, Span, Supports
@@ -26,20 +26,21 @@ class Line:
 
     def __post_init__(self) -> None:
         """Check what concerns several parts: positions on the span, and inertia beside eccentricity."""
-        spoilers = [(i, d) for i, d in enumerate(self.devices) if isinstance(d, AirflowSpoiler)]
         require(
             *self._position_faults(),
-            *overlap_faults("devices", [(d.start, d.stop) for _, d in spoilers]),
+            *overlap_faults("devices", [(part.start, part.stop) for part in self.stretches]),
             *self._inertia_faults(),
         )
+
+    @property
+    def stretches(self) -> tuple[StretchDevice, ...]:
+        """What of the devices acts on a stretch."""
+        return tuple(part for device in self.devices for part in device.stretches)
 
     def _position_faults(self) -> Iterator[Fault]:
         ends = [(f"ice.segments.{i}.stop", segment.stop) for i, segment in enumerate(self.ice.segments)]
         ends += [(f"wind.profile.{i}.position", position) for i, (position, _) in enumerate(self.wind.profile)]
-        for i, device in enumerate(self.devices):
-            spoiler = isinstance(device, AirflowSpoiler)
-            name = "stop" if spoiler else "position"
-            ends.append((f"devices.{i}.{name}", getattr(device, name)))
+        ends += [(f"devices.{i}.{device.end[0]}", device.end[1]) for i, device in enumerate(self.devices)]
         for name, value in ends:
             if value > self.span.length * (1.0 + 1e-9):
                 yield Fault(name, value, f"must lie on the span (its length is {self.span.length})")

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import ClassVar, Literal
 
 from engine.outcome import Fault, require
 from engine.spec.analysis import Analysis
@@ -12,6 +13,7 @@ from engine.spec.line import Line
 from engine.spec.rules import finite, not_negative, positive
 
 Range = tuple[float, float]
+Placeable = Literal["detuning_pendulum", "airflow_spoiler"]
 
 
 class Objective(StrEnum):
@@ -24,6 +26,8 @@ class Objective(StrEnum):
 @dataclass(frozen=True, slots=True)
 class PendulumChoice:
     """So many equal pendulums: ranges of their positions [m], mass [kg] and arm [m]; their angle [rad] is given."""
+
+    type: ClassVar[Placeable] = "detuning_pendulum"
 
     count: int
     position: Range
@@ -56,6 +60,8 @@ class PendulumChoice:
 @dataclass(frozen=True, slots=True)
 class SpoilerChoice:
     """One spoiler of given length [m] anywhere within a range of positions [m]; mass is per sub-conductor [kg/m]."""
+
+    type: ClassVar[Placeable] = "airflow_spoiler"
 
     length: float
     position: Range
@@ -112,12 +118,13 @@ def check_placement(line: Line, analysis: Analysis, placement: Placement) -> Non
         lowered without wind speeds.
     """
     choice, last = placement.choice, placement.choice.position[1]
-    spoilers = isinstance(choice, SpoilerChoice) and any(isinstance(d, AirflowSpoiler) for d in line.devices)
+    first = choice.devices(*(lowest for lowest, _ in choice.bounds))
+    beside = bool(line.stretches) and any(device.stretches for device in first)
     still = placement.objective is Objective.LOWEST_AMPLITUDE and not analysis.wind_speeds
     off_span = f"must lie on the span (its length is {line.span.length})"
     require(
         Fault("choice.position.highest", last, off_span) if last > line.span.length else None,
-        Fault("choice", None, "must not place a spoiler on a line that has one") if spoilers else None,
+        Fault("choice", None, "must not place a spoiler on a line that has one") if beside else None,
         Fault("objective", placement.objective.value, "needs wind speeds in the analysis") if still else None,
     )
 

@@ -15,9 +15,7 @@ from engine.progress import Progress, finished, translated
 from engine.report.device_effects import device_effects, largest_amplitude, lowest_onset
 from engine.result import PlacedDeviceRow, Result
 from engine.spec import (
-    AirflowSpoiler,
     Analysis,
-    DetuningPendulum,
     DeviceEffect,
     Line,
     LoopCompetition,
@@ -158,17 +156,15 @@ def _rows(fitted: Line, before: int, placement: Placement, search: _Search) -> t
     """Write the devices that were added after so many others."""
     rows = []
     for number, device in enumerate(fitted.devices[before:], start=before):
-        spoiler = device if isinstance(device, AirflowSpoiler) else None
-        pendulum = device if isinstance(device, DetuningPendulum) else None
         rows.append(
             PlacedDeviceRow(
                 device=number,
-                type="airflow_spoiler" if spoiler else "detuning_pendulum",
-                position_m=pendulum.position if pendulum else None,
-                mass_kg=pendulum.mass if pendulum else None,
-                arm_m=pendulum.arm if pendulum else None,
-                from_m=spoiler.start if spoiler else None,
-                to_m=spoiler.stop if spoiler else None,
+                type=placement.choice.type,
+                position_m=device.placed.get("position_m"),
+                mass_kg=device.placed.get("mass_kg"),
+                arm_m=device.placed.get("arm_m"),
+                from_m=device.placed.get("from_m"),
+                to_m=device.placed.get("to_m"),
                 objective=placement.objective,
                 objective_value=search.value,
                 evaluations=search.evaluations,
