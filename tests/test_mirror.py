@@ -92,6 +92,7 @@ OF_NO_SINGLE_MODULE = {
     "tests/app/test_result_tables.py": "A table that a test declares goes through every form of an answer.",
     "tests/benchmarks": "The benchmarks are tools: what others read from them is tested.",
     "tests/e2e": "The whole service runs as users start it.",
+    "tests/engine/devices": "A device is held by the matrices and the motions that it changes.",
     "tests/engine/test_coexisting_cycles.py": "Cycles that only the search as a whole finds are held on three lines.",
     "tests/engine/test_costs.py": "Systems solved a line are counted over the whole analysis.",
     "tests/engine/test_imports.py": "Every module of the engine may import a few others only.",

@@ -236,6 +236,19 @@ def mounted(lines: Sequence[Line], profile: StaticProfile) -> Iterator[tuple[int
             yield i, slice(FIELDS * first, FIELDS * (first + 3)), values, point
 
 
+def device_damping(lines: Sequence[Line], profile: StaticProfile, shapes: FloatArray) -> FloatArray:
+    """Project the damping of devices onto shapes (lines, ..., m, fields, nodes): (lines, ..., m, m).
+
+    fields: the last ones of U, V, W, Theta. Shapes without U leave the damping along the line out.
+    """
+    fields = shapes.shape[-2]
+    total = np.zeros((*shapes.shape[:-2], shapes.shape[-3]))
+    for line, here, values, device in mounted(lines, profile):
+        motion = shapes[line][..., here.start // FIELDS : here.stop // FIELDS] @ values
+        total[line] += motion @ np.array(device.damping())[-fields:, -fields:] @ motion.swapaxes(-1, -2)
+    return total
+
+
 def interpolation_at(profile: StaticProfile, line: int, elements: int, position: float) -> tuple[int, FloatArray]:
     """Return the first node and the shape-function values (3,) of the element at a horizontal position [m]."""
     whole = arc_position(profile, np.full((profile.arc_length.size, 1), position))[line, 0]

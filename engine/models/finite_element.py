@@ -3,7 +3,7 @@
 import numpy as np
 
 from engine.arrays import FloatArray
-from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
+from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W, device_damping
 from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
 from engine.models.aerodynamic_load import span_load, take_load
 from engine.models.discretization import Discretization
@@ -19,12 +19,13 @@ def finite_element_model(
     """Return the model reduced to the full modes of several loops per direction, with the exact load: (lines,).
 
     Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
-    2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi. Theory section 7.4.
+    2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi, and that of devices. Section 7.4.
     """
     vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
     values = modes.eigenvalues.reshape(vectors.shape[:2])
     nodes = vectors.shape[-1] // FIELDS
-    nodal = vectors.reshape(*vectors.shape[:2], nodes, FIELDS)[..., list(TRANSVERSE)].swapaxes(-1, -2)
+    fields = vectors.reshape(*vectors.shape[:2], nodes, FIELDS).swapaxes(-1, -2)
+    nodal = fields[:, :, list(TRANSVERSE)]
     at = at_points(discretization.matrices, nodal)
     load = span_load(
         discretization.lines,
@@ -36,7 +37,8 @@ def finite_element_model(
     unstable = np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
     return ReducedModel(
         mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
-        damping=_modal_damping(discretization, vectors, shapes, modes.loops),
+        damping=_modal_damping(discretization, vectors, shapes, modes.loops)
+        + device_damping(discretization.lines, discretization.profile, fields),
         stiffness=diagonal_matrices(values),
         load=take_load(load, (slice(None), 0)),
         shapes=nodal,

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import FloatArray
-from engine.mechanics.finite_elements import FIELDS, Matrices
+from engine.mechanics.finite_elements import FIELDS, Matrices, device_damping
 from engine.mechanics.modes import DirectionalShapes, at_points
 from engine.models.aerodynamic_load import PolynomialLoad, integrate_along_span, published_load, span_load, take_load
 from engine.models.discretization import Discretization
@@ -41,9 +41,10 @@ def hybrid_model(
     constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in discretization.lines])
     square = np.where(constant[:, None, None], squares[:, [shapes.loops.index(1)]], squares[:, selected])
     rate = 2.0 * damping_ratios(discretization.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
-    damping = diagonal_matrices(rate * diagonals(mass))  # (11)
     unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
     nodal = _diagonal_fields(shapes.nodal[:, selected, 1:])
+    damping = diagonal_matrices(rate * diagonals(mass))  # (11)
+    damping += device_damping(discretization.lines, discretization.profile, nodal)
     load = _hybrid_load(discretization, nodal, analysis)
     return ReducedModel(mass, damping, stiffness, load, nodal, np.arange(3), unstable)
 
@@ -54,7 +55,7 @@ def joint_model(
     """Return the model in which the hybrid shapes of several loops move together, with the exact load.
 
     Parameters are those of `hybrid_model`; leading axis (lines,). The coordinates are f_v of each number of loops,
-    then f_w, then f_theta; each has the damping of its own hybrid model.
+    then f_w, then f_theta; each has the structural damping of its own hybrid model.
     """
     alone = hybrid_model(discretization, shapes, loops, analysis)
     selected = [shapes.loops.index(k) for k in loops]
@@ -62,8 +63,9 @@ def joint_model(
     mass, stiffness = (
         matrix[:, 0] for matrix in _condensed(discretization.matrices, together, analysis.longitudinal_inertia)
     )
-    rates = diagonals(alone.damping).swapaxes(-1, -2)
     nodal = np.moveaxis(alone.shapes, 1, 2).reshape(len(discretization.lines), -1, *alone.shapes.shape[-2:])
+    own = diagonals(alone.damping).swapaxes(-1, -2).reshape(len(discretization.lines), -1)  # with that of devices
+    coupled = device_damping(discretization.lines, discretization.profile, nodal)
     values = at_points(discretization.matrices, nodal)
     load = span_load(
         discretization.lines,
@@ -74,7 +76,7 @@ def joint_model(
     )
     return ReducedModel(
         mass=mass,
-        damping=diagonal_matrices(rates.reshape(len(discretization.lines), -1)),
+        damping=diagonal_matrices(own - diagonals(coupled)) + coupled,
         stiffness=stiffness,
         load=take_load(load, (slice(None), 0)),
         shapes=nodal,
