@@ -19,6 +19,7 @@ _DEVICES: Mapping[str, type[spec.Device]] = {
     "spacer": spec.Spacer,
     "detuning_pendulum": spec.DetuningPendulum,
     "airflow_spoiler": spec.AirflowSpoiler,
+    "torsional_damper": spec.TorsionalDamper,
 }
 _CHOICES: Mapping[str, type[spec.PendulumChoice | spec.SpoilerChoice]] = {
     "detuning_pendulum": spec.PendulumChoice,

@@ -1,7 +1,7 @@
 """The JSON that comes in, as pydantic models: names, units, bounds, defaults and examples of the fields."""
 
 from app.schemas.analysis import Analysis, Axis, JobRequest, Study, WindSpeedRange
-from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer
+from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer, TorsionalDamper
 from app.schemas.environment import (
     Aerodynamics,
     AerodynamicsAtRest,
@@ -46,6 +46,7 @@ __all__ = [
     "Study",
     "Support",
     "Supports",
+    "TorsionalDamper",
     "Wind",
     "WindSpeedRange",
 ]

@@ -31,6 +31,20 @@ class DetuningPendulum(Document):
     )
 
 
+class TorsionalDamper(Document):
+    """A clamped viscous damper against torsion."""
+
+    type: Literal["torsional_damper"] = Field(description="Kind of device", examples=["torsional_damper"])
+    position: float = quantity("position_m", "Distance from the left support", "m", ON_SPAN, 62.94)
+    mass: float = quantity("mass_kg", "Mass", "kg", (0.0, 1e4), 20.0)
+    polar_inertia: float = quantity(
+        "polar_inertia_kg_m2", "Polar inertia about the reference curve", "kg m2", (0.0, 1e4), 0.8
+    )
+    coefficient: float = quantity(
+        "damping_n_m_s", "Moment per angular velocity of the bundle", "N m s", (0.0, 1e6), 15.0
+    )
+
+
 class AirflowSpoiler(Document):
     """A spoiler: a stretch of the span with other aerodynamic coefficients."""
 
@@ -50,4 +64,4 @@ class AirflowSpoiler(Document):
     mass: float = quantity("mass_kg_per_m", "Added mass per length of a sub-conductor", "kg/m", (0.0, 100.0), 0.3, 0.0)
 
 
-Device = Annotated[Spacer | DetuningPendulum | AirflowSpoiler, Field(discriminator="type")]
+Device = Annotated[Spacer | DetuningPendulum | AirflowSpoiler | TorsionalDamper, Field(discriminator="type")]

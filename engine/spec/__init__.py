@@ -18,7 +18,15 @@ from engine.spec.analysis import (
     TorusSearch,
     check_compatible,
 )
-from engine.spec.devices import AirflowSpoiler, DetuningPendulum, Device, PointDevice, Spacer, StretchDevice
+from engine.spec.devices import (
+    AirflowSpoiler,
+    DetuningPendulum,
+    Device,
+    PointDevice,
+    Spacer,
+    StretchDevice,
+    TorsionalDamper,
+)
 from engine.spec.environment import (
     GRAVITY,
     Aerodynamics,
@@ -71,6 +79,7 @@ __all__ = [
     "StretchDevice",
     "Support",
     "Supports",
+    "TorsionalDamper",
     "TorusSearch",
     "Wind",
     "check_compatible",

@@ -177,6 +177,31 @@ class DetuningPendulum(PointDevice):
 
 
 @dataclass(frozen=True, slots=True)
+class TorsionalDamper(PointDevice):
+    """Clamped viscous damper against torsion: polar inertia about the reference curve [kg m2].
+
+    coefficient: its moment per angular velocity of the cross-section [N m s].
+    """
+
+    polar_inertia: float
+    coefficient: float
+
+    def own_faults(self) -> Iterable[Fault | None]:
+        """Check the polar inertia and the coefficient."""
+        yield not_negative("polar_inertia", self.polar_inertia)
+        yield not_negative("coefficient", self.coefficient)
+
+    def inertia(self, turn: float = 0.0) -> Matrix:
+        """Return the mass on U, V, W and the polar inertia on Theta."""
+        del turn
+        return mass_matrix(self.mass, self.polar_inertia)
+
+    def damping(self) -> Matrix:
+        """Return the coefficient on Theta."""
+        return on_torsion(self.coefficient)
+
+
+@dataclass(frozen=True, slots=True)
 class AirflowSpoiler(StretchDevice):
     """Stretch [start, stop] [m] on which other aerodynamics hold; mass is added per sub-conductor [kg/m]."""
 

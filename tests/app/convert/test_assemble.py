@@ -7,14 +7,14 @@ from app import schemas
 from app.convert.assemble import SoundParts, gather
 from app.reference.source_lines import example
 from engine import spec
-from tests.app.lines import COEFFICIENTS, FULL_LINE, changed
+from tests.app.lines import COEFFICIENTS, FULL_LINE, changed, faults
 
 
 def built(line: dict[str, Any], analysis: dict[str, Any] | None = None) -> tuple[spec.Line, spec.Analysis]:
-    made, asked, faults = gather(
+    made, asked, wrong = gather(
         SoundParts.of(schemas.Line.model_validate(line)), schemas.Analysis.model_validate(analysis or {})
     )
-    assert faults == []
+    assert wrong == []
     assert made is not None
     return made, asked
 
@@ -38,6 +38,16 @@ def test_every_field_of_the_contract_arrives_in_the_engine_in_its_unit() -> None
             spec.AirflowSpoiler(30.0, 60.0, spec.Aerodynamics(vertical, horizontal, torsional), 0.3),
         ),
     )
+
+
+def test_a_torsional_damper_arrives_and_its_damping_may_be_studied() -> None:
+    damper = {"type": "torsional_damper", "position_m": 62.94, "mass_kg": 20.0, "polar_inertia_kg_m2": 0.8}
+    line = changed("devices", [{**damper, "damping_n_m_s": 15.0}])
+    assert built(line)[0].devices == (spec.TorsionalDamper(62.94, 20.0, 0.8, 15.0),)
+    axes = [{"parameter": "devices.0.damping_n_m_s", "values": [0.0, 30.0]}]
+    assert faults({"line": line, "study": {"axes": axes}}) == []
+    refused = faults({"line": changed("devices.0.damping_n_m_s", -1.0, line)})
+    assert [fault.pointer for fault in refused] == ["/line/devices/0/damping_n_m_s"]
 
 
 def test_every_field_of_an_analysis_arrives_in_the_engine() -> None:

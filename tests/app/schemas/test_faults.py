@@ -59,7 +59,11 @@ def test_pointers_escape_and_cut_what_strangers_wrote() -> None:
         ("span.length_m", True, "should be a valid number, got true"),
         ("span.length_m", None, "should be a valid number, got null"),
         ("damping.model", "ö" * 100, ', got "' + "ö" * 79),
-        ("devices.0.type", "anchor", 'type must be spacer, detuning_pendulum or airflow_spoiler, got "anchor"'),
+        (
+            "devices.0.type",
+            "anchor",
+            'type must be spacer, detuning_pendulum, airflow_spoiler or torsional_damper, got "anchor"',
+        ),
         ("conductor.colour", "red", "unknown field"),
         ("conductor", [1.0], "must be an object"),
         ("conductor", {}, "field required"),
