@@ -196,5 +196,5 @@ class Line(Document):
     wind: Wind = Field(default=Wind(), description="The wind, except its speed", examples=[_TWIN["wind"]])
     damping: Damping = Field(description="Structural damping", examples=[_TWIN["damping"]])
     devices: list[Device] = Field(
-        default=[], max_length=200, description="Spacers, pendulums and spoilers", examples=[[_SPACER]]
+        default=[], max_length=200, description="What is mounted on the span", examples=[[_SPACER]]
     )
