@@ -50,7 +50,7 @@ def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
     jobs = [job_records.make(order.submission, now) for order in orders]
     asked = [(order.submission.caller.owner, order.submission.document) for order in orders if order.may_reuse]
     found = iter(reuse.find(session, asked, ENGINE_VERSION))
-    sources = [next(found) if order.may_reuse else None for order in orders]
+    sources = [next(found, None) if order.may_reuse else None for order in orders]
     for job, source in zip(jobs, sources, strict=True):
         if source is not None:
             reuse.adopt(job, source, ENGINE_VERSION)
