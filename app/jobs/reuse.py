@@ -55,7 +55,7 @@ def _known(session: Session, hashes: Collection[str], engine_version: str) -> Co
     if session.get_bind().dialect.name != "postgresql":
         return hashes
     listed = bindparam("hashes", list(hashes), type_=ARRAY(String))
-    each = func.unnest(listed).column_valued("input_hash")
+    each = func.unnest(listed).column_valued("wanted")  # no column of results: the subquery would take it for its own
     there = exists().where(PointRow.input_hash == each, *_usable(engine_version))
     return set(session.scalars(select(each).where(there)))
 
