@@ -100,7 +100,7 @@ def test_rows_that_the_database_cannot_hold_are_refused_as_it_refuses_others(
 
 
 @pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
-def test_copy_on_a_lost_connection_is_an_operational_error(sessions: sessionmaker[Session]) -> None:
+def test_insert_on_a_lost_connection_is_an_operational_error(sessions: sessionmaker[Session]) -> None:
     row = {"batch_id": uuid4(), "number": 1, "document": {}, "chunk_id": uuid4()}
     with pytest.raises(OperationalError), sessions.begin() as session:
         own = session.scalar(text("SELECT pg_backend_pid()"))
