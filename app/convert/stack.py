@@ -73,7 +73,7 @@ def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
         rooted = faults_of(error.errors(include_url=False), root=_LINE)
         options = analysis.model_dump(mode="json", by_alias=True)
         raise BadInput(_unrooted(with_further_faults({"line": document, "analysis": options}, rooted))) from error
-    faults = request_faults(schemas.JobRequest.model_construct(line=line, analysis=analysis, study=None))
+    faults = request_faults(schemas.JobRequest(line=line, analysis=analysis))
     if faults:
         raise BadInput(_unrooted(faults))
     return line
