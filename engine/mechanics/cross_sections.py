@@ -157,7 +157,7 @@ def _line_properties(line: Line, position: FloatArray) -> tuple[FloatArray, Floa
         moment[here] = iced * np.array([e_y, e_z])
     for part in line.stretches:
         mass[(position >= part.start) & (position < part.stop)] += part.mass
-    return mass, moment, _wind_factor(line, position), _aerodynamics(line, position, np.zeros(position.shape))
+    return mass, moment, wind_factor(line, position), _aerodynamics(line, position, np.zeros(position.shape))
 
 
 def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatArray:
@@ -185,7 +185,8 @@ def _at_local_angle(aerodynamics: Aerodynamics, twist: FloatArray) -> FloatArray
     return np.stack([_table(fit_measured(aerodynamics.measured, turn)) for turn in twist.tolist()])
 
 
-def _wind_factor(line: Line, position: FloatArray) -> FloatArray:
+def wind_factor(line: Line, position: FloatArray) -> FloatArray:
+    """Return the wind factor phi at horizontal positions (...) [m]: linear between the profile's points."""
     if not line.wind.profile:
         return np.ones(position.shape)
     marks, factors = zip(*line.wind.profile, strict=True)

@@ -103,7 +103,7 @@ def span_load(
     diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
     factor = sections_of_lines.wind_factor.reshape(len(lines), 1, -1)
     coefficients = sections_of_lines.aerodynamics.reshape(len(lines), 1, -1, 3, 4)
-    angle = _angle_forms(points, diameter, factor)
+    angle = angle_forms(points, diameter, factor)
     if model is AerodynamicModel.PUBLISHED:
         forms, local = angle[..., None, :], coefficients[..., 1:]
     else:
@@ -117,9 +117,19 @@ def span_load(
     return polynomial_load(forms, outputs @ local, angle)
 
 
-def _angle_forms(points: FloatArray, diameter: FloatArray, factor: FloatArray) -> FloatArray:
-    """Return the linear form of alpha in (q, q'/U), eq. (16): (lines, groups, points, 2 m)."""
-    v, theta = points[..., VERTICAL, :], points[..., TORSIONAL, :]
+def angle_forms(fields: FloatArray, diameter: FloatArray, factor: FloatArray) -> FloatArray:
+    """Return the linear form of alpha in (q, q'/U), eq. (16): (lines, groups, points, 2 m).
+
+    Parameters
+    ----------
+    fields : (lines, groups, m, 3, points)
+        V, W and Theta of each generalized coordinate.
+    diameter : broadcasts to (lines, groups, points)
+        Of the sub-conductors [m].
+    factor : broadcasts to (lines, groups, points)
+        Wind factor phi.
+    """
+    v, theta = fields[..., VERTICAL, :], fields[..., TORSIONAL, :]
     rates = -(v + 0.5 * diameter[..., None] * theta) / factor[..., None, :]
     return np.moveaxis(np.concatenate([theta, rates], axis=2), -1, 2)
 
@@ -253,7 +263,7 @@ def published_load(
     form[..., 3 + VERTICAL] = -f_vtheta / speed  # (A16)
     form[..., 3 + TORSIONAL] = -0.5 * diameter / speed
     points = merge_axes(fields, -2)
-    angle = _angle_forms(points, diameter[..., None], factor)
+    angle = angle_forms(points, diameter[..., None], factor)
     return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)
 
 

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import FloatArray
-from engine.mechanics.cross_sections import Sections, sections
+from engine.arrays import FloatArray, IntArray
+from engine.mechanics.cross_sections import Sections, sections, wind_factor
 from engine.mechanics.finite_elements import Matrices, matrices, shape_functions
-from engine.mechanics.static_profile import StaticProfile, static_profile
+from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
 from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state
+from engine.models.aerodynamic_load import angle_forms
 from engine.spec import Line, StaticTwist
 
 
@@ -38,6 +39,31 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
         return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
     state = twisted_state(lines, profile, sections_of_lines)
     return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, sections_of_lines, state), state)
+
+
+def nodal_angle_forms(discretization: Discretization, line: IntArray, shapes: FloatArray) -> FloatArray:
+    """Return the linear form of alpha in (q, q'/U) at the nodes, eq. (16).
+
+    The nodes, unlike the quadrature points, stay where they are however the ice is divided into pieces.
+
+    Parameters
+    ----------
+    discretization : Discretization
+    line : (members,)
+        Index of the line of each model.
+    shapes : (members, m, 3, nodes)
+        V, W and Theta of each generalized coordinate.
+
+    Returns
+    -------
+    (members, nodes, 2 m)
+    """
+    lines, profile = discretization.lines, discretization.profile
+    arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, shapes.shape[-1])
+    positions = horizontal_position(profile, arc)
+    factor = np.stack([wind_factor(*of_line) for of_line in zip(lines, positions, strict=True)])
+    diameter = np.array([of_line.conductor.diameter for of_line in lines])
+    return angle_forms(shapes[:, None], diameter[line, None, None], factor[line, None])[:, 0]
 
 
 def observation(discretization: Discretization, shapes: FloatArray, loops: int) -> FloatArray:

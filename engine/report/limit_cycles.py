@@ -11,7 +11,7 @@ from engine.arrays import FloatArray, IntArray, eigenvalues
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
 from engine.mechanics.static_profile import horizontal_position
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
-from engine.models.discretization import Discretization, observation
+from engine.models.discretization import Discretization, nodal_angle_forms, observation
 from engine.outcome import Outcome, Stability
 from engine.report.cells import finite_or_none, lists_by_line
 from engine.report.findings import ModelFindings
@@ -139,7 +139,7 @@ def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Sc
         here = loops == k
         observed_shapes = observation(discretization, shapes[here], int(k))
         series[here] = observed_shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
-    angles = _largest_angles(findings)
+    angles = _largest_angles(discretization, findings)
     outside = angles > discretization.sections.fitted_range[line]
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
@@ -178,12 +178,13 @@ def _quasi_periodic_motions(
     frequency, _ = base_frequencies(model, member, tori)
     energy = model.modal_masses[member] * mean_square_velocity(tori)
     loops = findings.loops[member, energy.argmax(axis=-1)]
+    forms = nodal_angle_forms(discretization, findings.line, model.shapes)
     ranges, angles, outcome = np.empty((2, 3, member.size)), np.empty(member.size), []
     for i in range(member.size):
         one = tori.select(np.array([i]))
         series = observation(discretization, model.shapes[member[i]], int(loops[i])).T @ one.coefficients[0]
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
-        angles[i] = largest_angle(model, int(member[i]), one)
+        angles[i] = largest_angle(one, forms[member[i]])
         beyond = angles[i] > discretization.sections.fitted_range[line[i]]
         outcome.append(Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED)
     measures = {
@@ -255,9 +256,9 @@ def _dominant_loops(findings: ModelFindings) -> IntArray:
     return np.asarray(findings.loops[findings.cycles.member, energy.argmax(axis=-1)])
 
 
-def _largest_angles(findings: ModelFindings) -> FloatArray:
-    """Return the largest |alpha| of each cycle along the span and over the period (cycles,) [rad]."""
+def _largest_angles(discretization: Discretization, findings: ModelFindings) -> FloatArray:
+    """Return the largest |alpha| of each cycle at the nodes and over the period (cycles,) [rad]."""
     cycles = findings.cycles
     state = states(cycles.orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
-    angle = findings.model.load.angle[cycles.member]
-    return np.asarray(np.abs(state @ angle.swapaxes(-1, -2)).max(axis=(-1, -2), initial=0.0))
+    forms = nodal_angle_forms(discretization, findings.line, findings.model.shapes)[cycles.member]
+    return np.asarray(np.abs(state @ forms.swapaxes(-1, -2)).max(axis=(-1, -2), initial=0.0))

@@ -88,7 +88,7 @@ class Ice:
         require(
             finite("ice.eccentricity_y", self.eccentricity_y),
             finite("ice.eccentricity_z", self.eccentricity_z),
-            *overlap_faults("ice.segments", [(s.start, s.stop) for s in self.segments]),
+            *overlap_faults((f"ice.segments.{i}", s.start, s.stop) for i, s in enumerate(self.segments)),
         )
 
 

@@ -28,7 +28,7 @@ class Line:
         """Check what concerns several parts: positions on the span, and inertia beside eccentricity."""
         require(
             *self._position_faults(),
-            *overlap_faults("devices", [(part.start, part.stop) for part in self.stretches]),
+            *overlap_faults(self._stretches_by_field()),
             *self._inertia_faults(),
         )
 
@@ -36,6 +36,10 @@ class Line:
     def stretches(self) -> tuple[StretchDevice, ...]:
         """What of the devices acts on a stretch."""
         return tuple(part for device in self.devices for part in device.stretches)
+
+    def _stretches_by_field(self) -> Iterator[tuple[str, float, float]]:
+        for i, device in enumerate(self.devices):
+            yield from ((f"devices.{i}", part.start, part.stop) for part in device.stretches)
 
     def _position_faults(self) -> Iterator[Fault]:
         ends = [(f"ice.segments.{i}.stop", segment.stop) for i, segment in enumerate(self.ice.segments)]

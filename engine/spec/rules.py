@@ -1,7 +1,7 @@
 """Rules that several parts of a specification share; each returns a fault or None."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 from engine.outcome import Fault
@@ -35,10 +35,8 @@ def stretch_faults(start: float, stop: float) -> Iterator[Fault | None]:
     yield None if start < stop else Fault("stop", stop, f"must be greater than the start ({start})")
 
 
-def overlap_faults(path: str, stretches: Sequence[tuple[float, float]]) -> Iterator[Fault]:
-    """Yield a fault for every stretch (start, stop) [m] that begins before its left neighbour ends."""
-    order = sorted(range(len(stretches)), key=lambda i: stretches[i])
-    for left, right in pairwise(order):
-        if stretches[right][0] < stretches[left][1]:
-            start, stop = stretches[left]
-            yield Fault(f"{path}.{right}", stretches[right], f"must not overlap the stretch from {start} to {stop}")
+def overlap_faults(stretches: Iterable[tuple[str, float, float]]) -> Iterator[Fault]:
+    """Yield a fault for every stretch (field, start, stop) [m] that begins before its left neighbour ends."""
+    for (_, start, stop), (field, begins, ends) in pairwise(sorted(stretches, key=lambda stretch: stretch[1:])):
+        if begins < stop:
+            yield Fault(field, (begins, ends), f"must not overlap the stretch from {start} to {stop}")

@@ -117,6 +117,11 @@ RULES: list[tuple[Callable[[], object], str, str]] = [
         "devices.1",
         "overlap",
     ),
+    (
+        with_devices(Spacer(1.0, 1.0, 1.0), AirflowSpoiler(9.0, 12.0, ICE_AT_40), AirflowSpoiler(0.0, 10.0, ICE_AT_40)),
+        "devices.1",
+        "overlap",
+    ),
     (lambda: replace(LINE, ice=segments(IceSegment(100.0, 140.0))()), "ice.segments.0.stop", "on the span"),
     (lambda: replace(LINE, wind=Wind(1.2, ((200.0, 1.0),))), "wind.profile.0.position", "on the span"),
     (lambda: replace(LINE, ice=Ice(ICE_AT_40, 0.02, 0.0)), "ice.eccentricity_y", "polar inertia"),
