@@ -75,7 +75,7 @@ def test_a_zombies_late_result_is_dropped(deployment: Settings, deployed: sessio
             wait_until(lambda: look(deployed, job_id).status is JobStatus.SUCCESSFUL, 90.0, "the end of the job")
             ended = look(deployed, job_id).finished_at
         log = deployment.data_dir / "process.log"
-        wait_until(lambda: "results are dropped" in log.read_text(), 60.0, "the zombie's end of the job")
+        wait_until(lambda: "this attempt are dropped" in log.read_text(), 60.0, "the zombie's end of the job")
     assert history(deployed, job_id) == [
         ("accepted", 0),
         ("running", 1),
