@@ -1,1 +1,1 @@
-"""The compiled forms of the inner loops (C), and the one module that calls them. Decision 0010."""
+"""The inner loops in C, and the one module that calls them. Decision 0010."""

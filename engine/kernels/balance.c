@@ -1,4 +1,5 @@
-/* The equations of the harmonic balance and their slopes. engine/cycles/harmonic_balance.py, theory section 7.2.
+/* The equations of the harmonic balance and their slopes: residual, jacobian and wind_slopes of
+ * engine/cycles/harmonic_balance.py. Theory section 7.2.
  *
  * A product of the load's gradient g(tau) with a Fourier basis needs only the harmonics of g up to 2 H, since
  * 2 cos a cos b = cos(a - b) + cos(a + b) and so on: blocks of the Jacobian are sums of Toeplitz and Hankel matrices. */
@@ -133,8 +134,8 @@ WIDE static void sample(System *w, const Model *model, const double *coefficient
     }
 }
 
-/* Transform one row of the load for k up to `last`: cos k tau takes the sums of what tau and -tau have, sin k tau the
- * differences. */
+/* Transform one row of the load for k up to `last`: cos k tau needs only the sums of the samples at tau and -tau, sin k tau
+ * only the differences. */
 WITHIN void fold_and_sum(System *w, int harmonics, int row, int last)
 {
     const double *load = (const double *)(w->loads + row * w->groups);
@@ -164,13 +165,13 @@ WITHIN void fold_and_sum(System *w, int harmonics, int row, int last)
 
 WIDE static void transform(System *w, int row, int last)
 {
-    if (w->harmonics == 5) /* the usual number: loops of known length are unrolled */
+    if (w->harmonics == 5) /* the default: the compiler unrolls loops of known length */
         fold_and_sum(w, 5, row, last);
     else
         fold_and_sum(w, w->harmonics, row, last);
 }
 
-/* Transform every row of the load that is not zero for good. */
+/* Transform every row of the load that can be nonzero. */
 static void transform_all(System *w)
 {
     for (int i = 0; i < w->m; i++) {
@@ -182,7 +183,7 @@ static void transform_all(System *w)
     }
 }
 
-/* First entry of the block of equation i and coordinate j. */
+/* Return the first entry of the block of equation i and coordinate j. */
 static double *block_of(const System *w, int i, int j)
 {
     return w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride + w->place[j * w->size];
@@ -190,7 +191,7 @@ static double *block_of(const System *w, int i, int j)
 
 WITHIN Lanes at(const double *first) { return *(const Lanes *)first; }
 
-/* Subtract x_1, y_1, x_2, y_2, ... from entries that follow one another. */
+/* Subtract x_1, y_1, x_2, y_2, ... from consecutive entries. */
 WITHIN void subtract_pairs(double *entries, Lanes x, Lanes y)
 {
     for (int lane = 0; lane < LANES; lane++) {

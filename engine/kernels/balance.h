@@ -1,4 +1,4 @@
-/* The system of one step of Newton's method for a cycle, and the room that it takes. */
+/* The linear system of one step of Newton's method for a cycle, and its memory. */
 #ifndef GALLOPING_BALANCE_H
 #define GALLOPING_BALANCE_H
 
@@ -6,20 +6,20 @@
 
 typedef struct {
     int m, harmonics, size, balances, unknowns, stride, samples, groups;  /* balances = m (2 H + 1) */
-    int waves_kept;      /* cos k tau for k = 0 ... 2 H, padded to whole Lanes, then sin k tau likewise */
-    int orders;          /* of one spectrum: k = -H ... 2 H, padded, of cos k tau, then of sin k tau */
-    int *place;          /* (unknowns), where each stands in the system: idle coordinates first */
+    int waves_kept;      /* number of cos k tau, k = 0 ... 2 H, padded to whole Lanes; sin k tau likewise */
+    int orders;          /* entries of half a spectrum, cosines or sines: k = -H ... 2 H, padded */
+    int *place;          /* (unknowns), row and column of each in the system: inactive coordinates first */
     int *active;         /* (2 m), whether the load depends on this component of (q, q'/U) */
     double *waves;       /* (samples / 2 + 1, 2 waves_kept), cos and sin of k tau over the number of samples */
     double *folded;      /* (2, samples / 2 + 1), sums and differences of the samples at tau and -tau of one row */
     double *spectra;     /* (rows, 2 orders): of every row of the load */
     Lanes *order, *known; /* (H) padded to whole Lanes: 1, 2, ..., H, 0 beyond, and 1, 1, ..., 1, 0 beyond */
-    double *matrix;      /* (unknowns, stride), with the right sides behind each row */
+    double *matrix;      /* (unknowns, stride), each row followed by its right sides */
     double **rows;       /* (unknowns), into the matrix */
     double *sizes;       /* (unknowns + LANES), scratch of the elimination */
-    double *solution;    /* (2, unknowns), of both right sides in the order of elimination */
+    double *solution;    /* (2, unknowns), for both right sides, in the order of elimination */
     double *slope;       /* (m, 2 H + 1), coefficients of dq/dtau */
-    double *x;           /* (unknowns), a copy of the point where only its parts are given */
+    double *x;           /* (unknowns), the point, where the caller gives only its parts */
     Lanes *values;       /* (2 H + 1, groups), the basis at groups of samples, 0 beyond the last */
     Lanes *loads;        /* (rows, groups): f, its gradient, and its derivative by w / U */
     Lanes *state, *scratch;
@@ -33,12 +33,12 @@ static inline int row_count(const System *w) { return 2 * w->m * (1 + w->m); }
 
 static inline const double *spectrum(const System *w, int row) { return w->spectra + row * 2 * w->orders + w->harmonics; }
 
-/* Make room for models of one shape with one or two unknowns, w and U, besides the coefficients; return 0 if memory is
- * short. */
+/* Allocate memory for models of one shape with one or two unknowns, w and U, besides the coefficients; return 0 if memory
+ * is short. */
 int prepare_system(System *w, const Model *model, int harmonics, int besides);
 void release_system(System *w);
 
-/* Put those coordinates first on which the load does not depend: their columns are nearly empty. */
+/* Order the coordinates so that those on which the load does not depend come first: their columns are nearly empty. */
 void arrange_system(System *w, const Model *model);
 
 /* Fill the rows of the balance at x with its slopes by the coefficients, by w and, if it is unknown, by U, and with the

@@ -1,6 +1,7 @@
-"""The compiled kernels (engine/kernels/*.c) for the functions that they serve. Decision 0010.
+"""Calls of the compiled kernels (engine/kernels/*.c), one for each function that uses one. Decision 0010.
 
-Where they were not built AVAILABLE is False, and the numpy forms beside the callers, which are their tests, serve.
+AVAILABLE is False where the kernels were not built. The callers then run their own numpy forms, against which the
+kernels are tested.
 """
 
 import numpy as np
@@ -24,14 +25,14 @@ def solved_balances(
     phase: FloatArray,
     guess: tuple[FloatArray, FloatArray, NewtonOptions],
 ) -> Solution:
-    """Solve harmonic balances by Newton's method as `engine.numerics.newton.newton` would.
+    """Solve harmonic balances by Newton's method, for `engine.cycles.harmonic_balance.balance`.
 
     Parameters
     ----------
     model : ReducedModel
         Leading axis (members,).
     member, wind_speed : (cycles,)
-        The model of each cycle, and its wind speed [m/s].
+        The index of each cycle's model, and its wind speed [m/s].
     phase : (cycles, m (2 H + 1))
         The row of the phase condition.
     guess : tuple
@@ -53,7 +54,7 @@ def followed_balances(
     condition: tuple[FloatArray, FloatArray],
     guess: tuple[FloatArray, FloatArray, NewtonOptions],
 ) -> tuple[Solution, FloatArray]:
-    """Solve harmonic balances with the wind speed as one more unknown and one more linear condition.
+    """Solve harmonic balances with one more unknown, the wind speed, and one more linear condition, for branches.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def followed_balances(
         Leading axis (members,).
     member : (cycles,)
     phase : pair of arrays
-        The row of the phase condition (cycles, m (2 H + 1)), and the points that it is relative to (cycles, unknowns).
+        The row of the phase condition (cycles, m (2 H + 1)), and the points from which it measures (cycles, unknowns).
     condition : pair of arrays
         A row (cycles, unknowns) and the value (cycles,) that its product with the unknowns must have.
     guess : tuple
@@ -70,7 +71,8 @@ def followed_balances(
     Returns
     -------
     Solution, (cycles, unknowns)
-        With the direction in which the row's product alone grows, at the point before the last step.
+        The solution, and the tangent: the direction in which the residuals stay and the row's product grows by one, at
+        the point before the last step.
     """
     start, scale, options = guess
     reference, anchor = phase
@@ -95,7 +97,7 @@ def _newton(
 def balance_slopes(
     model: ReducedModel, member: IntArray, orbits: tuple[FloatArray, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Evaluate the harmonic balance with its slopes as `engine.cycles.harmonic_balance.linearized` would.
+    """Evaluate the harmonic balance and its slopes, for `engine.cycles.harmonic_balance.linearized`.
 
     Parameters
     ----------
@@ -103,17 +105,18 @@ def balance_slopes(
         Leading axis (members,).
     member : (cycles,)
     orbits : tuple of arrays
-        Coefficients (cycles, m, 2 H + 1), angular frequency and wind speed (cycles,).
+        Coefficients (cycles, m, 2 H + 1), angular frequency [rad/s] and wind speed [m/s] (cycles,).
 
     Returns
     -------
     (cycles, n), (cycles, n, n + 2)
+        Residuals, and their derivatives by the n = m (2 H + 1) coefficients, the angular frequency and the wind speed.
     """
     cycles, m, size = orbits[0].shape
     n = m * size
     residuals, slopes = np.empty((cycles, n)), np.empty((cycles, n, n + 2))
-    places = _contiguous(member, *orbits)
-    linearization(_parts(model), _shape(model), (cycles, size // 2), places, (residuals, slopes))
+    cycle_arrays = _contiguous(member, *orbits)
+    linearization(_parts(model), _shape(model), (cycles, size // 2), cycle_arrays, (residuals, slopes))
     return residuals, slopes
 
 
@@ -123,43 +126,43 @@ def products_over_period(
     basis: tuple[FloatArray, FloatArray],
     steps: tuple[IntArray, IntArray],
 ) -> FloatArray:
-    """Integrate the linearized equations over one period as `engine.cycles.floquet` would.
+    """Integrate the linearized equations over one period, for `engine.cycles.floquet.monodromy`.
 
     Parameters
     ----------
     model : ReducedModel
         Leading axis (members,).
     orbits : tuple of arrays
-        The model of each (cycles,), inverse mass (members, m, m), coefficients (cycles, m, 2 H + 1), angular frequency
-        and wind speed (cycles,).
+        Index of each cycle's model (cycles,), inverse mass (members, m, m), coefficients (cycles, m, 2 H + 1), angular
+        frequency [rad/s] and wind speed [m/s] (cycles,).
     basis : pair of arrays (rows, 2 H + 1)
         The Fourier basis and its derivative at Gauss points.
     steps : pair of arrays (cycles,)
-        Number of steps, a multiple of four, and the row where the cycle's Gauss points begin: first those of all steps
-        that come first, then the others.
+        Number of steps, a multiple of four, and the row of `basis` where the cycle begins: the first Gauss points of
+        all its steps, then the second ones.
 
     Returns
     -------
     (cycles, 2 m, 2 m)
-        NaN where the number of steps is 0.
+        Monodromy matrices; NaN where the number of steps is 0.
     """
     cycles, m, size = orbits[2].shape
     matrices = np.empty((cycles, 2 * m, 2 * m))
-    places = _contiguous(*orbits, *basis, *steps)
-    monodromies(_parts(model), _shape(model), (cycles, basis[0].shape[0], size // 2), places, matrices)
+    cycle_arrays = _contiguous(*orbits, *basis, *steps)
+    monodromies(_parts(model), _shape(model), (cycles, basis[0].shape[0], size // 2), cycle_arrays, matrices)
     return matrices
 
 
 def even_part(
     polynomials: FloatArray, statics: FloatArray, member: IntArray, angle: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Evaluate the scalar equation of the explicit first harmonic as `engine.cycles.first_harmonic` would.
+    """Evaluate the scalar equation of the explicit first harmonic, for `engine.cycles.first_harmonic`.
 
     Parameters
     ----------
     polynomials, statics : (members, 4, 7) and (members, 3)
     member, angle : arrays that broadcast to (...)
-        Where, and the amplitude R [rad].
+        Index of the model, and amplitude R of the angle of attack [rad].
 
     Returns
     -------
@@ -167,35 +170,37 @@ def even_part(
         The even part of the polynomial at both roots w^2 of its odd part, and those roots.
     """
     even, square = np.empty((2, *angle.shape, 2))
-    places = (polynomials, statics, np.broadcast_to(member, angle.shape), angle)
-    even_parts((polynomials.shape[0], angle.size), _contiguous(*places), (even, square))
+    inputs = (polynomials, statics, np.broadcast_to(member, angle.shape), angle)
+    even_parts((polynomials.shape[0], angle.size), _contiguous(*inputs), (even, square))
     return even, square
 
 
 def integrated_block(
     equations: tuple[FloatArray, ...], state: FloatArray, window: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Integrate the equations of motion over the window's steps, as `engine.checks.settled_motion` would.
+    """Integrate the equations of motion over the window's steps, for `engine.checks.settled_motion`.
 
     Parameters
     ----------
     equations : tuple of arrays
         The fields of `engine.checks.settled_motion.LawsonEquations`.
     state : (2 m, starts)
+        q and q'.
     window : (steps,)
+        Weight of each step in the sums of squares.
 
     Returns
     -------
     (2 m, starts), (2 m, starts), (starts,)
-        The states at the end, the sums of their squares times the window, and the largest angle of attack [rad].
+        The states at the end, the weighted sums of squares over the steps, and the largest angle of attack [rad].
     """
     _, nonlinear, forms, *_ = equations
     points, m, _, starts = nonlinear.shape
-    moved = np.array(state, order="C")
-    square, largest = np.empty(moved.shape), np.empty(starts)
+    end = np.array(state, order="C")
+    square, largest = np.empty(end.shape), np.empty(starts)
     size = (starts, window.size, m, points, forms.shape[1])
-    flows(size, _contiguous(*equations, window), (moved, square, largest))
-    return moved, square, np.sqrt(largest)
+    flows(size, _contiguous(*equations, window), (end, square, largest))
+    return end, square, np.sqrt(largest)
 
 
 def _shape(model: ReducedModel) -> tuple[int, int, int, int]:

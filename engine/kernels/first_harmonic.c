@@ -1,11 +1,12 @@
-/* The scalar equation of the explicit first harmonic. engine/cycles/first_harmonic.py, theory section 7.1. */
+/* The scalar equation of the explicit first harmonic: _mean_angle, _gains and _even_part of
+ * engine/cycles/first_harmonic.py. Theory section 7.1. */
 #include "kernels.h"
 
 #include <math.h>
 
 enum { NEWTON_STEPS = 6, DEGREE = 6 };
 
-/* Solve the statics of alpha_0 under an oscillation of amplitude R, by Newton's method from zero. */
+/* Solve for the mean angle alpha_0 under an oscillation of amplitude R, by Newton's method from zero. */
 static double mean_angle(const double *g, double angle)
 {
     const double half = 0.5 * angle * angle;
@@ -22,7 +23,7 @@ static double mean_angle(const double *g, double angle)
     return alpha;
 }
 
-/* The even part at one root of the odd part; roots that are not positive are no frequencies. */
+/* Set the even part at one root w^2 of the odd part, and that root; NaN if the root is not positive. */
 static void at_root(const double *p, double root, double *even, double *square)
 {
     *square = root > 0.0 ? root : NAN;
@@ -41,7 +42,7 @@ void evaluate_even_parts(const EvenParts *wanted)
             for (int j = 0; j < 3; j++)
                 p[k] -= gains[j] * polynomials[(j + 1) * (DEGREE + 1) + k];
         }
-        const double far = p[3] + copysign(sqrt(p[3] * p[3] - 4.0 * p[5] * p[1]), p[3]); /* NaN if there is no root */
+        const double far = p[3] + copysign(sqrt(p[3] * p[3] - 4.0 * p[5] * p[1]), p[3]); /* NaN if there is no real root */
         at_root(p, 2.0 * p[1] / far, wanted->even + 2 * i, wanted->square + 2 * i);
         at_root(p, far / (2.0 * p[5]), wanted->even + 2 * i + 1, wanted->square + 2 * i + 1);
     }

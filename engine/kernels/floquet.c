@@ -1,6 +1,7 @@
-/* Monodromy matrices by Magnus' method of fourth order, two Gauss points a step. engine/cycles/floquet.py, theory section 7.3.
+/* Monodromy matrices by the fourth-order Magnus method with two Gauss points per step: state_matrix, step_maps and
+ * _product_over_period of engine/cycles/floquet.py. Theory section 7.3.
  *
- * Each lane follows a stretch of the period of its own, so that matrix products run side by side. */
+ * Each lane integrates a different part of the period, so LANES matrix products run in parallel. */
 #include "kernels.h"
 
 #include <math.h>
@@ -51,7 +52,7 @@ WITHIN void product_of(int n, const Lanes *restrict left, const Lanes *restrict 
 
 WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restrict right, Lanes *restrict product)
 {
-    if (n == 6) /* the hybrid model: loops of known length are unrolled */
+    if (n == 6) /* the hybrid model: the compiler unrolls loops of known length */
         product_of(6, left, right, product);
     else
         product_of(n, left, right, product);
@@ -111,7 +112,7 @@ WIDE static void exponent(Workspace *w, double width)
         }
 }
 
-/* Sum the series of the exponential to degree 8 with four products; the steps keep its argument small. */
+/* Sum the Taylor series of the exponential to degree 8 with four products; the steps keep its argument small. */
 WIDE static void exponentiate(Workspace *w, Lanes *result)
 {
     const int n = w->n;
@@ -128,7 +129,7 @@ WIDE static void exponentiate(Workspace *w, Lanes *result)
         result[e] += a[e] + square[e] / 2.0 + cube[e] / 6.0 + (e % (n + 1) ? 0.0 : 1.0);
 }
 
-/* Multiply the lanes' matrices, later ones on the left, into the result. */
+/* Multiply the matrices of all lanes, later ones on the left. */
 static void collect(const Workspace *w, const Lanes *lanes, double *result)
 {
     const int n = w->n;

@@ -1,5 +1,5 @@
-/* Compiled forms of the engine's innermost loops. The numpy forms beside their callers are their tests and stand in for
- * them where no compiler was at hand. Every array is in C order and of double precision. */
+/* Compiled forms of the engine's innermost loops. The callers keep numpy forms, which run where the kernels were not built
+ * and against which the kernels are tested. Every array is in C order; reals are double precision. */
 #ifndef GALLOPING_KERNELS_H
 #define GALLOPING_KERNELS_H
 
@@ -9,14 +9,14 @@
 #define LANES 4
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
 
-/* Versions of a function, of which the loader takes the one that the processor has the instructions for. */
+/* Compile a function once per instruction set; the loader picks the version that suits the processor. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__)
 #define WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define WIDE
 #endif
 
-/* Part of a function with such versions: by itself it would have the instructions of any processor. */
+/* Inline a helper into such a function; compiled on its own, it would use only the instructions of the oldest processor. */
 #ifdef __GNUC__
 #define WITHIN static inline __attribute__((always_inline))
 #else
@@ -31,31 +31,32 @@ typedef struct {
     const double *mass, *damping, *stiffness, *forms, *table, *slopes;
 } Model;
 
-/* Shift a stack of models to one of its members. */
+/* Return one member of a stack of models. */
 Model model_of(const Model *stack, ptrdiff_t member);
 
-/* Lanes of scratch that load_at needs. */
+/* Return the number of Lanes of scratch that load_at needs. */
 size_t load_scratch(const Model *model);
 
-/* Evaluate f (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m). Theory section 5. */
+/* Evaluate f (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m): force and force_gradient of
+ * engine/models/aerodynamic_load.py. Theory section 5. */
 void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch);
 
-/* Solve systems by elimination with partial pivoting. Row i holds the coefficients, its right sides from entry n on, and
- * then at least LANES zeros, which are lost; the solutions are x (sides, n), and sizes (n + LANES) is scratch. Return 0
- * if a pivot vanishes. Zero multipliers are skipped, so columns that are nearly empty belong first. */
+/* Solve a linear system for several right sides by elimination with partial pivoting. Row i holds n coefficients, then its
+ * right sides, then at least LANES zeros, which are overwritten. x (sides, n) receives the solutions; sizes (n + LANES) is
+ * scratch. Return 0 if a pivot vanishes. Zero multipliers are skipped, so nearly empty columns should come first. */
 int eliminate(int n, double **rows, int sides, double *sizes, double *x);
 
-/* What Newton's method is told, engine.numerics.newton.Options. */
+/* Options of Newton's method, as in engine.numerics.newton.NewtonOptions. */
 typedef struct {
     double tolerance, largest_step;
     int iterations;
 } Options;
 
-/* Starts and results of the harmonic balance. With n = m (2 H + 1) the unknowns x (cycles, unknowns) are the coefficients
- * and w, n + 1 in all, at wind_speed (cycles); or the wind speed is one more unknown, `follows` is set, and the condition
- * row . x = target, (cycles, unknowns) and (cycles), is one more equation. The phase is fixed by
- * reference . (x - anchor) = 0, (cycles, n) and (cycles, unknowns). scale is of x; step, iterations (cycles); tangent
- * (cycles, unknowns) is the direction in which row . x alone grows. */
+/* Starts and results of the harmonic balance. The unknowns x (cycles, unknowns) are the n = m (2 H + 1) coefficients and w
+ * at a given wind_speed (cycles). If `follows` is set, the wind speed is one more unknown and row . x = target, (cycles,
+ * unknowns) and (cycles), is one more equation. reference . (x - anchor) = 0, (cycles, n) and (cycles, unknowns), fixes
+ * the phase. scale (cycles, unknowns) is the size of x; step, iterations (cycles) are the last step's size and the number
+ * of steps; along tangent (cycles, unknowns) row . x grows by one and the other residuals do not change. */
 typedef struct {
     ptrdiff_t cycles;
     int harmonics, follows;
@@ -65,11 +66,12 @@ typedef struct {
     ptrdiff_t *iterations;
 } Balances;
 
-/* Solve every balance by Newton's method; return 0 if memory is short. Theory section 7.2. */
+/* Solve every balance by Newton's method; return 0 if memory is short. engine/cycles/harmonic_balance.py, balance; theory
+ * section 7.2. */
 int solve_balances(const Model *stack, const Balances *balances, const Options *options);
 
-/* Orbits whose balance is wanted: coefficients (cycles, m, 2 H + 1); angular_frequency, wind_speed (cycles); with
- * n = m (2 H + 1), residuals (cycles, n) and slopes (cycles, n, n + 2), by the coefficients, w and U. */
+/* Arguments and results of linearize_balances: coefficients (cycles, m, 2 H + 1); angular_frequency, wind_speed (cycles);
+ * with n = m (2 H + 1), residuals (cycles, n) and slopes (cycles, n, n + 2) by the coefficients, w and U. */
 typedef struct {
     ptrdiff_t cycles;
     int harmonics;
@@ -78,13 +80,13 @@ typedef struct {
     double *residuals, *slopes;
 } Linearizations;
 
-/* Evaluate every balance and its slopes; return 0 if memory is short. */
+/* Evaluate every balance and its slopes; return 0 if memory is short. engine/cycles/harmonic_balance.py, linearized. */
 int linearize_balances(const Model *stack, const Linearizations *wanted);
 
-/* Orbits whose monodromy is wanted: member (cycles); inverse_mass (members, m, m); coefficients
- * (cycles, m, 2 H + 1); angular_frequency, wind_speed, steps, first (cycles); values, slopes (rows, 2 H + 1), the basis and its derivative by
- * tau, for each cycle from row `first` on at the first and then at the second Gauss points of its steps, a multiple of
- * LANES; matrices (cycles, 2 m, 2 m), NaN where there are no steps. */
+/* Arguments and results of integrate_monodromies: member (cycles); inverse_mass (members, m, m); coefficients
+ * (cycles, m, 2 H + 1); angular_frequency, wind_speed, steps, first (cycles). steps is a multiple of LANES. values, slopes
+ * (rows, 2 H + 1): the Fourier basis and its derivative by tau; those of a cycle start at row `first`, at the first Gauss
+ * points of all its steps and then at the second ones. matrices (cycles, 2 m, 2 m): NaN where there are no steps. */
 typedef struct {
     ptrdiff_t cycles;
     int harmonics;
@@ -93,25 +95,26 @@ typedef struct {
     double *matrices;
 } Monodromies;
 
-/* Integrate the linearized equations over one period; return 0 if memory is short. Theory section 7.3. */
+/* Integrate the linearized equations over one period; return 0 if memory is short. engine/cycles/floquet.py, monodromy;
+ * theory section 7.3. */
 int integrate_monodromies(const Model *stack, const Monodromies *wanted);
 
-/* Starts whose motions are integrated directly, laid out as engine.checks.settled_motion.Flow with the starts on the last axis:
- * half (2 m, 2 m), bend (points, m, monomials of degree 2 and 3), forms (points, local, 2 m), angle (2 m) and step of each.
- * One step is taken for every entry of window (steps), which weighs the squares that are summed up. state (2 m) is moved
- * on; square (2 m) and largest, the largest square of the angle of attack, are of the states after each step. */
+/* Arguments and results of integrate_flows, laid out as engine.checks.settled_motion.LawsonEquations with the starts on the
+ * last axis: half_step (2 m, 2 m), nonlinear (points, m, monomials of degree 2 and 3), forms (points, local, 2 m), step and
+ * angle (2 m). One step is taken for every entry of window (steps). state (2 m) is advanced in place; square (2 m) receives
+ * the sum of the squares after each step, weighted by the window, and largest the largest square of the angle of attack. */
 typedef struct {
     ptrdiff_t starts, steps;
     int m, points, local;
-    const double *half, *bend, *forms, *step, *angle, *window;
+    const double *half_step, *nonlinear, *forms, *step, *angle, *window;
     double *state, *square, *largest;
 } Flows;
 
-/* Integrate all starts; return 0 if memory is short. */
+/* Integrate all starts; return 0 if memory is short. engine/checks/settled_motion.py, _block. */
 int integrate_flows(const Flows *flows);
 
-/* Where the explicit first harmonic is wanted: polynomials (members, 4, 7) and statics (members, 3) as in
- * engine.cycles.first_harmonic; member, angle (count); even, square (count, 2). */
+/* Arguments and results of evaluate_even_parts: polynomials (members, 4, 7) and statics (members, 3) as in _ScalarEquation
+ * of engine/cycles/first_harmonic.py; member, angle (count); even, square (count, 2). */
 typedef struct {
     ptrdiff_t count;
     const ptrdiff_t *member;
@@ -119,7 +122,8 @@ typedef struct {
     double *even, *square;
 } EvenParts;
 
-/* Evaluate the even part of the characteristic polynomial at the roots w^2 of its odd part. Theory section 7.1. */
+/* Evaluate the even part of the characteristic polynomial at the roots w^2 of its odd part, as _even_part of
+ * engine/cycles/first_harmonic.py does. Theory section 7.1. */
 void evaluate_even_parts(const EvenParts *wanted);
 
 #endif

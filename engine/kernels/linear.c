@@ -1,12 +1,12 @@
-/* Dense linear systems of some dozen unknowns, too small for the overhead of a call to LAPACK to be small.
+/* Dense linear systems of a few dozen unknowns, for which the overhead of a LAPACK call would dominate.
  *
- * Two columns are eliminated at a time, so that each row is read and written half as often. The sizes of the entries of
- * the next column are noted where they arise: to look for a pivot through all rows would wait for memory at each. */
+ * Two columns are eliminated at a time, so each row is read and written half as often. The magnitudes in the next column
+ * are stored as they are computed, since a separate search for the pivot would load every row again. */
 #include "kernels.h"
 
 #include <math.h>
 
-/* Put the row of the largest of `sizes` from k on in place k, and return it, or NULL if none is above zero. */
+/* Swap the row with the largest of `sizes`, from row k on, into place k and return it; NULL if all are zero. */
 WITHIN double *choose_pivot(int n, int k, double **rows, double *sizes)
 {
     double largest[LANES] = {0};
@@ -43,7 +43,7 @@ WITHIN void subtract_both(int first, int end, const double *p, const double *q, 
     }
 }
 
-/* Eliminate column k from the rows below and leave the inverse of the pivot in its place. */
+/* Eliminate column k from the rows below and replace the pivot by its inverse. */
 WITHIN int eliminate_one(int n, int end, int k, double **rows, double *sizes)
 {
     double *pivot = choose_pivot(n, k, rows, sizes);
@@ -91,7 +91,7 @@ WITHIN int eliminate_two(int n, int end, int k, double **rows, double *sizes)
     return 1;
 }
 
-/* Solve for some unknowns at a time: what they take from those behind them does not wait for one another. */
+/* Substitute back for LANES unknowns at a time: their sums over the unknowns already solved are independent. */
 WITHIN void substitute_back(int n, int side, double **rows, double *x)
 {
     for (int stop = n; stop > 0; stop -= LANES) {

@@ -1,4 +1,5 @@
-/* The load: cubic polynomials in linear forms of (q, q'/U), summed over points. engine/models/aerodynamic_load.py, theory section 5. */
+/* The load: cubic polynomials in linear forms of (q, q'/U), summed over points. force and force_gradient of
+ * engine/models/aerodynamic_load.py, theory section 5. */
 #include "monomials.h"
 
 #include <string.h>
@@ -57,7 +58,7 @@ WITHIN void evaluate(const Model *model, int m, int local, const Lanes *state, L
 
 WIDE void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch)
 {
-    if (model->m == 3 && model->local == 3) /* the hybrid model: loops of known length are unrolled */
+    if (model->m == 3 && model->local == 3) /* the hybrid model: the compiler unrolls loops of known length */
         evaluate(model, 3, 3, state, force, gradient, scratch);
     else
         evaluate(model, model->m, model->local, state, force, gradient, scratch);

@@ -1,23 +1,23 @@
-/* The module engine.kernels._kernels: arrays come in as buffers, whose item and length are checked before use. */
+/* The module engine.kernels._kernels. Arrays come in as buffers; item type and length are checked before use. */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 #include <string.h>
 
 #include "kernels.h"
 
-/* Buffers of one call, let go together. */
+/* Buffers of one call, released together. */
 typedef struct {
     Py_buffer held[24];
     int count;
 } Buffers;
 
-static void let_go(Buffers *buffers)
+static void release_buffers(Buffers *buffers)
 {
     while (buffers->count)
         PyBuffer_Release(&buffers->held[--buffers->count]);
 }
 
-/* Return the items of a contiguous array of `expected` numbers of 8 bytes of a kind, or NULL with an exception. */
+/* Return the items of a contiguous array of `expected` 8-byte numbers of one of these kinds, or NULL with an exception. */
 static void *items(Buffers *buffers, PyObject *array, Py_ssize_t expected, const char *kinds, int flags)
 {
     Py_buffer *view = &buffers->held[buffers->count];
@@ -52,6 +52,7 @@ static int read_model(Buffers *held, PyObject *parts, const int *shape, Model *m
     return 1;
 }
 
+/* Return whether every index is below the limit; set an exception otherwise. */
 static int within(const Py_ssize_t *index, Py_ssize_t count, Py_ssize_t limit)
 {
     for (Py_ssize_t i = 0; i < count; i++)
@@ -62,9 +63,10 @@ static int within(const Py_ssize_t *index, Py_ssize_t count, Py_ssize_t limit)
     return 1;
 }
 
+/* Release the buffers; return None, or NULL with an exception. */
 static PyObject *finished(Buffers *buffers, int enough_memory)
 {
-    let_go(buffers);
+    release_buffers(buffers);
     if (PyErr_Occurred())
         return NULL;
     if (!enough_memory)
@@ -126,6 +128,7 @@ static PyObject *linearization(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, done);
 }
 
+/* Return whether steps are multiples of LANES and their rows exist; set an exception otherwise. */
 static int whole_steps(const Monodromies *wanted, Py_ssize_t rows)
 {
     for (Py_ssize_t i = 0; i < wanted->cycles; i++)
@@ -144,8 +147,8 @@ static PyObject *monodromies(PyObject *Py_UNUSED(self), PyObject *arguments)
     int shape[3], harmonics;
     Py_ssize_t members, cycles, rows;
     if (!PyArg_ParseTuple(arguments, "O!(niii)(nni)(OOOOOOOOO)O", &PyTuple_Type, &parts, &members, shape, shape + 1,
-                          shape + 2, &cycles, &rows, &harmonics, &member, &inverse, &coefficients, &frequency, &speed, &values, &slopes,
-                          &steps, &first, &matrices))
+                          shape + 2, &cycles, &rows, &harmonics, &member, &inverse, &coefficients, &frequency, &speed,
+                          &values, &slopes, &steps, &first, &matrices))
         return NULL;
     const Py_ssize_t m = shape[0], size = 2 * (Py_ssize_t)harmonics + 1;
     Model model;
@@ -185,15 +188,17 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
 static PyObject *flows(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *half, *bend, *forms, *step, *angle, *window, *state, *square, *largest;
+    PyObject *half_step, *nonlinear, *forms, *step, *angle, *window, *state, *square, *largest;
     Flows wanted;
     int done = 1;
     if (!PyArg_ParseTuple(arguments, "(nniii)(OOOOOO)(OOO)", &wanted.starts, &wanted.steps, &wanted.m, &wanted.points,
-                          &wanted.local, &half, &bend, &forms, &step, &angle, &window, &state, &square, &largest))
+                          &wanted.local, &half_step, &nonlinear, &forms, &step, &angle, &window, &state, &square,
+                          &largest))
         return NULL;
     const Py_ssize_t starts = wanted.starts, m = wanted.m, points = wanted.points, local = wanted.local;
     const Py_ssize_t terms = local * (local + 1) / 2 + local * (local + 1) * (local + 2) / 6;
-    if ((wanted.half = REALS(half, 4 * m * m * starts)) && (wanted.bend = REALS(bend, points * m * terms * starts))
+    if ((wanted.half_step = REALS(half_step, 4 * m * m * starts))
+        && (wanted.nonlinear = REALS(nonlinear, points * m * terms * starts))
         && (wanted.forms = REALS(forms, points * local * 2 * m * starts)) && (wanted.step = REALS(step, starts))
         && (wanted.angle = REALS(angle, 2 * m * starts)) && (wanted.window = REALS(window, wanted.steps))
         && (wanted.state = RESULT(state, 2 * m * starts)) && (wanted.square = RESULT(square, 2 * m * starts))

@@ -1,4 +1,4 @@
-/* The monomials of a cubic polynomial, in the order of engine/numerics/polynomial.py. */
+/* The monomials of a cubic polynomial, in the order of monomials and powers in engine/numerics/polynomial.py. */
 #ifndef GALLOPING_MONOMIALS_H
 #define GALLOPING_MONOMIALS_H
 

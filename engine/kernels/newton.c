@@ -1,4 +1,5 @@
-/* Newton's method on harmonic balances, one cycle after another. engine/cycles/harmonic_balance.py, theory section 7.2. */
+/* Newton's method on harmonic balances, one cycle after another: newton of engine/numerics/newton.py on the equations of
+ * engine/cycles/harmonic_balance.py. Theory section 7.2. */
 #include "balance.h"
 
 #include <math.h>
@@ -14,7 +15,7 @@ static void add_phase(System *w, const double *x, const double *reference, const
     }
 }
 
-/* Fill the last row with the condition row . x = target, and give it the unit right side of the tangent. */
+/* Fill the last row with the condition row . x = target; its second right side is 1, so its solution is the tangent. */
 static void add_condition(System *w, const double *x, const double *row, double target)
 {
     double *last = w->matrix + (ptrdiff_t)(w->unknowns - 1) * w->stride;
@@ -26,7 +27,7 @@ static void add_condition(System *w, const double *x, const double *row, double 
     }
 }
 
-/* Return the root mean square of change / scale. */
+/* Return the root mean square of step / scale. */
 static double scaled_size(const System *w, const double *scale)
 {
     double sum = 0.0;
@@ -45,7 +46,7 @@ static int all_finite(int count, const double *x)
     return 1;
 }
 
-/* Find the step of Newton's method; return 0 if there is none. */
+/* Compute a step of Newton's method; return 0 if the system is singular. */
 static int find_step(System *w, const Model *model, const Balances *wanted, ptrdiff_t cycle)
 {
     const int n = w->unknowns;
@@ -95,7 +96,7 @@ int solve_balances(const Model *stack, const Balances *wanted, const Options *op
     return ready;
 }
 
-/* Copy the balance out of the order of elimination. */
+/* Copy the residual and its slopes, from the order of elimination back to that of the coefficients. */
 static void write_out(const System *w, double *residual, double *slopes)
 {
     for (int u = 0; u < w->balances; u++) {

@@ -1,7 +1,7 @@
-"""What a span consists of along its length: mesh, quadrature points and the properties that hold at each of them.
+"""Mass, ice, wind and aerodynamics along a span, at the quadrature points of each element.
 
 Ice, spoilers and the wind profile change at given positions. Every integral is taken piece by piece between those
-positions, so that a boundary inside an element is integrated exactly on both sides (theory section 3).
+positions, so a boundary inside an element causes no quadrature error (theory section 3).
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,8 +25,8 @@ class Sections:
     local is the element coordinate in [-1, 1] and local_weight its quadrature weight (0 on padding);
     mass [kg/m] and first_moment (..., 2) = m (e_y, e_z) [kg] of a sub-conductor; wind_factor phi;
     aerodynamics (..., 3, 4): rows vertical, horizontal, torsional, columns a_i0 to a_i3 of a sub-conductor.
-    fitted_range (lines,): the smallest range of the fits on the line [rad], infinite where none is known; twist:
-    static twist by which moments and coefficients are turned already [rad].
+    fitted_range (lines,): the smallest range of the fits on the line [rad], infinite where none is known; twist: the
+    static twist already applied to moments and coefficients [rad].
     """
 
     local: FloatArray
@@ -40,7 +40,7 @@ class Sections:
 
 
 def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
-    """Lay quadrature points between all boundaries of each line and evaluate the properties there.
+    """Place quadrature points between all boundaries of each line and evaluate the properties there.
 
     Parameters
     ----------
@@ -74,14 +74,14 @@ def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
     )
 
 
-def turned(lines: Sequence[Line], profile: StaticProfile, made_of: Sections, twist: FloatArray) -> Sections:
-    """Turn untwisted sections: the first moments as vectors, and coefficients with a table fitted at the local angle.
+def turned(lines: Sequence[Line], profile: StaticProfile, section_points: Sections, twist: FloatArray) -> Sections:
+    """Apply a static twist: rotate the first moments, and fit tabulated coefficients at the local angle.
 
     Parameters
     ----------
     lines : sequence of Line
     profile : StaticProfile
-    made_of : Sections
+    section_points : Sections
         Without twist.
     twist : (lines, elements, points)
         Static twist [rad].
@@ -93,25 +93,26 @@ def turned(lines: Sequence[Line], profile: StaticProfile, made_of: Sections, twi
     Raises
     ------
     InvalidSpec
-        If a table does not reach around the local angle.
+        If a table of coefficients has too few rows around the local angle.
     """
-    position = _positions(profile, made_of.local)
+    position = _positions(profile, section_points.local)
     stack = zip(lines, position, twist, strict=True)
     return replace(
-        turned_moments(made_of, twist), aerodynamics=np.stack([_aerodynamics(line, x, turn) for line, x, turn in stack])
+        turned_moments(section_points, twist),
+        aerodynamics=np.stack([_aerodynamics(line, x, turn) for line, x, turn in stack]),
     )
 
 
-def turned_moments(made_of: Sections, twist: FloatArray) -> Sections:
-    """Turn the first moments of untwisted sections, and leave the coefficients as they are."""
-    moment_y, moment_z = made_of.first_moment[..., 0], made_of.first_moment[..., 1]
+def turned_moments(section_points: Sections, twist: FloatArray) -> Sections:
+    """Rotate the first moments of untwisted sections by a twist [rad]; the coefficients stay as they are."""
+    moment_y, moment_z = section_points.first_moment[..., 0], section_points.first_moment[..., 1]
     c, s = np.cos(twist), np.sin(twist)
     moment = np.stack([moment_y * c - moment_z * s, moment_y * s + moment_z * c], axis=-1)
-    return replace(made_of, first_moment=moment, twist=twist)
+    return replace(section_points, first_moment=moment, twist=twist)
 
 
 def _positions(profile: StaticProfile, local: FloatArray) -> FloatArray:
-    """Return the horizontal positions of points given by their coordinates in the elements [m]."""
+    """Return the horizontal positions [m] of points given by their element coordinates."""
     elements = local.shape[1]
     arc = (np.arange(elements)[:, None] + 0.5 * (local + 1.0)) * (profile.arc_length[:, None, None] / elements)
     return horizontal_position(profile, arc)
@@ -125,7 +126,7 @@ def gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
 
 
 def boundaries(line: Line) -> list[float]:
-    """Return the positions strictly inside the span where a property or the wind's slope changes [m]."""
+    """Return the positions strictly inside the span where a property or the wind's slope jumps [m], ascending."""
     parts: list[IceSegment | StretchDevice] = [*line.ice.segments, *line.stretches]
     stretches = [(part.start, part.stop) for part in parts]
     marks = {mark for stretch in stretches for mark in stretch} | {position for position, _ in line.wind.profile}
@@ -133,7 +134,7 @@ def boundaries(line: Line) -> list[float]:
 
 
 def _piece_edges(lines: Sequence[Line], profile: StaticProfile, elements: int) -> FloatArray:
-    """Return the local coordinates of the piece boundaries, (lines, elements, pieces + 1), padded by empty pieces."""
+    """Return the element coordinates of piece boundaries, (lines, elements, pieces + 1), padded with empty pieces."""
     marks = [np.array(boundaries(line)) for line in lines]
     most = max(m.size for m in marks)
     padded = np.stack([np.append(m, [x.span.length] * (most - m.size)) for m, x in zip(marks, lines, strict=True)])
@@ -161,7 +162,7 @@ def _line_properties(line: Line, position: FloatArray) -> tuple[FloatArray, Floa
 
 
 def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatArray:
-    """Return the coefficients at positions [m], a device's before a segment's before the span's: (..., 3, 4)."""
+    """Return the coefficients at positions [m], of a device, else of an ice segment, else of the span: (..., 3, 4)."""
     result = np.empty((*position.shape, 3, 4))
     for start, stop, aerodynamics in _coefficients(line):
         here = (position >= start) & (position < stop)
@@ -170,7 +171,7 @@ def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatA
 
 
 def _coefficients(line: Line) -> Iterator[tuple[float, float, Aerodynamics]]:
-    """Yield the coefficients of the span, then those of each stretch [m] that has its own; the last one holds."""
+    """Yield the coefficients of the span, then of each stretch [m] that has its own; later ones override."""
     yield -np.inf, np.inf, line.ice.aerodynamics
     parts: list[IceSegment | StretchDevice] = [*line.ice.segments, *line.stretches]
     for part in parts:
@@ -179,7 +180,7 @@ def _coefficients(line: Line) -> Iterator[tuple[float, float, Aerodynamics]]:
 
 
 def _at_local_angle(aerodynamics: Aerodynamics, twist: FloatArray) -> FloatArray:
-    """Return coefficients at points of the given twist [rad]; without a table they hold for the section at rest."""
+    """Return the coefficients at points with a twist [rad]; without a table the twist does not change them."""
     if aerodynamics.measured is None or not twist.any():
         return _table(aerodynamics)
     return np.stack([_table(fit_measured(aerodynamics.measured, turn)) for turn in twist.tolist()])

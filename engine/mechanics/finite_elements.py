@@ -1,7 +1,8 @@
 """Finite element matrices of the bundle on its reference curve. Theory section 3, paper section 3.
 
-Three-node isoparametric cable elements; four freedoms a node in the order U, V, W, Theta; node-major numbering. The
-rigid cross-section (3) lets the sums over sub-conductors be taken once, so their number costs nothing.
+Three-node isoparametric cable elements; four freedoms per node in the order U, V, W, Theta; node-major numbering. The
+cross-section is rigid, eq. (3), so the sums over sub-conductors are formed once and their number does not add to the
+cost.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,10 +22,10 @@ STIFFNESS_POINTS = 2  # three would lock the membrane strain of the curved eleme
 
 @dataclass(frozen=True, slots=True)
 class Matrices:
-    """Stiffness and mass of a stack of lines on all freedoms, and the interpolation that made them.
+    """Stiffness and mass of a stack of lines over all freedoms, and the interpolation they were integrated with.
 
-    stiffness, mass: (lines, freedoms, freedoms), freedoms = 4 (2 elements + 1), symmetric; end springs included,
-    constraints not. fixed: (lines, freedoms), True where a support holds the freedom. interpolation:
+    stiffness, mass: (lines, freedoms, freedoms), freedoms = 4 (2 elements + 1), symmetric, with end springs but without
+    constraints. fixed: (lines, freedoms), True where a support holds the freedom. interpolation:
     (lines, elements, points, 3), values of the element's shape functions at the points of `Sections`; weight:
     (lines, elements, points) = ds of each point [m].
     """
@@ -36,54 +37,63 @@ class Matrices:
     weight: FloatArray
 
 
-def matrices(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -> Matrices:
-    """Assemble K and M of theory section 3 for lines with the same number of elements.
+def matrices(lines: Sequence[Line], profile: StaticProfile, section_points: Sections) -> Matrices:
+    """Assemble K and M of theory section 3.
 
     Parameters
     ----------
     lines : sequence of Line
+        All with the same number of elements.
     profile : StaticProfile
-    made_of : Sections
+        Of the same lines.
+    section_points : Sections
+        Of the same lines, without twist.
 
     Returns
     -------
     Matrices
     """
-    interpolation, weight = mass_points(lines, profile, made_of)
+    interpolation, weight = mass_points(lines, profile, section_points)
     at = strain_points(lines, profile)
     density = elastic_density(lines, at, bundle_sums(lines)[:, :, None, None])
     stiffness = assemble(quadratic_form(at.slopes, at.weight, density))
-    stiffness += assemble(quadratic_form(interpolation, weight, _ice_stiffness_density(lines, made_of)))
+    stiffness += assemble(quadratic_form(interpolation, weight, _ice_stiffness_density(lines, section_points)))
     for line, here, values, device in mounted(lines, profile):
         stiffness[line, here, here] += np.kron(np.outer(values, values), device.stiffness())
     add_end_springs(lines, profile, stiffness)
-    mass = mass_matrix(lines, profile, made_of)
+    mass = mass_matrix(lines, profile, section_points)
     return Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
 
 
 def mass_matrix(
-    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, twist: FloatArray | None = None
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, twist: FloatArray | None = None
 ) -> FloatArray:
-    """Assemble M, with cross-sections and devices turned by a static twist (lines, nodes) [rad] if there is one."""
-    interpolation, weight = mass_points(lines, profile, made_of)
-    sums = bundle_sums(lines)[:, :, None, None] if twist is None else turned_sums(lines, made_of.twist)
-    mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, made_of, sums)))
+    """Assemble M: (lines, freedoms, freedoms).
+
+    twist: (lines, nodes), static twist of cross-sections and devices [rad], None without. The sections must already be
+    turned by it.
+    """
+    interpolation, weight = mass_points(lines, profile, section_points)
+    sums = bundle_sums(lines)[:, :, None, None] if twist is None else turned_sums(lines, section_points.twist)
+    mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, section_points, sums)))
     for line, here, values, device in mounted(lines, profile):
         turn = 0.0 if twist is None else float(values @ twist[line, here.start // FIELDS : here.stop // FIELDS])
         mass[line, here, here] += np.kron(np.outer(values, values), device.inertia(turn))
     return mass
 
 
-def mass_points(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -> tuple[FloatArray, FloatArray]:
+def mass_points(
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections
+) -> tuple[FloatArray, FloatArray]:
     """Return the shape functions at the points of the sections, (lines, elements, points, 3), and their ds [m]."""
-    interpolation, derivative = shape_functions(made_of.local)
+    interpolation, derivative = shape_functions(section_points.local)
     metric = derivative @ element_nodes(profile, lines[0].span.elements)
-    return interpolation, made_of.local_weight * np.linalg.norm(metric, axis=-1)
+    return interpolation, section_points.local_weight * np.linalg.norm(metric, axis=-1)
 
 
 @dataclass(frozen=True, slots=True)
 class StrainPoints:
-    """Quadrature points of the strains.
+    """Quadrature points of the strain energy.
 
     values: (points, 3) and slopes: (lines, elements, points, 3), shape functions and their derivatives by s; weight:
     (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z'); tension: T [N] there.
@@ -97,7 +107,7 @@ class StrainPoints:
 
 
 def strain_points(lines: Sequence[Line], profile: StaticProfile) -> StrainPoints:
-    """Lay the points at which the strains are integrated."""
+    """Return the points at which the strain energy of lines with equal numbers of elements is integrated."""
     abscissae, weights = gauss_rule(STIFFNESS_POINTS)
     values, derivative = shape_functions(abscissae)
     metric = derivative @ element_nodes(profile, lines[0].span.elements)
@@ -124,7 +134,7 @@ def bundle_sums(lines: Sequence[Line]) -> FloatArray:
 
 
 def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
-    """Return the `bundle_sums` of cross-sections turned by angles (lines, elements, points) [rad]: (6, ...)."""
+    """Return `bundle_sums` of cross-sections turned by angles (lines, elements, points) [rad]: (6, ...)."""
     n, s_y, s_z, s_yy, s_zz, s_yz = bundle_sums(lines)[:, :, None, None]
     c, s = np.cos(angle), np.sin(angle)
     one = np.ones_like(angle)
@@ -134,7 +144,7 @@ def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
 
 
 def element_nodes(profile: StaticProfile, elements: int) -> FloatArray:
-    """Return the node positions of each element, (lines, elements, 3 nodes, 3 coordinates)."""
+    """Return the node positions of each element [m]: (lines, elements, 3 nodes, 3 coordinates)."""
     arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, 2 * elements + 1)
     first = 2 * np.arange(elements)[:, None] + np.arange(3)
     return coordinates(profile, arc)[:, first]
@@ -150,10 +160,10 @@ def quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray) 
 
 
 def elastic_density(lines: Sequence[Line], at: StrainPoints, sums: FloatArray) -> FloatArray:
-    """Return D with density (U', V', W', Theta') D (U', V', W', Theta')^T: (lines, elements, points, 4, 4).
+    """Return D of the strain energy density 1/2 g^T D g, g = (U', V', W', Theta'): (lines, elements, points, 4, 4).
 
     The strain of sub-conductor i is b.(U', V', W') + (z' y_i - y' z_i) Theta' with b = (x', y', z'), eqs. (3), (7). D
-    is linear in the sums, those of `bundle_sums` with axes for elements and points.
+    is linear in the sums, which are those of `bundle_sums` with axes for elements and points.
     """
     n, s_y, s_z, s_yy, s_zz, s_yz = sums
     slopes, tension = at.direction, at.tension
@@ -175,11 +185,15 @@ def elastic_density(lines: Sequence[Line], at: StrainPoints, sums: FloatArray) -
     return density
 
 
-def _mass_density(lines: Sequence[Line], made_of: Sections, bundle: FloatArray) -> FloatArray:
+def _mass_density(lines: Sequence[Line], section_points: Sections, bundle: FloatArray) -> FloatArray:
     """Return R with kinetic energy density 1/2 (U, V, W, Theta)' R (U, V, W, Theta)'^T, eqs. (A1)-(A4)."""
     n, s_y, s_z, s_yy, s_zz, _ = bundle
     inertia = _per_line(lines, [line.conductor.polar_inertia for line in lines])
-    mass, moment_y, moment_z = made_of.mass, made_of.first_moment[..., 0], made_of.first_moment[..., 1]
+    mass, moment_y, moment_z = (
+        section_points.mass,
+        section_points.first_moment[..., 0],
+        section_points.first_moment[..., 1],
+    )
     density = np.zeros((*mass.shape, FIELDS, FIELDS))
     for translation in (U, V, W):
         density[..., translation, translation] = n * mass
@@ -189,11 +203,11 @@ def _mass_density(lines: Sequence[Line], made_of: Sections, bundle: FloatArray) 
     return density
 
 
-def _ice_stiffness_density(lines: Sequence[Line], made_of: Sections) -> FloatArray:
-    """Return the density of K_ice, eq. (A9): the eccentric weight above the centre takes stiffness from Theta."""
-    density = np.zeros((*made_of.mass.shape, FIELDS, FIELDS))
+def _ice_stiffness_density(lines: Sequence[Line], section_points: Sections) -> FloatArray:
+    """Return the density of K_ice, eq. (A9): eccentric weight above the centre reduces the stiffness of Theta."""
+    density = np.zeros((*section_points.mass.shape, FIELDS, FIELDS))
     count = _per_line(lines, [len(line.bundle.positions) for line in lines])
-    density[..., THETA, THETA] = -count * GRAVITY * made_of.first_moment[..., 0]
+    density[..., THETA, THETA] = -count * GRAVITY * section_points.first_moment[..., 0]
     return density
 
 
@@ -202,7 +216,7 @@ def _per_line(lines: Sequence[Line], values: Sequence[float]) -> FloatArray:
 
 
 def assemble(element: FloatArray) -> FloatArray:
-    """Add element matrices (lines, elements, 12, 12) to (lines, freedoms, freedoms); neighbours share one node."""
+    """Assemble element matrices (lines, elements, 12, 12) to (lines, freedoms, freedoms); neighbours share a node."""
     count, elements = element.shape[:2]
     freedoms = FIELDS * (2 * elements + 1)
     total = np.zeros((count, freedoms, freedoms))
@@ -229,7 +243,7 @@ def add_end_springs(lines: Sequence[Line], profile: StaticProfile, stiffness: Fl
 
 
 def mounted(lines: Sequence[Line], profile: StaticProfile) -> Iterator[tuple[int, slice, FloatArray, PointDevice]]:
-    """Yield line, freedoms of the element, shape-function values (3,) and device of all that acts at a point."""
+    """Yield line, freedoms of the element, shape-function values (3,) and device, for every point device."""
     for i, line in enumerate(lines):
         for point in (point for device in line.devices for point in device.points):
             first, values = interpolation_at(profile, i, line.span.elements, point.position)
@@ -239,7 +253,7 @@ def mounted(lines: Sequence[Line], profile: StaticProfile) -> Iterator[tuple[int
 def device_damping(lines: Sequence[Line], profile: StaticProfile, shapes: FloatArray) -> FloatArray:
     """Project the damping of devices onto shapes (lines, ..., m, fields, nodes): (lines, ..., m, m).
 
-    fields: the last ones of U, V, W, Theta. Shapes without U leave the damping along the line out.
+    fields: the last ones of U, V, W, Theta. Shapes without U omit the damping along the line.
     """
     fields = shapes.shape[-2]
     total = np.zeros((*shapes.shape[:-2], shapes.shape[-3]))
@@ -250,7 +264,7 @@ def device_damping(lines: Sequence[Line], profile: StaticProfile, shapes: FloatA
 
 
 def interpolation_at(profile: StaticProfile, line: int, elements: int, position: float) -> tuple[int, FloatArray]:
-    """Return the first node and the shape-function values (3,) of the element at a horizontal position [m]."""
+    """Return first node and shape-function values (3,) of the element that holds a horizontal position [m]."""
     whole = arc_position(profile, np.full((profile.arc_length.size, 1), position))[line, 0]
     scaled = whole / profile.arc_length[line] * elements
     element = min(int(scaled), elements - 1)

@@ -15,10 +15,10 @@ DIRECTIONS = (V, W, THETA)
 
 @dataclass(frozen=True, slots=True)
 class DirectionalShapes:
-    """Shapes of each direction by number of loops, from separate eigenproblems on (U, V), on W and on Theta.
+    """Shapes of each direction and number of loops, from separate eigenproblems in (U, V), in W and in Theta.
 
     loops: the numbers of loops, in the order of the second axis. nodal: (lines, loops, 4, nodes), rows f_u, f_v, f_w,
-    f_theta, each of f_v, f_w, f_theta with (2/L) int f^2 ds = 1 and of the sign of sin(k pi s/L).
+    f_theta; f_v, f_w and f_theta have (2/L) int f^2 ds = 1 and the sign of sin(k pi s/L).
     angular_frequency: (lines, loops, 3) of the three eigenproblems [rad/s], NaN where the stiffness is negative.
     """
 
@@ -48,6 +48,7 @@ def directional_shapes(system: Matrices, arc_length: FloatArray, loops: tuple[in
     arc_length : (lines,)
         L [m].
     loops : tuple of int
+        Distinct, from 1.
 
     Returns
     -------
@@ -74,6 +75,7 @@ def full_modes(system: Matrices, loops: tuple[int, ...]) -> FullModes:
     ----------
     system : Matrices
     loops : tuple of int
+        Distinct, from 1.
 
     Returns
     -------
@@ -125,7 +127,7 @@ def _freedoms(fields: tuple[int, ...], nodes: int) -> IntArray:
 def _labelled(
     system: Matrices, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Solve on some freedoms and pick one mode for each direction and number of loops.
+    """Solve the eigenproblem on some freedoms and pick one mode for each direction and number of loops.
 
     Returns vectors (lines, labels, freedoms) and eigenvalues (lines, labels), labels direction-major.
     """
@@ -145,7 +147,7 @@ def _labelled(
 
 
 def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: BoolArray) -> None:
-    """Cut held freedoms off from the rest: each becomes a mode of its own that overlaps with no loop."""
+    """Decouple held freedoms, in place: each becomes a separate mode that overlaps with no loop."""
     lines, held = np.nonzero(fixed)
     for matrix in (stiffness, mass):
         diagonal = matrix[lines, held, held]
@@ -162,7 +164,7 @@ def _sines(freedoms: IntArray, nodes: int, directions: tuple[int, ...], loops: t
 
 
 def assign(score: FloatArray) -> IntArray:
-    """Give each label the mode of largest score, the surest label first, one mode a label.
+    """Assign a different mode to each label by score, the highest remaining score first.
 
     score: (lines, labels, modes), not negative; returns (lines, labels).
     """

@@ -1,13 +1,13 @@
-"""Static twist: cross-sections turned by eccentric ice and pendulums until the torsional stiffness holds them.
+"""Static twist: the angle at which torsional stiffness balances the weight of eccentric ice and pendulums.
 
-The section is rigid and may turn by any angle: sub-conductor i stands at (eta_i, zeta_i), which is (y_i, z_i) turned
-by Theta, so that V_i' = V' - zeta_i Theta' and W_i' = W' + eta_i Theta'. The energy is that of theory section 3 with
-turned positions,
+The section is rigid and may turn by any angle: sub-conductor i stands at (eta_i, zeta_i), which is (y_i, z_i) rotated
+by Theta, so V_i' = V' - zeta_i Theta' and W_i' = W' + eta_i Theta'. The energy is that of theory section 3 with rotated
+positions,
 
-    Pi = 1/2 int g^T D(Theta) g ds + end springs + n int m g (e_y cos Theta - e_z sin Theta) ds + the same of devices,
+    Pi = 1/2 int g^T D(Theta) g ds + end springs + n int m g (e_y cos Theta - e_z sin Theta) ds + energy of devices,
 
-g = (U', V', W', Theta'). The weight at the bare centres does no work: what it gains, the tension of the catenary takes,
-since (T y')' = m g. In D, T (V_i'^2 + W_i'^2) becomes T r_i^2 Theta'^2 at any twist. At zero twist the second
+g = (U', V', W', Theta'). The weight at the bare centres does no net work: the tension of the catenary cancels it, since
+(T y')' = m g. In D, T (V_i'^2 + W_i'^2) becomes T r_i^2 Theta'^2 at any twist. At zero twist the second
 derivative is K of section 3 with its gravity term -n m g e_y; as there, the strain is the linear part of (7).
 """
 
@@ -43,7 +43,7 @@ OPTIONS = NewtonOptions(tolerance=1e-9, largest_step=0.25, iterations=100)
 
 @dataclass(frozen=True, slots=True)
 class TwistedState:
-    """Static state of a stack of lines under eccentric weight: a minimum of the energy.
+    """Static state of a stack of lines under eccentric weight: a minimum of the energy Pi.
 
     displacement: (lines, freedoms), U, V, W [m] and Theta [rad] of each node, NaN where none was found; outcome:
     (lines,) of Outcome.
@@ -58,19 +58,20 @@ class TwistedState:
         return self.displacement[:, THETA::FIELDS]
 
 
-def twisted_state(lines: Sequence[Line], profile: StaticProfile, made_of: Sections) -> TwistedState:
-    """Find the twisted static state of each line by Newton's method, led downhill to a minimum of the energy.
+def twisted_state(lines: Sequence[Line], profile: StaticProfile, section_points: Sections) -> TwistedState:
+    """Find the twisted static state of each line, a minimum of Pi, by Newton's method with descent steps.
 
-    Directions of negative stiffness enter by its absolute value, so that steps go down; the search begins on the side
-    to which the weight turns the untwisted section.
+    Where the tangent has negative eigenvalues, their absolute values are used, so every step reduces Pi to first order.
+    The search starts on the side to which the weight turns the untwisted section.
 
     Parameters
     ----------
     lines : sequence of Line
         All with the same number of elements.
     profile : StaticProfile
-    made_of : Sections
-        Without twist.
+        Of the same lines.
+    section_points : Sections
+        Of the same lines, without twist.
 
     Returns
     -------
@@ -79,13 +80,13 @@ def twisted_state(lines: Sequence[Line], profile: StaticProfile, made_of: Sectio
     nodes = 2 * lines[0].span.elements + 1
     held = held_freedoms(profile, FIELDS * nodes)
     start = np.zeros((len(lines), FIELDS * nodes))
-    gradient, _ = energy_derivatives(lines, profile, made_of, start)
+    gradient, _ = energy_derivatives(lines, profile, section_points, start)
     side = np.where(gradient[:, THETA::FIELDS].sum(axis=1) > 0.0, -1.0, 1.0)
     start[:, THETA::FIELDS] = FIRST_GUESS * side[:, None] * np.sin(np.pi * np.linspace(0.0, 1.0, nodes))
 
     def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
         few = [lines[i] for i in active]
-        gradient, tangent = energy_derivatives(few, _select(profile, active), _select(made_of, active), x)
+        gradient, tangent = energy_derivatives(few, _select(profile, active), _select(section_points, active), x)
         return np.where(held[active], 0.0, gradient), _downhill(_held(tangent, held[active]))
 
     solution = newton(system, np.where(held, 0.0, start), np.ones_like(start), OPTIONS)
@@ -94,46 +95,52 @@ def twisted_state(lines: Sequence[Line], profile: StaticProfile, made_of: Sectio
 
 
 def twisted_matrices(
-    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, state: TwistedState
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, state: TwistedState
 ) -> tuple[Sections, Matrices]:
-    """Linearize about the twisted state: sections and matrices as seen from there.
+    """Linearize about the twisted state; return the twisted sections and the matrices there.
 
     A line whose state was not found keeps its untwisted sections and matrices.
 
     Raises
     ------
     InvalidSpec
-        If a table of coefficients does not reach around the local angle.
+        If a table of coefficients has too few rows around the local angle.
     """
     displacement = np.nan_to_num(state.displacement)
     angle = displacement[:, THETA::FIELDS]
-    interpolation, weight = mass_points(lines, profile, made_of)
-    here = turned(lines, profile, made_of, at_mass_points(interpolation, angle))
-    _, stiffness = energy_derivatives(lines, profile, made_of, displacement)
+    interpolation, weight = mass_points(lines, profile, section_points)
+    here = turned(lines, profile, section_points, at_mass_points(interpolation, angle))
+    _, stiffness = energy_derivatives(lines, profile, section_points, displacement)
     mass = mass_matrix(lines, profile, here, angle)
     return here, Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
 
 
 def energy_derivatives(
-    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, displacement: FloatArray
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, displacement: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Differentiate the energy Pi once and twice by the displacements.
+    """Return the first and second derivatives of the energy Pi by the displacements.
 
     Parameters
     ----------
-    lines, profile, made_of
-        Sections without twist.
+    lines : sequence of Line
+        All with the same number of elements.
+    profile : StaticProfile
+    section_points : Sections
+        Without twist.
     displacement : (lines, freedoms)
+        U, V, W [m] and Theta [rad] of each node.
 
     Returns
     -------
     gradient : (lines, freedoms)
+        [N, N m].
     tangent : (lines, freedoms, freedoms)
+        [N/m, N, N m].
     """
     springs = np.zeros((*displacement.shape, displacement.shape[-1]))
     add_end_springs(lines, profile, springs)
     force, stiffness = _strain_energy(lines, profile, displacement)
-    moment, gravity = _ice_energy(lines, profile, made_of, displacement[:, THETA::FIELDS])
+    moment, gravity = _ice_energy(lines, profile, section_points, displacement[:, THETA::FIELDS])
     gradient = (springs @ displacement[..., None])[..., 0] + force + moment
     tangent = springs + stiffness + gravity
     for line, here, values, device in mounted(lines, profile):
@@ -173,17 +180,17 @@ def _strain_energy(
 
 
 def _slope(sums: FloatArray) -> FloatArray:
-    """Differentiate `turned_sums` by the angle; linear, so that it serves any derivative of them too."""
+    """Differentiate `turned_sums` by the angle; the map is linear, so it differentiates their derivatives too."""
     _, s_y, s_z, s_yy, s_zz, s_yz = sums
     return np.stack([np.zeros_like(s_y), -s_z, s_y, -2.0 * s_yz, 2.0 * s_yz, s_yy - s_zz])
 
 
 def _ice_energy(
-    lines: Sequence[Line], profile: StaticProfile, made_of: Sections, angle: FloatArray
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, angle: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Differentiate n int m g (e_y cos Theta - e_z sin Theta) ds."""
-    interpolation, weight = mass_points(lines, profile, made_of)
-    moment = turned_moments(made_of, at_mass_points(interpolation, angle)).first_moment
+    interpolation, weight = mass_points(lines, profile, section_points)
+    moment = turned_moments(section_points, at_mass_points(interpolation, angle)).first_moment
     count = np.array([len(line.bundle.positions) for line in lines])[:, None, None]
     load = -GRAVITY * (count * weight)[..., None] * moment
     values = interpolation[..., None] * np.eye(FIELDS)[THETA]
@@ -199,7 +206,7 @@ def at_mass_points(interpolation: FloatArray, nodal: FloatArray) -> FloatArray:
 
 
 def _by_element(values: FloatArray, fields_a_node: int) -> FloatArray:
-    """Return what belongs to each element of values (lines, freedoms): (lines, elements, 3 nodes' freedoms)."""
+    """Gather values (lines, freedoms) by element: (lines, elements, freedoms of 3 nodes)."""
     elements = (values.shape[1] // fields_a_node - 1) // 2
     first = 2 * fields_a_node * np.arange(elements)[:, None]
     return np.asarray(values[:, first + np.arange(3 * fields_a_node)])
@@ -215,13 +222,13 @@ def _assembled_vector(element: FloatArray) -> FloatArray:
 
 
 def _held(tangent: FloatArray, held: BoolArray) -> FloatArray:
-    """Cut held freedoms off from the rest, with a stiffness of one."""
+    """Decouple held freedoms and give each a stiffness of one."""
     free = ~held
     return np.asarray(tangent * (free[:, :, None] & free[:, None, :]) + held[:, :, None] * np.eye(held.shape[1]))
 
 
 def _downhill(tangent: FloatArray) -> FloatArray:
-    """Take the absolute values of the eigenvalues where some are negative: (lines, freedoms, freedoms)."""
+    """Replace negative eigenvalues by their absolute values: (lines, freedoms, freedoms)."""
     values, vectors = np.linalg.eigh(tangent)
     absolute = (vectors * np.abs(values)[:, None, :]) @ vectors.swapaxes(-1, -2)
     return np.where(values[:, :1, None] > 0.0, tangent, absolute)

@@ -1,7 +1,7 @@
-"""What an analysis returns: flat rows, one fact a row, in tables that `Tables` declares once for the whole house.
+"""The result of an analysis: tables of flat rows, declared once in `Tables` for engine and service.
 
-A column says its unit in its name and beside it, what it holds, and a usual value; `app` makes JSON, CSV, Parquet and
-the OpenAPI document of that, by the name of the table. A new table is a dataclass of rows and a field of `Tables`.
+A column declares its description, unit and a typical value, and its name carries the unit. From these `app` builds
+JSON, CSV, Parquet and the OpenAPI document. A new table is a dataclass of rows and a field of `Tables`.
 """
 
 from engine.result.at_rest import (

@@ -1,4 +1,4 @@
-"""What is known of the span before it moves: static state, Den Hartog's criterion, frequencies, critical winds."""
+"""Results about the resting span: static state, Den Hartog's criterion, frequencies, critical wind speeds."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -15,9 +15,9 @@ OutcomeColumn = Annotated[Outcome, Column("How the computation ended", "converge
 
 @dataclass(frozen=True, slots=True)
 class StaticState:
-    """Static state of the span; in a study one row a point, after the values of the axes.
+    """Static state of the span; in a study one row per point, after the values of the axes.
 
-    Theory section 2. The stiffness is the smaller of both ends.
+    Theory section 2. The stiffness is the smaller one of both ends.
     """
 
     horizontal_tension_n: Annotated[float, Column("Horizontal tension of one iced sub-conductor", 30000.0, unit="N")]
@@ -33,20 +33,20 @@ class StaticState:
 
 @dataclass(frozen=True, slots=True)
 class DenHartog:
-    """Den Hartog's criterion; in a study one row a point, after the values of the axes.
+    """Den Hartog's criterion; in a study one row per point, after the values of the axes.
 
     The coefficient a_y1 is the smallest on the span.
     """
 
     coefficient: Annotated[float, Column("dC_L/dalpha + C_D of one sub-conductor", -0.1667, unit="1/rad")]
-    unstable: Annotated[bool, Column("Whether the coefficient is negative; null if it is unknown", True)]
+    unstable: Annotated[bool, Column("Whether the coefficient is negative; null if unknown", True)]
 
 
 @dataclass(frozen=True, slots=True)
 class FrequencyRow:
     """Natural frequencies without wind, labelled by dominant direction.
 
-    They are None unless converged.
+    They are null unless converged.
     """
 
     model: ModelColumn
@@ -59,14 +59,16 @@ class FrequencyRow:
 
 @dataclass(frozen=True, slots=True)
 class InternalResonanceRow:
-    """How near two natural frequencies without wind are to a ratio of small integers."""
+    """How close two natural frequencies without wind are to a ratio of small integers."""
 
     model: ModelColumn
     loops: LoopsColumn
-    directions: Annotated[str, Column("Whose frequencies are compared, in this order", "horizontal:vertical")]
+    directions: Annotated[
+        str, Column("Directions whose frequencies are compared, in this order", "horizontal:vertical")
+    ]
     frequency_ratio: Annotated[float, Column("The first frequency over the second", 0.9261, unit="1")]
     nearest_ratio: Annotated[str, Column("Nearest ratio of integers up to 3", "1:1")]
-    detuning: Annotated[float, Column("Frequency ratio over the nearest one, less 1", -0.0739, unit="1")]
+    detuning: Annotated[float, Column("Frequency ratio divided by the nearest ratio, minus 1", -0.0739, unit="1")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +82,9 @@ class CriticalWindSpeedRow:
     loops: LoopsColumn
     wind_speed_m_per_s: Annotated[float, Column("Wind speed of the crossing", 2.403, unit="m/s")]
     crossing: Annotated[Literal["onset", "restabilization"], Column("Whether stability is lost or regained", "onset")]
-    type: Annotated[Literal["oscillation", "divergence"], Column("Whether what grows oscillates", "oscillation")]
-    direction: Annotated[Direction, Column("Dominant direction of what grows", "vertical")]
-    frequency_hz: Annotated[float, Column("0 for a divergence", 0.4816, unit="Hz")]
+    type: Annotated[
+        Literal["oscillation", "divergence"], Column("Whether the growing motion oscillates", "oscillation")
+    ]
+    direction: Annotated[Direction, Column("Dominant direction of the growing motion", "vertical")]
+    frequency_hz: Annotated[float, Column("Frequency of the growing motion; 0 for a divergence", 0.4816, unit="Hz")]
     unstable_pairs_after: Annotated[int, Column("Unstable pairs of eigenvalues above this wind speed", 1, unit="1")]

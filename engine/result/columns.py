@@ -1,4 +1,4 @@
-"""How a result table is declared: its rows are a dataclass, each column of which says what it holds."""
+"""How a result table is declared: a dataclass of rows, in which each column describes itself."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -7,7 +7,7 @@ from typing import Any, get_args, get_type_hints
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """What a column holds, a usual value, and the unit of its numbers: "1" for a pure number, None for the rest.
+    """Description of a column, a typical value, and the unit of its numbers: "1" for a pure number, else None.
 
     It stands beside the type, `Annotated[float, Column("Vertical amplitude", 0.1568, unit="m")]`.
     """
@@ -59,7 +59,7 @@ def tables_of(whole: type[Any]) -> Mapping[str, Table]:
 
 
 def _declared(hint: Any, kind: type[Any]) -> tuple[Any, Any]:
-    """Part an annotated type from what is declared beside it."""
+    """Return an annotated type and the declaration of this kind beside it."""
     own, *beside = get_args(hint) if hasattr(hint, "__metadata__") else (hint,)
     for declaration in beside:
         if isinstance(declaration, kind):

@@ -1,4 +1,4 @@
-"""How the span moves: limit cycles, where they change, and what is said beside them."""
+"""Results about motion: limit cycles, their bifurcations, and comparisons between models and loops."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -13,24 +13,23 @@ FoundBy = Literal[
 BifurcationType = Literal["hopf", "fold", "torus", "period_doubling", "branch_point"]
 
 
-@dataclass(frozen=True)  # without slots, since a line has dozens of these, which orjson writes by their `__dict__`
+@dataclass(frozen=True)  # without slots: a line has dozens of these rows, and orjson serializes them from `__dict__`
 class LimitCycleRow:
     """A motion at one wind speed; amplitudes are half of peak-to-peak.
 
-    The equilibrium or a cycle, theory section 8. The shares divide the mean kinetic energy between the directions.
+    The equilibrium, a cycle or a quasi-periodic motion, theory section 8. The shares divide the mean kinetic energy
+    between the directions.
     """
 
     model: ModelColumn
     loops: LoopsColumn
     wind_speed_m_per_s: Annotated[float, Column("Wind speed", 4.0, unit="m/s")]
     branch: Annotated[int | None, Column("Family of cycles; null for the equilibrium", 0)]
-    kind: Annotated[
-        Literal["equilibrium", "periodic", "quasi_periodic"], Column("Rest, or what kind of motion", "periodic")
-    ]
-    stability: Annotated[Stability, Column("Whether the motion lasts; unknown if it was not decided", "stable")]
+    kind: Annotated[Literal["equilibrium", "periodic", "quasi_periodic"], Column("Kind of motion", "periodic")]
+    stability: Annotated[Stability, Column("Stability of the motion; unknown if it could not be decided", "stable")]
     frequency_hz: Annotated[float | None, Column("Frequency; null for the equilibrium", 0.4816, unit="Hz")]
-    second_frequency_hz: Annotated[float | None, Column("Of a quasi-periodic motion", None, unit="Hz")]
-    observed_at_m: Annotated[float, Column("Where the amplitudes hold, from the left support", 62.94, unit="m")]
+    second_frequency_hz: Annotated[float | None, Column("Second frequency of a quasi-periodic motion", None, unit="Hz")]
+    observed_at_m: Annotated[float, Column("Position of the amplitudes, from the left support", 62.94, unit="m")]
     vertical_m: Annotated[float | None, Column("Vertical amplitude", 0.1568, unit="m")]
     horizontal_m: Annotated[float | None, Column("Horizontal amplitude", 0.0099, unit="m")]
     torsional_rad: Annotated[float | None, Column("Torsional amplitude", 0.0020, unit="rad")]
@@ -45,7 +44,7 @@ class LimitCycleRow:
     ]
     vertical_ratio: Annotated[float | None, Column("Vertical amplitude over the static sag", 0.1018, unit="1")]
     horizontal_ratio: Annotated[float | None, Column("Horizontal amplitude over the static sag", 0.0064, unit="1")]
-    reduced_wind_speed: Annotated[float | None, Column("Wind speed over frequency and span", 0.066, unit="1")]
+    reduced_wind_speed: Annotated[float | None, Column("Wind speed divided by frequency and span", 0.066, unit="1")]
     vertical_share: Annotated[
         float | None, Column("Vertical share of the mean kinetic energy; null at rest", 0.9927, unit="1")
     ]
@@ -57,26 +56,27 @@ class LimitCycleRow:
     ]
     largest_angle_of_attack_rad: Annotated[
         float | None,
-        Column("Largest size of the angle of attack along the span and in time; null at rest", 0.1194, unit="rad"),
+        Column("Largest absolute angle of attack along the span and over time; null at rest", 0.1194, unit="rad"),
     ]
     found_by: Annotated[
         FoundBy | None,
         Column(
-            "How it was found: on the branch of a Hopf point, from the explicit formula, the balance of energy or "
-            "direct integration, on the branch of such a one; if quasi-periodic from a torus point or beside an "
-            "unstable cycle; null at rest",
+            "Search that found it: Hopf branch, explicit formula, energy balance, direct integration, or a branch "
+            "continued from one of those; for a quasi-periodic motion a torus point or an unstable cycle; null at rest",
             "hopf_branch",
         ),
     ]
     harmonics: Annotated[
         int | None,
-        Column("Harmonics of the balance, of the cycle's frequency if quasi-periodic; null at rest", 5, unit="1"),
+        Column(
+            "Harmonics of the balance; for a quasi-periodic motion those of its frequency; null at rest", 5, unit="1"
+        ),
     ]
     residual: Annotated[
-        float | None, Column("Largest rest of the equations over the largest elastic force", 2.1e-13, unit="1")
+        float | None, Column("Largest residual of the equations over the largest elastic force", 2.1e-13, unit="1")
     ]
     truncation: Annotated[
-        float | None, Column("Relative change of the amplitude with one harmonic more", 3.4e-8, unit="1")
+        float | None, Column("Relative change of the amplitude with one more harmonic", 3.4e-8, unit="1")
     ]
     detuning_sensitivity: Annotated[
         float | None,
@@ -100,40 +100,42 @@ class BifurcationRow:
     model: ModelColumn
     loops: LoopsColumn
     branch: Annotated[int, Column("Family of cycles", 0)]
-    type: Annotated[BifurcationType, Column("What happens there", "torus")]
+    type: Annotated[BifurcationType, Column("Kind of bifurcation", "torus")]
     wind_speed_m_per_s: Annotated[float, Column("Wind speed", 6.82, unit="m/s")]
-    frequency_hz: Annotated[float, Column("Frequency of the motion there", 0.4816, unit="Hz")]
-    second_frequency_hz: Annotated[float | None, Column("Second frequency that begins there", 0.0121, unit="Hz")]
-    uncertainty_m_per_s: Annotated[float, Column("How well the place is known", 0.01, unit="m/s")]
+    frequency_hz: Annotated[float, Column("Frequency of the motion at the bifurcation", 0.4816, unit="Hz")]
+    second_frequency_hz: Annotated[
+        float | None, Column("Second frequency of the motion that begins there", 0.0121, unit="Hz")
+    ]
+    uncertainty_m_per_s: Annotated[float, Column("Uncertainty of the wind speed", 0.01, unit="m/s")]
 
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeCurveRow:
     """A computed point of a branch of limit cycles; amplitudes are half of peak-to-peak.
 
-    Wind speeds are where the continuation stepped. A family is followed in several curves where it does not begin at
-    one Hopf point.
+    The wind speeds are the steps of the continuation. A family that does not begin at a single Hopf point has several
+    curves.
     """
 
     model: ModelColumn
     loops: LoopsColumn
     branch: Annotated[int, Column("Family of cycles", 0)]
-    curve: Annotated[int, Column("Curve of the family, from 0", 0)]
-    point: Annotated[int, Column("Order along the curve, from 0", 7)]
+    curve: Annotated[int, Column("Index of the curve within the family, from 0", 0)]
+    point: Annotated[int, Column("Index along the curve, from 0", 7)]
     wind_speed_m_per_s: Annotated[float, Column("Wind speed", 2.649, unit="m/s")]
     frequency_hz: Annotated[float, Column("Frequency", 0.4816, unit="Hz")]
-    observed_at_m: Annotated[float, Column("Where the amplitudes hold, from the left support", 62.94, unit="m")]
+    observed_at_m: Annotated[float, Column("Position of the amplitudes, from the left support", 62.94, unit="m")]
     vertical_m: Annotated[float, Column("Vertical amplitude", 0.0502, unit="m")]
     horizontal_m: Annotated[float, Column("Horizontal amplitude", 0.0021, unit="m")]
     torsional_rad: Annotated[float, Column("Torsional amplitude", 0.0006, unit="rad")]
-    stability: Annotated[Stability, Column("Whether the motion lasts; unknown if it was not decided", "stable")]
+    stability: Annotated[Stability, Column("Stability of the motion; unknown if it could not be decided", "stable")]
 
 
 @dataclass(frozen=True, slots=True)
 class ModelComparisonRow:
-    """A stable cycle of the hybrid model beside the nearest of the finite element model with as many loops.
+    """A stable cycle of the hybrid model and the nearest cycle of the finite element model with the same loops.
 
-    The columns of the finite element model are None if it has no cycle of these loops.
+    The columns of the finite element model are null if it has no cycle with these loops.
     """
 
     loops: Annotated[int, Column("Loops per span", 2, unit="1")]
@@ -143,9 +145,11 @@ class ModelComparisonRow:
     hybrid_horizontal_m: Annotated[float, Column("Horizontal amplitude of the hybrid model", 0.3592, unit="m")]
     hybrid_torsional_rad: Annotated[float, Column("Torsional amplitude of the hybrid model", 0.0145, unit="rad")]
     finite_element_branch: Annotated[
-        int | None, Column("Family of the other cycle; null if there is none of these loops", 2)
+        int | None, Column("Family of the finite element model's cycle; null if it has none with these loops", 2)
     ]
-    finite_element_stability: Annotated[Stability | None, Column("Whether it lasts", "stable")]
+    finite_element_stability: Annotated[
+        Stability | None, Column("Stability of the finite element model's cycle", "stable")
+    ]
     finite_element_vertical_m: Annotated[
         float | None, Column("Vertical amplitude of the finite element model", 0.0776, unit="m")
     ]
@@ -156,36 +160,41 @@ class ModelComparisonRow:
         float | None, Column("Torsional amplitude of the finite element model", 0.0121, unit="rad")
     ]
     amplitude_difference: Annotated[
-        float | None, Column("Of sqrt(vertical^2 + horizontal^2), over the hybrid model's", -0.159, unit="1")
+        float | None,
+        Column("Difference of sqrt(vertical^2 + horizontal^2), relative to the hybrid model", -0.159, unit="1"),
     ]
 
 
 @dataclass(frozen=True, slots=True)
 class LoopCompetitionRow:
-    """A cycle of the hybrid model that is stable alone, when the other loops asked for may move too.
+    """A stable cycle of the hybrid model, tested with motion in the other loops asked for.
 
-    The factor is the largest modulus of the Floquet multipliers beside the trivial one.
+    The growth factor is the largest modulus of the Floquet multipliers except the trivial one.
     """
 
     loops: LoopsColumn
     wind_speed_m_per_s: Annotated[float, Column("Wind speed", 4.0, unit="m/s")]
     branch: Annotated[int, Column("Family of the cycle", 0)]
-    stability: Annotated[Stability, Column("Whether it survives the other loops", "unstable")]
+    stability: Annotated[Stability, Column("Stability when the other loops may move", "unstable")]
     growing_loops: Annotated[
-        int | None, Column("Loops of what grows fastest or decays slowest; null if unknown", 2, unit="1")
+        int | None, Column("Loops of the fastest-growing or slowest-decaying motion; null if unknown", 2, unit="1")
     ]
     growth_per_cycle: Annotated[
-        float | None, Column("Factor of that motion a cycle; null if unknown", 1.0008, unit="1")
+        float | None, Column("Growth factor of that motion per cycle; null if unknown", 1.0008, unit="1")
     ]
-    vertical_m: Annotated[float | None, Column("Vertical amplitude among the other loops", 0.1303, unit="m")]
-    horizontal_m: Annotated[float | None, Column("Horizontal amplitude among the other loops", 0.0101, unit="m")]
-    torsional_rad: Annotated[float | None, Column("Torsional amplitude among the other loops", 0.0895, unit="rad")]
+    vertical_m: Annotated[float | None, Column("Vertical amplitude when the other loops may move", 0.1303, unit="m")]
+    horizontal_m: Annotated[
+        float | None, Column("Horizontal amplitude when the other loops may move", 0.0101, unit="m")
+    ]
+    torsional_rad: Annotated[
+        float | None, Column("Torsional amplitude when the other loops may move", 0.0895, unit="rad")
+    ]
     outcome: OutcomeColumn
 
 
 @dataclass(frozen=True, slots=True)
 class Orbit:
-    """Fourier coefficients of a cycle where it is observed, for pictures.
+    """Fourier coefficients of a cycle at the position where it is observed, for plots.
 
     cycle is the index into `Result.limit_cycles`. vertical and horizontal [m] and torsional [rad] each hold
     (mean, cos 1, sin 1, cos 2, sin 2, ...) of the base frequency.

@@ -29,7 +29,7 @@ class Tables:
         Title("Wind speeds at which the resting span loses or regains stability"),
     ] = ()
     limit_cycles: Annotated[tuple[LimitCycleRow, ...], Title("Motions at every wind speed")] = ()
-    bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Changes of the motions over the wind speed")] = ()
+    bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Bifurcations of the motions over the wind speed")] = ()
     amplitude_curves: Annotated[
         tuple[AmplitudeCurveRow, ...],
         Title("Branches of limit cycles point by point; empty unless amplitude_curves is reported"),
@@ -39,11 +39,11 @@ class Tables:
     ] = ()
     loop_competitions: Annotated[
         tuple[LoopCompetitionRow, ...],
-        Title("Stable cycles against the other loops; empty unless loop_competition is checked"),
+        Title("Stable cycles tested with the other loops; empty unless loop_competition is checked"),
     ] = ()
     device_effects: Annotated[
         tuple[DeviceEffectRow, ...],
-        Title("Without and with devices; empty unless device_effect is reported or devices were placed"),
+        Title("Effects of devices; empty unless device_effect is reported or devices were placed"),
     ] = ()
     placements: Annotated[tuple[PlacedDeviceRow, ...], Title("Devices that a search has placed")] = ()
     followed_cycles: Annotated[
@@ -52,7 +52,7 @@ class Tables:
     ] = ()
     followed_bifurcations: Annotated[
         tuple[FollowedBifurcationRow, ...],
-        Title("Where those branches turn, begin or change, with the nearest value of the axis"),
+        Title("Bifurcations on those branches, with the nearest value of the axis"),
     ] = ()
 
 

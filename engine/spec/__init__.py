@@ -1,5 +1,6 @@
-"""What is known of one span and what is asked of it: frozen, in SI units and radians, checked on construction.
+"""One iced span and the questions put to it, as frozen dataclasses in SI units and radians.
 
+Every class checks its own fields on construction and raises `engine.outcome.InvalidSpec` with all faults at once.
 Axes (docs/conventions.md): X along the span, Y up, Z horizontal and downwind. Positions are horizontal distances from
 the left support. Every property of a sub-conductor is that of one iced sub-conductor.
 """

@@ -1,4 +1,4 @@
-"""What is asked of a line, and whether the line can answer it."""
+"""The questions put to a line, and the check that the line has the data to answer them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,11 +9,11 @@ from engine.spec.environment import Aerodynamics
 from engine.spec.line import Line
 from engine.spec.rules import positive
 
-MOST_LOOPS_TOGETHER = 6  # the search for critical speeds of the finite element model grows with their sixth power
+MOST_LOOPS_TOGETHER = 6  # the search for the finite element model's critical speeds takes time as their sixth power
 
 
 class Model(StrEnum):
-    """The three-degree-of-freedom hybrid model, or the finite element model with several modes a direction."""
+    """The three-degree-of-freedom hybrid model, or the finite element model with several modes per direction."""
 
     HYBRID = "hybrid"
     FINITE_ELEMENT = "finite_element"
@@ -27,56 +27,56 @@ class Closure(StrEnum):
 
 
 class AerodynamicModel(StrEnum):
-    """Which velocities turn the wind: the vertical one as published, or all of them. Theory section 5."""
+    """Which velocities change the relative wind: the vertical one, as published, or all of them. Theory section 5."""
 
     PUBLISHED = "published"
     RELATIVE_WIND = "relative_wind"
 
 
 class LongitudinalInertia(StrEnum):
-    """Whether the inertia of f_u is dropped as in the source, or kept in m_11 (Guyan). Theory section 4."""
+    """Whether the inertia of f_u is dropped, as in the source, or kept in m_11 (Guyan). Theory section 4."""
 
     NEGLECTED = "neglected"
     CONDENSED = "condensed"
 
 
 class StaticTwist(StrEnum):
-    """Whether ice and pendulums turn the cross-sections at rest: neglected as in the source, or solved for."""
+    """Whether the static twist by ice and pendulums is neglected, as in the source, or solved for."""
 
     NEGLECTED = "neglected"
     SOLVED = "solved"
 
 
 class LoopCompetition(StrEnum):
-    """Whether stable cycles of the hybrid model are held against small motions of the other loops asked for."""
+    """Whether stable cycles of the hybrid model are tested against small motions in the other loops asked for."""
 
     NEGLECTED = "neglected"
     CHECKED = "checked"
 
 
 class DeviceEffect(StrEnum):
-    """Whether a line with devices is analysed without them too, to tell what they change."""
+    """Whether a line with devices is also analysed without them, to report what they change."""
 
     NEGLECTED = "neglected"
     REPORTED = "reported"
 
 
 class AmplitudeCurves(StrEnum):
-    """Whether the branches of limit cycles are reported point by point, beside the wind speeds asked for."""
+    """Whether branches of limit cycles are reported point by point, besides the wind speeds asked for."""
 
     NEGLECTED = "neglected"
     REPORTED = "reported"
 
 
 class TorusSearch(StrEnum):
-    """Which quasi-periodic motions are sought: those that may last, or unstable ones beside stable cycles as well."""
+    """Which quasi-periodic motions are sought: those that may be stable, or unstable tori beside stable cycles too."""
 
     LASTING = "lasting"
     EVERY = "every"
 
 
 class Check(StrEnum):
-    """Whether stable cycles are held against direct integration of the same equations. Theory section 7.5."""
+    """Whether stable cycles are checked by direct integration of the same equations. Theory section 7.5."""
 
     NONE = "none"
     DIRECT = "direct"
@@ -84,9 +84,16 @@ class Check(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """What is asked: loops per span, models, wind speeds [m/s], and the choices of the model.
+    """The questions put to a line: loops per span, models, wind speeds [m/s], and modelling choices.
 
-    Without finite_element_loops the finite element model gives its frequencies only, not its motions.
+    critical_wind_limit: highest wind speed searched for critical wind speeds [m/s]; harmonics: of the harmonic balance;
+    finite_element_loops: loops of the modes that the finite element model combines. If it is empty, that model gives
+    its natural frequencies only.
+
+    Raises
+    ------
+    InvalidSpec
+        If a field breaks its rule.
     """
 
     loops: tuple[int, ...] = (1, 2)
@@ -135,13 +142,13 @@ def _loops_faults(name: str, loops: tuple[int, ...]) -> Iterator[Fault]:
 
 
 def check_compatible(line: Line, analysis: Analysis) -> None:
-    """Check what concerns a line and what is asked of it together.
+    """Check that a line has the data that an analysis needs.
 
     Raises
     ------
     InvalidSpec
-        If the loops are too many for the elements, the published closure meets a wind profile, or the relative wind
-        lacks the coefficients at rest.
+        If the line has fewer elements than loops are asked for, the published closure is asked for with a wind profile,
+        or the relative wind is asked for without coefficients at rest.
     """
     most = max(analysis.loops + analysis.finite_element_loops)
     published = analysis.closure is Closure.PUBLISHED

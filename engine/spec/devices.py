@@ -1,7 +1,8 @@
-"""Devices that are mounted on a span: every class says itself what the rest of the engine asks of a device.
+"""Devices mounted on a span. Each class states its own inertia, stiffness, damping and static load.
 
-A device acts at points or on stretches, and each part of it is a `PointDevice` or a `StretchDevice`. Matrices are 4 x 4
-on U, V, W and Theta of the reference curve at its point (theory section 3), as tuples: no numpy is needed here.
+A device acts at points or on stretches; each of its parts is a `PointDevice` or a `StretchDevice`. Matrices are 4 x 4
+over U, V, W and Theta of the reference curve at the device (theory section 3). They are tuples, so this module does not
+need numpy.
 """
 
 import math
@@ -20,9 +21,9 @@ NOTHING: Row = (0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class PointDevice:
-    """A device at a position [m] with a mass [kg]; by itself a mass on the reference curve.
+    """A device at a position [m] with a mass [kg]; this base class is a point mass on the reference curve.
 
-    A device overrides what it does otherwise. turn: angle [rad] by which the cross-section stands turned at rest.
+    A subclass overrides the methods in which it differs. turn: static twist of the cross-section at the device [rad].
     """
 
     position: float
@@ -33,59 +34,59 @@ class PointDevice:
         require(not_negative("position", self.position), not_negative("mass", self.mass), *self.own_faults())
 
     def own_faults(self) -> Iterable[Fault | None]:
-        """Check the rules of the fields that the device has beside position and mass."""
+        """Check the rules of the fields besides position and mass."""
         return ()
 
     def inertia(self, turn: float = 0.0) -> Matrix:
-        """Return its part of M [kg, kg m, kg m2]."""
+        """Return the contribution to M [kg, kg m, kg m2]."""
         del turn
         return mass_matrix(self.mass, 0.0)
 
     def stiffness(self, turn: float = 0.0) -> Matrix:
-        """Return its part of K [N/m, N, N m]."""
+        """Return the contribution to K [N/m, N, N m]."""
         del turn
         return on_torsion(0.0)
 
     def damping(self) -> Matrix:
-        """Return its part of C [N s/m, N s, N m s]."""
+        """Return the contribution to C [N s/m, N s, N m s]."""
         return on_torsion(0.0)
 
     def load(self, turn: float = 0.0) -> Row:
-        """Return the static forces and the moment by which it turns the cross-section [N, N, N, N m]."""
+        """Return the static forces and the torsional moment on the cross-section [N, N, N, N m]."""
         del turn
         return NOTHING
 
     @property
     def end(self) -> tuple[str, float]:
-        """The field that says where it ends, and that position [m]."""
+        """The name of the field that says where the device ends, and that position [m]."""
         return "position", self.position
 
     @property
     def points(self) -> tuple["PointDevice", ...]:
-        """What of it acts at a point."""
+        """The parts that act at a point."""
         return (self,)
 
     @property
     def stretches(self) -> tuple["StretchDevice", ...]:
-        """What of it acts on a stretch."""
+        """The parts that act on a stretch."""
         return ()
 
     @property
     def placed(self) -> Mapping[str, float]:
-        """What a search for its place may vary, by the column of a placement row."""
+        """The values that a placement search may vary, by their columns in the placements table."""
         return {}
 
     def total_mass(self, subconductors: int) -> float:
-        """Return its mass on a bundle of so many sub-conductors [kg]."""
+        """Return the mass on a bundle with this number of sub-conductors [kg]."""
         del subconductors
         return self.mass
 
 
 @dataclass(frozen=True, slots=True)
 class StretchDevice:
-    """A device on a stretch [start, stop] [m]: its aerodynamics hold there, and its mass is added.
+    """A device on a stretch [start, stop] [m] that replaces the aerodynamics there and adds mass.
 
-    Without aerodynamics those below it hold; mass is per length of each sub-conductor [kg/m].
+    aerodynamics: None leaves those of the ice in force; mass: added per length of each sub-conductor [kg/m].
     """
 
     start: float
@@ -99,26 +100,26 @@ class StretchDevice:
 
     @property
     def end(self) -> tuple[str, float]:
-        """The field that says where it ends, and that position [m]."""
+        """The name of the field that says where the device ends, and that position [m]."""
         return "stop", self.stop
 
     @property
     def points(self) -> tuple[PointDevice, ...]:
-        """What of it acts at a point."""
+        """The parts that act at a point."""
         return ()
 
     @property
     def stretches(self) -> tuple["StretchDevice", ...]:
-        """What of it acts on a stretch."""
+        """The parts that act on a stretch."""
         return (self,)
 
     @property
     def placed(self) -> Mapping[str, float]:
-        """What a search for its place may vary, by the column of a placement row."""
+        """The values that a placement search may vary, by their columns in the placements table."""
         return {}
 
     def total_mass(self, subconductors: int) -> float:
-        """Return its mass on a bundle of so many sub-conductors [kg]."""
+        """Return the mass on a bundle with this number of sub-conductors [kg]."""
         return self.mass * (self.stop - self.start) * subconductors
 
 
@@ -143,7 +144,7 @@ class Spacer(PointDevice):
 
 @dataclass(frozen=True, slots=True)
 class DetuningPendulum(PointDevice):
-    """Mass [kg] on a rigid arm [m] at an angle [rad] from straight down, positive downwind. Theory section 3."""
+    """Pendulum: a mass [kg] on a rigid arm [m], angle [rad] from straight down, positive downwind. Theory section 3."""
 
     arm: float
     angle: float = 0.0
@@ -159,7 +160,7 @@ class DetuningPendulum(PointDevice):
         return -self.arm * math.cos(angle), self.arm * math.sin(angle)
 
     def inertia(self, turn: float = 0.0) -> Matrix:
-        """Return that of a point mass at its offset."""
+        """Return the inertia of a point mass at its offset."""
         return mass_matrix(self.mass, self.mass * self.arm**2, self.offset(turn))
 
     def stiffness(self, turn: float = 0.0) -> Matrix:
@@ -178,9 +179,9 @@ class DetuningPendulum(PointDevice):
 
 @dataclass(frozen=True, slots=True)
 class TorsionalDamper(PointDevice):
-    """Clamped viscous damper against torsion: polar inertia about the reference curve [kg m2].
+    """Clamped viscous damper of torsion: polar inertia about the reference curve [kg m2].
 
-    coefficient: its moment per angular velocity of the cross-section [N m s].
+    coefficient: moment per angular velocity of the cross-section [N m s].
     """
 
     polar_inertia: float
@@ -203,16 +204,16 @@ class TorsionalDamper(PointDevice):
 
 @dataclass(frozen=True, slots=True)
 class AirflowSpoiler(StretchDevice):
-    """Stretch [start, stop] [m] on which other aerodynamics hold; mass is added per sub-conductor [kg/m]."""
+    """Spoiler on a stretch [start, stop] [m] with its own aerodynamics; mass is added per sub-conductor [kg/m]."""
 
     @property
     def placed(self) -> Mapping[str, float]:
-        """Where it begins and ends [m]."""
+        """Start and end [m]."""
         return {"from_m": self.start, "to_m": self.stop}
 
 
 def mass_matrix(mass: float, polar_inertia: float, offset: tuple[float, float] = (0.0, 0.0)) -> Matrix:
-    """Return the inertia of a body: mass [kg] at (y, z) [m], polar inertia about the reference curve [kg m2]."""
+    """Return the mass matrix of a body: mass [kg] at (y, z) [m], polar inertia about the reference curve [kg m2]."""
     y, z = offset
     return (
         (mass, 0.0, 0.0, 0.0),
@@ -223,5 +224,5 @@ def mass_matrix(mass: float, polar_inertia: float, offset: tuple[float, float] =
 
 
 def on_torsion(value: float) -> Matrix:
-    """Return the matrix that acts on Theta alone."""
+    """Return the matrix with this value on Theta and zeros elsewhere."""
     return (NOTHING, NOTHING, NOTHING, (0.0, 0.0, 0.0, value))

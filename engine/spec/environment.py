@@ -14,10 +14,11 @@ GRAVITY = 9.81  # m/s2
 
 @dataclass(frozen=True, slots=True)
 class MeasuredCoefficients:
-    """What cubic coefficients were fitted to, so that they can be fitted anew where the section is turned.
+    """The measured table behind cubic coefficients, from which they are fitted again where the section is twisted.
 
-    angle [rad], rising, with lift, drag and moment of one sub-conductor, all (rows,); static_angle: the angle of the
-    table at which the untwisted section stands [rad]; half_range: rows within it of the local angle are used [rad].
+    angle [rad], ascending, with lift, drag and moment coefficients of one sub-conductor, all (rows,); static_angle: the
+    angle in the table at which the untwisted section stands [rad]; half_range: rows no farther than this from the local
+    angle enter the fit [rad].
     """
 
     angle: tuple[float, ...]
@@ -32,8 +33,8 @@ class MeasuredCoefficients:
 class Aerodynamics:
     """Cubic coefficients a_i1, a_i2, a_i3 of one sub-conductor over the angle of attack [1/rad^j], eqs. (A11)-(A17).
 
-    at_rest holds a_y0, a_z0, a_theta0, which only the relative-wind model needs; fitted_range is the largest |alpha|
-    [rad] for which the fit holds, None where it is not known; measured is the table behind the fit, if there is one.
+    at_rest: a_y0, a_z0, a_theta0, which only the relative-wind model needs; fitted_range: the largest |alpha| [rad] for
+    which the fit holds, None if unknown; measured: the table behind the fit, None if there is none.
     """
 
     vertical: Coefficients
@@ -55,7 +56,10 @@ class Aerodynamics:
 
 @dataclass(frozen=True, slots=True)
 class IceSegment:
-    """A stretch [start, stop] [m] on which the fields that are not None override those of the span."""
+    """A stretch [start, stop] [m] of other ice; fields that are not None override those of the span.
+
+    eccentricity_y, eccentricity_z [m]; mass: of one iced sub-conductor [kg/m].
+    """
 
     start: float
     stop: float
@@ -76,7 +80,7 @@ class IceSegment:
 
 @dataclass(frozen=True, slots=True)
 class Ice:
-    """Ice of the span: aerodynamics, eccentricity (e_y, e_z) of the iced mass centre [m], and segments of other ice."""
+    """Ice of the span: aerodynamics, eccentricity (e_y, e_z) of the iced centre of mass [m], segments of other ice."""
 
     aerodynamics: Aerodynamics
     eccentricity_y: float = 0.0
@@ -94,7 +98,7 @@ class Ice:
 
 @dataclass(frozen=True, slots=True)
 class BlowOut:
-    """Mean drag that turns the plane of the sag: wind_speed [m/s] and drag_coefficient. Theory section 2."""
+    """Mean drag, of wind_speed [m/s] and drag_coefficient, that turns the plane of the sag. Theory section 2."""
 
     wind_speed: float
     drag_coefficient: float
@@ -109,14 +113,14 @@ class BlowOut:
 
 @dataclass(frozen=True, slots=True)
 class Wind:
-    """Air density [kg/m3]; profile of (position [m], factor phi), linear between points and held outside them."""
+    """Air density [kg/m3]; profile of (position [m], factor phi), linear between points and constant outside them."""
 
     air_density: float = 1.2929
     profile: tuple[tuple[float, float], ...] = ()
     blow_out: BlowOut | None = None
 
     def __post_init__(self) -> None:
-        """Check the rules of every field and that the positions of the profile rise."""
+        """Check the rules of every field and that the positions of the profile ascend."""
         positions = [position for position, _ in self.profile]
         rising = all(a < b for a, b in pairwise(positions))
         require(
@@ -128,7 +132,7 @@ class Wind:
 
 
 class DampingModel(StrEnum):
-    """What stays the same over the loops of a span: the coefficient per length, or the ratio. Theory section 4."""
+    """What all numbers of loops share: the damping coefficient per length, or the ratio. Theory section 4."""
 
     CONSTANT_COEFFICIENT = "constant_coefficient"
     CONSTANT_RATIO = "constant_ratio"

@@ -13,7 +13,13 @@ from engine.spec.span import Bundle, Conductor, Span, Supports
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One iced span with everything that its motion depends on."""
+    """One iced span with everything that its motion depends on.
+
+    Raises
+    ------
+    InvalidSpec
+        If a position lies off the span, devices overlap, or the eccentricity is too large for the polar inertia.
+    """
 
     conductor: Conductor
     bundle: Bundle
@@ -25,7 +31,7 @@ class Line:
     devices: tuple[Device, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check what concerns several parts: positions on the span, and inertia beside eccentricity."""
+        """Check positions on the span, overlaps of devices, and that eccentricity leaves a positive inertia."""
         require(
             *self._position_faults(),
             *overlap_faults(self._stretches_by_field()),
@@ -34,7 +40,7 @@ class Line:
 
     @property
     def stretches(self) -> tuple[StretchDevice, ...]:
-        """What of the devices acts on a stretch."""
+        """The parts of the devices that act on a stretch."""
         return tuple(part for device in self.devices for part in device.stretches)
 
     def _stretches_by_field(self) -> Iterator[tuple[str, float, float]]:
@@ -60,7 +66,7 @@ class Line:
 
 
 def ice_properties(line: Line, piece: Ice | IceSegment) -> tuple[float, float, float]:
-    """Return e_y [m], e_z [m] and the mass per length m [kg/m] that hold on a piece of ice."""
+    """Return e_y [m], e_z [m] and the mass per length m [kg/m] of one sub-conductor under a piece of ice."""
     e_y = line.ice.eccentricity_y if piece.eccentricity_y is None else piece.eccentricity_y
     e_z = line.ice.eccentricity_z if piece.eccentricity_z is None else piece.eccentricity_z
     own_mass = piece.mass if isinstance(piece, IceSegment) else None

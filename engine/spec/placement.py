@@ -1,4 +1,4 @@
-"""What a search for the places of devices may choose from, and what it is to reach."""
+"""The request for a placement search: the devices to place, the ranges to search, and the objective."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ Placeable = Literal["detuning_pendulum", "airflow_spoiler"]
 
 
 class Objective(StrEnum):
-    """What the search makes as high or as low as it can."""
+    """The quantity that the search optimizes."""
 
     HIGHEST_CRITICAL_WIND_SPEED = "highest_critical_wind_speed"
     LOWEST_AMPLITUDE = "lowest_amplitude"
@@ -25,7 +25,7 @@ class Objective(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class PendulumChoice:
-    """So many equal pendulums: ranges of their positions [m], mass [kg] and arm [m]; their angle [rad] is given."""
+    """A number of equal pendulums: ranges of position [m], mass [kg] and arm [m], and a fixed angle [rad]."""
 
     type: ClassVar[Placeable] = "detuning_pendulum"
 
@@ -48,18 +48,18 @@ class PendulumChoice:
 
     @property
     def bounds(self) -> tuple[Range, ...]:
-        """Ranges of the unknowns: every position, the mass, the arm."""
+        """Ranges of the unknowns: each position [m], the mass [kg], the arm [m]."""
         return (*(self.position for _ in range(self.count)), self.mass, self.arm)
 
     def devices(self, *unknowns: float) -> tuple[Device, ...]:
-        """Return the devices of some unknowns, from left to right."""
+        """Return the devices for given unknowns, from left to right."""
         *positions, mass, arm = unknowns
         return tuple(DetuningPendulum(position, mass, arm, self.angle) for position in sorted(positions))
 
 
 @dataclass(frozen=True, slots=True)
 class SpoilerChoice:
-    """One spoiler of given length [m] anywhere within a range of positions [m]; mass is per sub-conductor [kg/m]."""
+    """One spoiler of fixed length [m] within a range of positions [m]; mass is per sub-conductor [kg/m]."""
 
     type: ClassVar[Placeable] = "airflow_spoiler"
 
@@ -70,28 +70,28 @@ class SpoilerChoice:
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
-        long = self.length > self.position[1] - self.position[0]
+        too_long = self.length > self.position[1] - self.position[0]
         require(
             positive("length", self.length),
             *_range_faults("position", self.position),
-            Fault("length", self.length, "must fit into the range of positions") if long else None,
+            Fault("length", self.length, "must fit into the range of positions") if too_long else None,
             not_negative("mass", self.mass),
         )
 
     @property
     def bounds(self) -> tuple[Range, ...]:
-        """Range of the unknown: where the spoiler begins."""
+        """Range of the only unknown, the start of the spoiler [m]."""
         return ((self.position[0], self.position[1] - self.length),)
 
     def devices(self, *unknowns: float) -> tuple[Device, ...]:
-        """Return the spoiler that begins there."""
+        """Return the spoiler that starts there."""
         (start,) = unknowns
         return (AirflowSpoiler(start, start + self.length, self.aerodynamics, self.mass),)
 
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """Devices to be placed, the objective, and the effort: generations and members of each, from a seed."""
+    """The devices to place, the objective, and the effort: generations, members of each, and the random seed."""
 
     choice: PendulumChoice | SpoilerChoice
     objective: Objective = Objective.HIGHEST_CRITICAL_WIND_SPEED
@@ -109,23 +109,23 @@ class Placement:
 
 
 def check_placement(line: Line, analysis: Analysis, placement: Placement) -> None:
-    """Check what concerns a line, what is asked of it and a placement together.
+    """Check that a placement fits its line and its analysis.
 
     Raises
     ------
     InvalidSpec
-        If the range of positions leaves the span, a spoiler is to be placed beside another, or an amplitude is to be
-        lowered without wind speeds.
+        If the range of positions leaves the span, a spoiler is to be placed on a line that has one, or the objective is
+        an amplitude and the analysis has no wind speeds.
     """
     choice, last = placement.choice, placement.choice.position[1]
     first = choice.devices(*(lowest for lowest, _ in choice.bounds))
-    beside = bool(line.stretches) and any(device.stretches for device in first)
-    still = placement.objective is Objective.LOWEST_AMPLITUDE and not analysis.wind_speeds
+    second_spoiler = bool(line.stretches) and any(device.stretches for device in first)
+    no_wind = placement.objective is Objective.LOWEST_AMPLITUDE and not analysis.wind_speeds
     off_span = f"must lie on the span (its length is {line.span.length})"
     require(
         Fault("choice.position.highest", last, off_span) if last > line.span.length else None,
-        Fault("choice", None, "must not place a spoiler on a line that has one") if beside else None,
-        Fault("objective", placement.objective.value, "needs wind speeds in the analysis") if still else None,
+        Fault("choice", None, "must not place a spoiler on a line that has one") if second_spoiler else None,
+        Fault("objective", placement.objective.value, "needs wind speeds in the analysis") if no_wind else None,
     )
 
 

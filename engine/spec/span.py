@@ -1,4 +1,4 @@
-"""The conductors of a span and what holds them."""
+"""Conductor, bundle, span geometry and supports."""
 
 import math
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ class Bundle:
     positions: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
 
     def __post_init__(self) -> None:
-        """Check that there is a sub-conductor and that every position is finite and taken once."""
+        """Check that there is a sub-conductor and that positions are finite and distinct."""
         require(
             None if self.positions else Fault("bundle.positions", self.positions, "must hold a sub-conductor"),
             *(
@@ -123,7 +123,8 @@ class Span:
 class Support:
     """One end of the span: a dead end fixes U; else the adjacent span and the insulator string hold it, eq. (A10).
 
-    adjacent_span [m], None for one like this; insulator_length L_i [m]; insulator_weight W_i per sub-conductor [N].
+    adjacent_span: its length [m], None for the length of this span; insulator_length L_i [m]; insulator_weight W_i per
+    sub-conductor [N].
     """
 
     dead_end: bool = False
@@ -142,7 +143,7 @@ class Support:
 
 @dataclass(frozen=True, slots=True)
 class Supports:
-    """Both ends; a given longitudinal_stiffness K_x per sub-conductor [N/m] overrides what the ends would give."""
+    """Both ends; longitudinal_stiffness K_x per sub-conductor [N/m], if given, replaces that computed from them."""
 
     longitudinal_stiffness: float | None = None
     left: Support = Support()

@@ -1,4 +1,4 @@
-"""Where to put devices: a search by differential evolution whose generations are stacks of lines."""
+"""Placement of devices by differential evolution; each generation is analysed as one stack of lines."""
 
 import math
 from collections.abc import Generator
@@ -25,16 +25,16 @@ from engine.spec import (
     check_placement,
 )
 
-SEARCH_SHARE = 0.8  # of the progress; the rest is the whole analysis without and with the devices
-TOLERANCE = 1e-3  # spread of a generation over its mean below which the search has settled
-ALIKE = 9  # decimals to which two candidates are the same
+SEARCH_SHARE = 0.8  # of the progress; the rest is the full analysis without and with the devices
+TOLERANCE = 1e-3  # spread of a generation relative to its mean, below which the search has converged
+ALIKE = 9  # decimals to which the unknowns of equal candidates agree
 
 
 def place(line: Line, analysis: Analysis, placement: Placement) -> Generator[Progress, None, Result]:
     """Search for the best places, then analyse the line without and with the devices.
 
-    The search looks at the hybrid model at all loops asked for: the lowest onset, or the largest amplitude of a stable
-    motion at the wind speeds asked for. Devices that the line has stay where they are.
+    The objective comes from the hybrid model at all loops asked for: the lowest onset, or the largest amplitude of a
+    stable motion at the wind speeds asked for. Devices already on the line stay where they are.
 
     Parameters
     ----------
@@ -50,12 +50,13 @@ def place(line: Line, analysis: Analysis, placement: Placement) -> Generator[Pro
     Returns
     -------
     Result
-        Of the line with the devices, `device_effects` against the line as it came, and the devices in `placements`.
+        Of the line with the devices; `device_effects` compares it with the line as given, and `placements` holds the
+        devices.
 
     Raises
     ------
     InvalidSpec
-        If line, analysis and placement do not fit together.
+        If the placement does not fit the line and the analysis.
     """
     check_placement(line, analysis, placement)
     yield Progress(0.0, "first generation of places")
@@ -76,15 +77,15 @@ def place(line: Line, analysis: Analysis, placement: Placement) -> Generator[Pro
 
 
 class _Candidates:
-    """Objective of a whole generation at once; what was looked at before is not computed again."""
+    """The objective of a whole generation at once; a candidate seen before is not computed again."""
 
     def __init__(self, line: Line, analysis: Analysis, placement: Placement) -> None:
         self._line, self._placement = line, placement
-        still = placement.objective is Objective.HIGHEST_CRITICAL_WIND_SPEED
+        onset_sought = placement.objective is Objective.HIGHEST_CRITICAL_WIND_SPEED
         self._analysis = replace(
             analysis,
             models=(Model.HYBRID,),
-            wind_speeds=() if still else analysis.wind_speeds,
+            wind_speeds=() if onset_sought else analysis.wind_speeds,
             loop_competition=LoopCompetition.NEGLECTED,
             device_effect=DeviceEffect.NEGLECTED,
         )
@@ -92,16 +93,16 @@ class _Candidates:
 
     @property
     def evaluations(self) -> int:
-        """Number of different candidates that were computed."""
+        """Number of different candidates computed."""
         return len(self._known)
 
     def line(self, unknowns: FloatArray) -> Line:
-        """Return the line with the devices of some unknowns."""
+        """Return the line with the devices for given unknowns."""
         devices = self._placement.choice.devices(*unknowns.tolist())
         return replace(self._line, devices=(*self._line.devices, *devices))
 
     def __call__(self, unknowns: FloatArray) -> FloatArray:
-        """Return what is to be minimized for each column of unknowns (unknowns, candidates): (candidates,)."""
+        """Return the value to minimize for each column of unknowns (unknowns, candidates): (candidates,)."""
         keys = [tuple(np.round(column, ALIKE).tolist()) for column in unknowns.T]
         new = {key: column for key, column in zip(keys, unknowns.T, strict=True) if key not in self._known}
         if new:
@@ -124,12 +125,12 @@ class _Candidates:
 def _evolved(
     candidates: _Candidates, placement: Placement, generation: int, population: FloatArray | None
 ) -> OptimizeResult:
-    """Make the first generation, or one more out of the last, so that the caller may stop between two."""
+    """Draw the first generation, or evolve the given one once, so that the caller can stop after each."""
     low, high = np.array(placement.choice.bounds).T
     generator = np.random.default_rng((placement.seed, generation))
     if population is None:
         population = low + (high - low) * generator.random((placement.population, low.size))
-    objective: Any = candidates  # takes a generation at once, which scipy's types do not know of
+    objective: Any = candidates  # takes a generation at once, which scipy's stubs do not describe
     return differential_evolution(
         objective,
         Bounds(low, high),
@@ -145,7 +146,7 @@ def _evolved(
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """How a search ended: best value of the objective (None if no candidate has one), candidates, generations."""
+    """How a search ended: best objective (None if no candidate has one), numbers of candidates and generations."""
 
     value: float | None
     evaluations: int
@@ -153,7 +154,7 @@ class _Search:
 
 
 def _rows(fitted: Line, before: int, placement: Placement, search: _Search) -> tuple[PlacedDeviceRow, ...]:
-    """Write the devices that were added after so many others."""
+    """Return a row for each placed device; `before` is the number of devices that the line already had."""
     rows = []
     for number, device in enumerate(fitted.devices[before:], start=before):
         rows.append(
@@ -175,5 +176,5 @@ def _rows(fitted: Line, before: int, placement: Placement, search: _Search) -> t
 
 
 def _later(of_analysis: Progress) -> Progress:
-    """Count the progress of the analysis after that of the search."""
+    """Place the progress of the full analysis after that of the search."""
     return Progress(SEARCH_SHARE + (1.0 - SEARCH_SHARE) * of_analysis.fraction, of_analysis.step)
