@@ -1,4 +1,4 @@
-"""Measure everything: one table on the screen, in docs/performance.md and in benchmarks/latest.json."""
+"""Measure speed and cost; write the figures to the terminal, docs/performance.md and benchmarks/latest.json."""
 
 import argparse
 import importlib.util
@@ -14,64 +14,66 @@ LATEST = ROOT / "benchmarks" / "latest.json"
 SECTIONS = ("cycle", "branch", "fleet", "machine", "service")
 
 MEANING = {
-    "cycle_ratio": "one limit cycle of the source's lines: direct integration's time over the engine's, in one stack",
-    "cycle_ratio_alone": "the same, each line at each wind speed in a call of its own",
-    "cycle_ratio_bare": "the same for explicit start, balance and multipliers alone, without following the branch",
+    "cycle_ratio": "one limit cycle of the source's lines: time of direct integration over the engine's, in one stack",
+    "cycle_ratio_alone": "the same, each line and wind speed in a separate call",
+    "cycle_ratio_bare": "the same for explicit start, balance and multipliers only, without following the branch",
     "cycle_error": "largest relative change of the dominant amplitude over 100 periods of direct integration",
-    "cycle_direct_error": "largest relative difference of the settled direct integration, which its slow decay leaves",
-    "cycle_direct_seconds": "direct integration of one cycle [s]: DOP853, rtol 1e-8, until 0.1 % over 50 cycles",
-    "cycle_direct_cycles": "periods until then, mean",
-    "cycle_stack_seconds": "the engine [s]: everything that it finds, with branches and multipliers, per stable cycle",
-    "cycle_alone_seconds": "the same, each line at each wind speed in a call of its own [s]",
-    "cycle_bare_seconds": "explicit start, balance and multipliers alone, each in a call of its own [s]",
-    "branch_ratio": "a branch: AUTO's time (mesh of 30 intervals) over the engine's (41 winds), four in one stack",
-    "branch_ratio_alone": "the same, each branch in a call of its own",
+    "cycle_direct_error": "largest relative difference from direct integration when it stops, still decaying slowly",
+    "cycle_direct_seconds": "direct integration of one cycle [s]: DOP853, rtol 1e-8, until within 0.1 % over 50 cycles",
+    "cycle_direct_cycles": "mean number of periods until then",
+    "cycle_stack_seconds": "the engine, per stable cycle [s]: the complete search, with branches and multipliers",
+    "cycle_alone_seconds": "the same, each line and wind speed in a separate call [s]",
+    "cycle_bare_seconds": "explicit start, balance and multipliers only, each in a separate call [s]",
+    "branch_ratio": "a branch: time of AUTO (mesh of 30 intervals) over the engine's (41 winds), four in one stack",
+    "branch_ratio_alone": "the same, each branch in a separate call",
     "branch_auto_seconds": "AUTO's periodic branch from the Hopf point to 6 m/s [s]",
-    "branch_auto_points": "orbits that AUTO computes on it",
+    "branch_auto_points": "number of orbits that AUTO computes on it",
     "branch_difference": "largest relative difference of the dominant amplitude at AUTO's wind speeds",
-    "fleet_lines_per_s_core": "standard line jobs a second and core",
-    "fleet_floor_ratio": "their time over the time of the LAPACK calls of their numpy form, replayed",
+    "fleet_lines_per_s_core": "standard line jobs per second and core",
+    "fleet_floor_ratio": "their time over the time of only the LAPACK calls of their numpy form",
     "fleet_compiled_gain": "time of the fleet's job with the numpy forms over its time with the compiled kernels",
-    "branch_compiled_gain": "the same for a branch in a call of its own",
-    "fleet_exponent": "exponent of the time over the number of lines",
-    "finite_element_over_hybrid": "cost of the finite element model over the hybrid one",
-    "service_overhead_ratio": "time of a batch through HTTP, queue, worker, database over the engine's, median",
+    "branch_compiled_gain": "the same for a branch in a separate call",
+    "fleet_exponent": "exponent of the time as a power of the number of lines",
+    "finite_element_over_hybrid": "time of the finite element model over that of the hybrid model",
+    "service_overhead_ratio": "median time of a batch through HTTP, queue, worker, database over the engine's",
     "two_worker_speedup": "rate of two workers over one on two cores, from start of the first chunk to end of the last",
     "two_worker_batch_speedup": "the same from the first byte of the batch to the last byte of its results",
     "machine_loop_seconds": "`sum(range(10_000_000))` in Python [s]: the speed of the machine during this run",
-    "machine_two_core_speedup": "rate of two processes of the engine alone over one: the most that this machine gives",
-    "analyse_start_seconds": "`galloping analyse` from its start until it has read and checked a line [s]",
-    "analyse_seconds": "`galloping analyse`, a line with both models at one wind speed, the whole process [s]",
-    "claim_database_ms": "processor time of PostgreSQL to claim and end a chunk, without its lines [ms]",
+    "machine_two_core_speedup": "rate of two processes of the engine alone over one: the upper limit on this machine",
+    "analyse_start_seconds": "time from the start of `galloping analyse` until it has read and checked a line [s]",
+    "analyse_seconds": "`galloping analyse` of a line with both models at one wind speed, whole process [s]",
+    "claim_database_ms": "processor time of PostgreSQL to claim and finish a chunk, without its lines [ms]",
     "heartbeat_database_ms": "the same for a heartbeat [ms]",
     "sweep_database_ms": "the same for a sweep that finds nothing [ms]",
-    "post_p99_ms": "POST /v1/jobs, 50 clients that post again after each answer (closed loop), 99th percentile [ms]",
-    "posts_per_s": "posts a second of that closed loop, two API processes, load generator on the same cores",
-    "post_open_p99_ms": "POST /v1/jobs at 100 posts a second over 50 connections (open loop), 99th percentile [ms]",
-    "post_api_ms": "processor time of the API for a post [ms]",
-    "post_database_ms": "processor time of PostgreSQL for a post [ms]",
-    "post_broker_ms": "processor time of Redis for a post [ms]",
-    "status_reads_per_s": "status reads a second, 50 clients, load generator on the same cores",
-    "read_api_ms": "processor time of the API for a status read [ms]",
-    "read_database_ms": "processor time of PostgreSQL for a status read [ms]",
-    "line_worker_ms": "processor time of the worker for a line of a batch, the engine included [ms]",
-    "line_api_ms": "processor time of the API for it: intake, status reads, results as NDJSON [ms]",
-    "line_database_ms": "processor time of PostgreSQL for it [ms]",
-    "line_broker_ms": "processor time of Redis for it [ms]",
-    "line_messages": "messages for it",
-    "line_rows": "rows for it, of all tables",
-    "line_bytes": "bytes for it in the database, indexes included",
-    "line_log_bytes": "bytes for it in PostgreSQL's write-ahead log",
+    "post_p99_ms": "POST /v1/jobs, 50 clients that post again after each response (closed loop), 99th percentile [ms]",
+    "posts_per_s": "posts per second in that closed loop, two API processes, load generator on the same cores",
+    "post_open_p99_ms": "POST /v1/jobs at 100 posts per second over 50 connections (open loop), 99th percentile [ms]",
+    "post_api_ms": "processor time of the API per post [ms]",
+    "post_database_ms": "processor time of PostgreSQL per post [ms]",
+    "post_broker_ms": "processor time of Redis per post [ms]",
+    "status_reads_per_s": "status reads per second, 50 clients, load generator on the same cores",
+    "read_api_ms": "processor time of the API per status read [ms]",
+    "read_database_ms": "processor time of PostgreSQL per status read [ms]",
+    "line_worker_ms": "processor time of the worker per line of a batch, with the engine [ms]",
+    "line_api_ms": "processor time of the API per line: intake, status reads, results as NDJSON [ms]",
+    "line_database_ms": "processor time of PostgreSQL per line [ms]",
+    "line_broker_ms": "processor time of Redis per line [ms]",
+    "line_messages": "broker messages per line",
+    "line_rows": "database rows per line, in all tables",
+    "line_bytes": "bytes per line in the database, with indexes",
+    "line_log_bytes": "bytes per line in PostgreSQL's write-ahead log",
 }
 
 
 def main() -> None:
-    """Run the sections asked for and write what they found; figures of the others stay as they were."""
+    """Run the chosen sections and write their figures; those of the other sections stay as they were."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--sections", nargs="+", choices=SECTIONS, default=SECTIONS, help="measure these anew")
-    parser.add_argument("--fleet", type=int, default=1000, help="largest number of lines of the fleet")
-    parser.add_argument("--batch", type=int, default=10_000, help="lines of the batch sent through the service")
-    parser.add_argument("--long", type=int, nargs="?", const=10_000, help="run the fleet alone, up to so many lines")
+    parser.add_argument("--sections", nargs="+", choices=SECTIONS, default=SECTIONS, help="sections to measure")
+    parser.add_argument("--fleet", type=int, default=1000, help="largest number of lines in the fleet")
+    parser.add_argument(
+        "--batch", type=int, default=10_000, help="number of lines in the batch sent through the service"
+    )
+    parser.add_argument("--long", type=int, nargs="?", const=10_000, help="run only the fleet, up to this many lines")
     arguments = parser.parse_args()
     if arguments.long:
         _write_long(arguments.long)
@@ -93,7 +95,7 @@ def _section(name: str, fleet: int, lines: int) -> Iterator[tuple[str, float]]:
         case "branch" if importlib.util.find_spec("xpplab"):
             yield from engine_speed.branch()
         case "branch":
-            print("branch: left out, the development extra `bench` is not installed")
+            print("branch: skipped, because the development extra `bench` is not installed")
         case "fleet":
             yield from engine_speed.fleet(fleet)
             yield from engine_speed.hybrid_against_finite_element()
@@ -116,7 +118,7 @@ def _write_page(figures: dict[str, float]) -> None:
 
 
 def _write_long(largest: int) -> None:
-    """Run the fleet at every size, and replace its table."""
+    """Run the fleet at every size and replace its table on the page."""
     runs: list[scaling.Run] = []
     for run in scaling.long_runs(largest):
         runs.append(run)

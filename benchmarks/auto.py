@@ -1,4 +1,4 @@
-"""A branch of limit cycles by AUTO, driven through the `xpplab` wheel (GPL; a development extra only)."""
+"""A branch of limit cycles computed by AUTO through the `xpplab` wheel (GPL; a development extra only)."""
 
 import time
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ VARIABLES = "abcdef"  # q_v, q_w, q_theta and their rates
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """Wind speeds [m/s], half of peak-to-peak of each coordinate (points, 3), and the seconds that AUTO took."""
+    """Wind speeds (points,) [m/s], half of peak-to-peak of each coordinate (points, 3), and AUTO's time [s]."""
 
     wind_speed: FloatArray
     amplitude: FloatArray
@@ -22,7 +22,7 @@ class Branch:
 
 
 def model_text(model: ReducedModel, wind_speed: float) -> str:
-    """Write the equations of one hybrid model with the wind speed as parameter p."""
+    """Return the equations of one hybrid model as an XPP file, with the wind speed [m/s] as parameter p."""
     inverse = np.linalg.inv(model.mass)
     stiffness, damping = inverse @ model.stiffness, inverse @ model.damping
     table = inverse @ model.load.table[0]
@@ -49,7 +49,7 @@ def _local_name(row: FloatArray) -> str:
 
 
 def continued_branch(model: ReducedModel, start: float, stop: float, *, intervals: int = 30) -> Branch:
-    """Continue the cycles from the first Hopf point between two wind speeds, timing the periodic branch only."""
+    """Continue the cycles from the first Hopf point between two wind speeds [m/s]; time only the periodic branch."""
     import xpplab  # noqa: PLC0415  a development extra: its absence must not break the other measurements
 
     with xpplab.Model.from_text(model_text(model, start)) as ode:

@@ -1,8 +1,8 @@
-"""What many workers ask of PostgreSQL and Redis: a simulation with measured costs, written into docs/capacity.md.
+"""The load of many workers on PostgreSQL and Redis: a simulation with measured costs, written to docs/capacity.md.
 
-A closed queueing network, event by event: each worker takes a message from the broker (one thread), claims its chunk,
-computes it, and writes its results; statements run on the processors of the database, bytes go through its one log.
-Between them every worker renews leases and sweeps. The batch never runs dry, so that the rates are those of full load.
+A discrete-event simulation of a closed queueing network. Each worker takes a message from the broker (one thread),
+claims its chunk, computes it and writes its results. Statements run on the processors of the database; bytes go through
+its one log. Meanwhile every worker renews leases and sweeps. The batch never runs out, as under full load.
 """
 
 import heapq
@@ -22,21 +22,21 @@ WANTED = ("line_", "post_", "read_", "claim_", "heartbeat_", "sweep_")
 WORKERS = (1, 10, 100, 1000)
 SEED = 20260101
 CHUNKS_A_WORKER = 40
-SPREAD = 0.15  # of a chunk's computing time about its mean
-GOOD = 0.9  # share of the workers' rate above which nothing else is said to limit it
-LOG_BYTES_PER_S = 200e6  # a fast disk's, with group commit
+SPREAD = 0.15  # of a chunk's computing time, relative to its mean
+GOOD = 0.9  # share of the workers' rate above which the workers count as the limit
+LOG_BYTES_PER_S = 200e6  # of a fast disk, with group commit
 
 
 @dataclass(slots=True)
 class Station:
-    """Servers that take what comes in the order in which it comes; `busy` is the time that they worked [s]."""
+    """A number of servers with one first-come, first-served queue; `busy` is their total working time [s]."""
 
     servers: int
     busy: float = 0.0
     free: list[float] = field(default_factory=list)
 
     def serve(self, at: float, seconds: float) -> float:
-        """Return when a piece of work that comes at a moment is done."""
+        """Serve a request that arrives at a time and takes this long [s]; return when it is done [s]."""
         if not self.free:
             self.free = [0.0] * self.servers
         begin = max(at, heapq.heappop(self.free))
@@ -47,7 +47,7 @@ class Station:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Lines a second, and the share of the time that each station was busy."""
+    """Lines per second, their share of the workers' own rate, and the utilization of each station."""
 
     lines_per_s: float
     efficiency: float
@@ -57,7 +57,7 @@ class Outcome:
 
 
 def simulate(figures: dict[str, float], workers: int, processors: int, seed: int = SEED) -> Outcome:
-    """Run so many workers against a database with so many processors; costs are per line [ms] and [bytes]."""
+    """Simulate workers and a database with a number of processors; `figures` are those of benchmarks/latest.json."""
     generator = np.random.default_rng(seed)
     lines = 1.0 / figures["line_messages"]
     database, log, broker = Station(processors), Station(1), Station(1)
@@ -89,21 +89,21 @@ def simulate(figures: dict[str, float], workers: int, processors: int, seed: int
 
 
 def limit(found: Outcome) -> str:
-    """Name what sets the rate: the workers, or the station that is busiest where they wait for it."""
+    """Name the bottleneck: the workers, or the busiest station if they wait for one."""
     if found.efficiency >= GOOD:
         return "workers"
     return max(("database", "log", "broker"), key=lambda station: float(getattr(found, station)))
 
 
 def _upkeep_ms(figures: dict[str, float], computing: float) -> float:
-    """Return what leases and sweeps cost the database while a worker computes a chunk [ms]."""
+    """Return the database's processor time for leases and sweeps while a worker computes a chunk [ms]."""
     settings = Settings()
     beats = figures["heartbeat_database_ms"] / settings.heartbeat_seconds
     return computing * (beats + figures["sweep_database_ms"] / settings.sweep_seconds)
 
 
 def tables(figures: dict[str, float]) -> Iterator[tuple[str, list[str]]]:
-    """Yield the tables of the page by their marks."""
+    """Yield the mark and the lines of each table on the page."""
     rows = [f"| `{name}` | {value:.4g} |" for name, value in sorted(figures.items())]
     yield "figures", ["| figure | value |", "|---|---|", *rows]
     names = (
@@ -138,7 +138,7 @@ def _bytes(figures: dict[str, float]) -> Iterator[str]:
 
 
 def main() -> None:
-    """Write the tables of docs/capacity.md anew from what `make bench` measured last."""
+    """Rewrite the tables of docs/capacity.md from the latest figures of `make bench`."""
     text, found = PAGE.read_text(), json.loads(FIGURES.read_text())
     for mark, lines in tables({name: value for name, value in found.items() if name.startswith(WANTED)}):
         before, rest = text.split(f"<!-- {mark} -->", 1)

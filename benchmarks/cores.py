@@ -1,4 +1,4 @@
-"""What this machine gives two processes at once, and how long the command line takes to start."""
+"""The speed of this machine with one and two processes, and the time that the command line takes to start."""
 
 import json
 import multiprocessing
@@ -24,12 +24,12 @@ RUNS = 5
 
 
 def plain_python() -> Iterator[tuple[str, float]]:
-    """Yield the time of ten million additions in Python: what the machine of a run is worth, at the time of the run."""
+    """Yield the time of ten million additions in Python, a measure of the machine's speed during the run."""
     yield "machine_loop_seconds", median_seconds(lambda: sum(range(ADDITIONS)), RUNS)
 
 
 def two_processes() -> Iterator[tuple[str, float]]:
-    """Yield the rate of the engine in two processes at once over that in one: no service can scale better here."""
+    """Yield the rate of the engine in two processes over that in one, the upper limit for the service's scaling."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(2, mp_context=context) as pool:
         list(pool.map(_rate, [64, 64]))
@@ -41,7 +41,7 @@ def two_processes() -> Iterator[tuple[str, float]]:
 
 
 def _rate(count: int) -> float:
-    """Return lines a second."""
+    """Return the engine's rate in lines per second."""
     generator = np.random.default_rng(20260101)
     lines = [random_line(generator) for _ in range(count)]
     begin = time.perf_counter()
@@ -50,7 +50,7 @@ def _rate(count: int) -> float:
 
 
 def command_line() -> Iterator[tuple[str, float]]:
-    """Yield what `galloping analyse` takes as a whole process, and until it has read and checked its line."""
+    """Yield the time of the whole process `galloping analyse`, and the time until it has read and checked its line."""
     with tempfile.TemporaryDirectory() as directory:
         whole = Path(directory) / "line.json"
         whole.write_text(json.dumps({"line": example("c11-twin"), "analysis": {"wind_speeds_m_per_s": [6.0]}}))

@@ -1,4 +1,4 @@
-"""The engine against what a user would pick instead, and against the LAPACK calls that it cannot avoid."""
+"""Speed of the engine against direct integration, AUTO, and the LAPACK calls that its numpy form needs."""
 
 import cProfile
 import itertools
@@ -35,12 +35,12 @@ STANDARD_JOB = Analysis(
     wind_speeds=tuple(np.linspace(4.0, 12.0, 11).tolist()),
 )
 SOURCE_WINDS = np.array([4.0, 6.0])
-PARTS = 5  # stacks of which the fleet's figures are medians
-LONGEST = 6000  # cycles of direct integration
+PARTS = 5  # stacks over which the fleet's figures are medians
+LONGEST = 6000  # most cycles of direct integration
 
 
 def found_cycles(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Cycles:
-    """Find all cycles with stability as the product does."""
+    """Find all cycles and their stability, as an analysis does."""
     crossings = critical_wind_speeds(model, HIGHEST_WIND)
     return find_cycles(model, crossings, winds, explicit_starts(published, winds, HARMONICS), HARMONICS)
 
@@ -87,7 +87,7 @@ def one_cycle() -> Iterator[tuple[str, float]]:
         begin = time.perf_counter()
         settled[i, j] = settled_amplitude(take(model, i), float(winds[j]))
         direct += (time.perf_counter() - begin) / (len(members) * winds.size)
-        # Between the integrations, so that the drift of the machine's speed is in both.
+        # Between the integrations, so that both see the drift of the machine's speed.
         engine.append(side_by_side(lambda: found_cycles(model, published, winds), alone, bare, runs=1))
     stacked, each, plain = (float(np.median(times)) for times in zip(*engine, strict=True))
     yield "cycle_direct_seconds", direct
@@ -104,14 +104,14 @@ def one_cycle() -> Iterator[tuple[str, float]]:
 
 
 def _bare(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Floquet:
-    """Balance the explicit starts and judge them; no branch is followed and nothing else is looked for."""
+    """Balance the explicit starts and compute their multipliers, without any other search."""
     starts = explicit_starts(published, winds, HARMONICS)
     orbits, _ = balance(model, starts.member, starts.orbits)
     return floquet(model, starts.member, orbits)
 
 
 def _held_amplitude(model: ReducedModel, cycles: Cycles, i: int, j: int) -> tuple[FloatArray, int]:
-    """Integrate 100 periods from a stable cycle of the engine and measure the last ten."""
+    """Integrate 100 periods from a stable cycle of the engine; return the amplitude over the last ten, and 100."""
     index = np.flatnonzero((cycles.member == i) & (cycles.wind == j) & (cycles.floquet.stability == "stable"))[:1]
     orbit = select(cycles.orbits, index)
     wind, period = float(orbit.wind_speed[0]), 2.0 * np.pi / float(orbit.angular_frequency[0])
@@ -134,7 +134,7 @@ def _largest_difference(cycles: Cycles, settled: dict[tuple[int, int], tuple[Flo
 
 
 def branch() -> Iterator[tuple[str, float]]:
-    """Yield the figures of whole branches of 41 winds with Floquet stability against AUTO."""
+    """Yield the figures of whole branches with Floquet stability at 41 wind speeds, against AUTO."""
     discretization = discretized([source_line(n) for n in (2, 3)])
     model, published = hybrid_models(discretization, (1, 2))
     winds, members = np.linspace(2.6, 6.0, 41), range(model.mass.shape[0])
@@ -176,7 +176,7 @@ def _difference(model: ReducedModel, published: ReducedModel, auto: Branch) -> f
 
 
 def analysed(lines: Sequence[Line], analysis: Analysis) -> list[Result]:
-    """Run the standard job on lines, one stack after another."""
+    """Analyse lines, one stack after another."""
     results: list[Result] = []
     for first in range(0, len(lines), STACK):
         results += finished(analyse_stack(lines[first : first + STACK], analysis))
@@ -184,7 +184,7 @@ def analysed(lines: Sequence[Line], analysis: Analysis) -> list[Result]:
 
 
 def fleet(largest: int) -> Iterator[tuple[str, float]]:
-    """Yield lines a second and core, the ratio to the LAPACK calls alone, and the exponent of cost over lines."""
+    """Yield lines per second and core, the ratios to LAPACK alone and to the numpy forms, and the exponent of cost."""
     generator = np.random.default_rng(20260101)
     lines = [random_line(generator) for _ in range(min(largest, 2000))]
     analysed(lines[:STACK], STANDARD_JOB)
@@ -231,7 +231,7 @@ def _place(path: str, function: str) -> str:
 
 
 def _exponent(lines: list[Line], largest: int) -> float:
-    """Fit the exponent of the time over the number of lines; beyond the drawn ones they repeat."""
+    """Fit the time as a power of the number of lines; sizes above the number of drawn lines repeat them."""
     sizes = [n for n in (100, 1000, 10_000, 100_000) if n <= largest]
     times = []
     for size in sizes:
@@ -245,7 +245,7 @@ def _exponent(lines: list[Line], largest: int) -> float:
 
 
 def hybrid_against_finite_element() -> Iterator[tuple[str, float]]:
-    """Yield the cost of the finite element model over that of the hybrid one on the source's lines."""
+    """Yield the time of the finite element model over that of the hybrid model on the source's lines."""
     lines = [source_line(n) for n in (1, 2, 3, 4)]
     winds = tuple(np.linspace(4.0, 6.0, 5).tolist())
     hybrid = Analysis(models=(Model.HYBRID,), wind_speeds=winds)

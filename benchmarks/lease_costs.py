@@ -1,4 +1,4 @@
-"""What leases and sweeps cost PostgreSQL beside the lines of a chunk: a claim, a heartbeat, a sweep."""
+"""PostgreSQL's processor time for a claim, a heartbeat and a sweep, besides that for the lines of a chunk."""
 
 import statistics
 from collections.abc import Callable, Iterator
@@ -18,7 +18,7 @@ RUNS = 3
 
 
 def lease_costs(settings: Settings) -> Iterator[tuple[str, float]]:
-    """Yield the costs [ms], on a database in which more than JOBS jobs wait for a worker."""
+    """Yield the processor times [ms], on a database in which more than JOBS jobs wait for a worker."""
     engine = make_engine(settings)
     sessions = session_factory(engine)
     try:
@@ -59,7 +59,7 @@ def _sweeping(sessions: sessionmaker[Session], settings: Settings) -> Callable[[
 
 
 def _database_ms(task: Callable[[int], None], count: int) -> float:
-    """Return PostgreSQL's processor time for a task [ms], mean of so many."""
+    """Return PostgreSQL's mean processor time for a task [ms] over a number of runs."""
     before = seconds_by_role()
     for number in range(count):
         task(number)

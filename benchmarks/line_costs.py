@@ -1,4 +1,4 @@
-"""What a line of a batch costs by what its analysis asks for; the messages of a batch are sized by it."""
+"""The computing time of a line, by what its analysis asks for; the service sizes the messages of a batch with it."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -18,7 +18,7 @@ FINITE_ELEMENT = replace(FREQUENCIES, finite_element_loops=(1, 2, 3))
 
 
 def costs() -> Iterator[tuple[str, float]]:
-    """Yield seconds of one core for a line."""
+    """Yield each part of the computing time per line, by name [s on one core]."""
     generator = np.random.default_rng(20260101)
     lines = [random_line(generator) for _ in range(STACK)]
     fixed, per_wind = _fitted(lines, HYBRID)
@@ -45,7 +45,7 @@ def costs() -> Iterator[tuple[str, float]]:
 
 
 def _fitted(lines: Sequence[Line], analysis: Analysis, runs: int = 3) -> tuple[float, float]:
-    """Return what a line costs without wind speeds, and for each of them [s]."""
+    """Return the time per line without wind speeds, and the additional time for each wind speed [s]."""
     seconds = []
     for count in (FEW, MANY):
         winds = tuple(np.linspace(4.0, 12.0, count).tolist())

@@ -1,4 +1,4 @@
-"""The source's lines, and random ones for measurements."""
+"""The source's lines, and random lines for measurements."""
 
 import math
 
@@ -25,7 +25,7 @@ def source_line(subconductors: int, *, torsional_ratio: float = 0.308) -> Line:
 
 
 def random_line(generator: np.random.Generator) -> Line:
-    """Draw a plausible line: the source's conductor and ice varied by tens of percent on spans of 80 to 300 m."""
+    """Draw a plausible line: the source's conductor and ice, varied by 20 to 50 %, on a span of 80 to 300 m."""
 
     def about(value: float, spread: float) -> float:
         return value * float(generator.uniform(1.0 - spread, 1.0 + spread))

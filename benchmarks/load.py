@@ -1,6 +1,6 @@
-"""Clients on bare sockets: many at once in a closed loop, or posts at a fixed rate whatever the answers take.
+"""HTTP clients on bare sockets: many in a closed loop, or requests at a fixed rate (open loop).
 
-A client library would cost more than the service on the same two cores.
+A client library would take more processor time than the service on the same two cores.
 """
 
 import asyncio
@@ -13,31 +13,31 @@ Request = Callable[[int], bytes]
 
 
 def closed_loop(port: int, request: Request, each: int, status: bytes) -> list[float]:
-    """Let every client send its next request as soon as it has the last answer; return the time of each [s]."""
+    """Let every client send its next request once it has the last response; return the latency of each request [s]."""
 
     async def run() -> list[float]:
-        clients = [_in_turn(port, request, number * each, each, status) for number in range(CLIENTS)]
+        clients = [_closed_client(port, request, number * each, each, status) for number in range(CLIENTS)]
         return [seconds for times in await asyncio.gather(*clients) for seconds in times]
 
     return asyncio.run(run())
 
 
 def open_loop(port: int, request: Request, count: int, per_second: float, status: bytes) -> list[float]:
-    """Send requests at a fixed rate over as many connections; return how late each answer is after its moment [s].
+    """Send requests at a fixed rate over CLIENTS connections; return the latency of each from its planned time [s].
 
-    A request whose connection is still busy waits for it, and that wait counts.
+    If the connection is still busy at the planned time, the wait counts too.
     """
 
     async def run() -> list[float]:
         begin = time.perf_counter() + 0.5
-        moments = [begin + number / per_second for number in range(count)]
-        clients = [_at_moments(port, request, moments[number::CLIENTS], status) for number in range(CLIENTS)]
+        planned = [begin + number / per_second for number in range(count)]
+        clients = [_open_client(port, request, planned[number::CLIENTS], status) for number in range(CLIENTS)]
         return [seconds for times in await asyncio.gather(*clients) for seconds in times]
 
     return asyncio.run(run())
 
 
-async def _in_turn(port: int, request: Request, first: int, count: int, status: bytes) -> list[float]:
+async def _closed_client(port: int, request: Request, first: int, count: int, status: bytes) -> list[float]:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     times = []
     for number in range(first, first + count):
@@ -48,13 +48,13 @@ async def _in_turn(port: int, request: Request, first: int, count: int, status: 
     return times
 
 
-async def _at_moments(port: int, request: Request, moments: list[float], status: bytes) -> list[float]:
+async def _open_client(port: int, request: Request, planned: list[float], status: bytes) -> list[float]:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     times = []
-    for number, moment in enumerate(moments):
-        await asyncio.sleep(max(0.0, moment - time.perf_counter()))
+    for number, planned_time in enumerate(planned):
+        await asyncio.sleep(max(0.0, planned_time - time.perf_counter()))
         await _exchange(reader, writer, request(number), status)
-        times.append(time.perf_counter() - moment)
+        times.append(time.perf_counter() - planned_time)
     writer.close()
     return times
 

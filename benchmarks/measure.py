@@ -1,4 +1,4 @@
-"""Timing: medians of several runs, and the time spent inside LAPACK."""
+"""Timing: medians over several runs, and the LAPACK calls of a run."""
 
 import statistics
 import time
@@ -25,9 +25,9 @@ def median_seconds(task: Callable[[], object], runs: int = 5) -> float:
 
 
 def side_by_side(*tasks: Callable[[], object], runs: int = 7) -> list[list[float]]:
-    """Return the wall times of each task [s], of rounds in which all run one after another.
+    """Run all tasks one after another in several rounds; return the wall times of each task [s].
 
-    The machine's speed drifts from one minute to the next: ratios are taken within a round.
+    The machine's speed drifts from one minute to the next, so ratios should be taken within a round.
     """
     rounds = [[median_seconds(task, 1) for task in tasks] for _ in range(runs)]
     return [list(times) for times in zip(*rounds, strict=True)]
@@ -45,7 +45,7 @@ class Calls:
     recorded: list[tuple[Callable[..., Any], tuple[Any, ...]]] = field(default_factory=list)
 
     def replay(self) -> None:
-        """Repeat the calls and nothing else."""
+        """Repeat the recorded calls and nothing else."""
         for function, arguments in self.recorded:
             function(*arguments)
 
@@ -77,7 +77,7 @@ def recorded_lapack() -> Iterator[Calls]:
 
 @contextmanager
 def numpy_forms() -> Iterator[None]:
-    """Leave the compiled kernels aside while the context is open, so that every system solved reaches LAPACK."""
+    """Switch the compiled kernels off while the context is open, so that every linear system goes to LAPACK."""
     before = compiled.AVAILABLE
     try:
         compiled.AVAILABLE = False

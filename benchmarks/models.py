@@ -1,4 +1,4 @@
-"""Reduced models of lines, and their equations in the plainest form, for the measurements."""
+"""Reduced models of lines, and their equations of motion in the fastest plain numpy form, for the measurements."""
 
 from collections.abc import Callable, Sequence
 
@@ -19,7 +19,7 @@ Rate = Callable[[float, FloatArray], FloatArray]
 
 
 def discretized(lines: Sequence[Line]) -> Discretization:
-    """Return everything that reduced models of lines are made from."""
+    """Return the discretization from which the reduced models of lines are built."""
     profile = static_profile(lines)
     sections_of_lines = sections(lines, profile)
     return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
@@ -34,7 +34,7 @@ def hybrid_models(discretization: Discretization, loops: tuple[int, ...]) -> tup
 
 
 def plain_rate(model: ReducedModel, wind_speed: float) -> Rate:
-    """Return the first-order equations of one hybrid model with as few operations as numpy allows."""
+    """Return the right side of the first-order equations of one hybrid model, with as few numpy calls as possible."""
     m = model.mass.shape[-1]
     inverse = np.linalg.inv(model.mass)
     linear = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])

@@ -1,4 +1,4 @@
-"""Hanging conductors in OpenSees: chains of corotational bars with lumped masses, a code that nobody here wrote."""
+"""Hanging conductors in OpenSees, an independent code: chains of corotational bars with lumped masses."""
 
 import itertools
 import math
@@ -72,7 +72,7 @@ def natural_modes(conductor: Conductor, section: Section, count: int, bars: int 
     count : int
         Number of modes.
     bars : int
-        Bars a span; the frequencies converge with the square of their length.
+        Bars per span; the error of the frequencies falls with the square of the bar length.
 
     Returns
     -------
@@ -106,7 +106,7 @@ def vertical_frequency(conductor: Conductor, section: Section, loops: int, count
 
 @contextmanager
 def _model() -> Iterator[None]:
-    """Open an empty model; OpenSees keeps one a process, so it is wiped before and after."""
+    """Open an empty model; OpenSees keeps one per process, so it is wiped before and after."""
     ops.wipe()
     ops.model("basic", "-ndm", 3, "-ndf", 3)
     try:
@@ -116,7 +116,7 @@ def _model() -> Iterator[None]:
 
 
 def _chain(conductor: Conductor, section: Section, bars: int) -> list[_Node]:
-    """Lay bars along the catenaries, each with the tension that it has there."""
+    """Place bars along the catenaries, each with its local tension."""
     nodes = [_Node(1, 0.0, 0.0)]
     ops.node(1, 0.0, 0.0, 0.0)
     for length in section.spans:
@@ -130,7 +130,7 @@ def _chain(conductor: Conductor, section: Section, bars: int) -> list[_Node]:
 
 
 def _catenary(conductor: Conductor, length: float, rise: float, bars: int) -> list[tuple[float, float]]:
-    """Return points at equal arc lengths on a catenary through (0, 0) and (length, rise), the first left out."""
+    """Return points at equal arc lengths on a catenary through (0, 0) and (length, rise), without the first."""
     c = conductor.horizontal_tension / (conductor.mass * GRAVITY)
     low = 0.5 * length - c * math.asinh(rise / (2.0 * c * math.sinh(length / (2.0 * c))))
     start, stop = math.sinh(-low / c), math.sinh((length - low) / c)
@@ -148,7 +148,7 @@ def _bar(conductor: Conductor, left: _Node, right: _Node) -> None:
 
 
 def _equilibrium(conductor: Conductor, section: Section, nodes: Sequence[_Node]) -> None:
-    """Hold the supports, load the nodes with their weight, and let the bars settle."""
+    """Fix the supports, apply the weight at the nodes, and solve for static equilibrium."""
     lengths = [math.dist((a.x, a.y), (b.x, b.y)) for a, b in itertools.pairwise(nodes)]
     shares = 0.5 * (np.array([0.0, *lengths]) + np.array([*lengths, 0.0]))
     springs = _Springs(len(nodes))
@@ -178,13 +178,13 @@ def _equilibrium(conductor: Conductor, section: Section, nodes: Sequence[_Node])
 
 
 class _Springs:
-    """Springs to fixed ground, numbered after nodes and bars."""
+    """Springs to fixed ground, with tags after those of nodes and bars."""
 
     def __init__(self, nodes: int) -> None:
         self._last = 4 * nodes
 
     def hold(self, node: _Node, stiffness: dict[int, float]) -> None:
-        """Tie a node to the ground by springs [N/m] in these directions (1 along, 3 across the line)."""
+        """Connect a node to the ground by springs [N/m] in these directions (1 along, 3 across the line)."""
         ground = self._last = self._last + 1
         ops.node(ground, node.x, node.y, 0.0)
         ops.fix(ground, 1, 1, 1)

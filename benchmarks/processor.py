@@ -1,4 +1,4 @@
-"""Processor time of the processes of a service, read from /proc: it hardly depends on what else the machine does."""
+"""Processor time of a service's processes, read from /proc; other work on the machine hardly affects it."""
 
 import os
 from collections import Counter
@@ -15,7 +15,7 @@ _ROLES = {
 
 
 def seconds_by_role() -> Counter[str]:
-    """Return the processor time of this process' descendants [s] by role; what ended and was waited for counts too."""
+    """Return the processor time of this process's descendants by role [s], with their reaped children."""
     parents: dict[int, int] = {}
     spent: dict[int, float] = {}
     for place in Path("/proc").glob("[0-9]*"):
@@ -24,7 +24,7 @@ def seconds_by_role() -> Counter[str]:
         except OSError:
             continue
         parents[int(place.name)] = int(fields[1])
-        spent[int(place.name)] = sum(map(int, fields[11:15])) / _TICKS  # its own, and that of children waited for
+        spent[int(place.name)] = sum(map(int, fields[11:15])) / _TICKS  # its own, and that of reaped children
     result: Counter[str] = Counter()
     for process, seconds in spent.items():
         role = _role(process) if _descends(process, parents) else None

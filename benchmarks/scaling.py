@@ -1,4 +1,4 @@
-"""The fleet's job up to 100,000 distinct lines: time and peak memory of one worker's process, size by size."""
+"""The fleet's job with up to 100,000 different lines: time and peak memory of one worker process at each size."""
 
 import multiprocessing
 import resource
@@ -14,12 +14,12 @@ from benchmarks.engine_speed import STANDARD_JOB, analysed
 from benchmarks.lines import random_line
 from engine.spec import Line
 
-CHUNK = 256  # lines a message at most, whose results a worker holds at once (decision 0008)
+CHUNK = 256  # most lines in a message; a worker holds their results at once (decision 0008)
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Lines analysed, the seconds of processor time that it took, and the process's largest memory [MB]."""
+    """Number of lines analysed, processor time [s], and peak memory of the process [MB]."""
 
     lines: int
     seconds: float
@@ -27,7 +27,7 @@ class Run:
 
 
 def long_runs(largest: int) -> Iterator[Run]:
-    """Run 100, 1,000, ... lines up to the largest number, each in a process of its own."""
+    """Run 100, 1,000, ... lines up to the largest number, each size in a separate process."""
     sizes = [size for size in (100, 1_000, 10_000, 100_000) if size <= largest]
     context = multiprocessing.get_context("spawn")
     for size in sizes:
@@ -36,12 +36,12 @@ def long_runs(largest: int) -> Iterator[Run]:
 
 
 def exponent(runs: list[Run]) -> float:
-    """Fit the exponent of the time over the number of lines."""
+    """Fit the time as a power of the number of lines; return the exponent."""
     return float(np.polyfit(np.log([run.lines for run in runs]), np.log([run.seconds for run in runs]), 1)[0])
 
 
 def _measured(size: int) -> Run:
-    """Draw lines as they are needed and drop the results of a chunk when it is done."""
+    """Measure a number of lines, after a warm-up; draw lines chunk by chunk and drop each chunk's results."""
     analysed(list(islice(_lines(0), CHUNK)), STANDARD_JOB)
     seconds, remaining, source = 0.0, size, _lines(size)
     while remaining:

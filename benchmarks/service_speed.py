@@ -1,11 +1,11 @@
 """The service against the engine alone: a batch through HTTP, queue, workers and database; posts and reads under load.
 
-PostgreSQL and Redis are private instances on loopback, the API (two processes) and the workers processes of their own.
-What the client does with a batch before it sends it and after it has the results is not counted.
+PostgreSQL and Redis are private instances on loopback; the API (two processes) and the workers are separate processes.
+Preparing a batch and reading its results in the client are not timed.
 
-The engine alone computes the same lines in the same stacks, in this process: every other stack right before the batch
-and the others right after it, since the machine drifts, and the ratio is the median of several such rounds. Its
-garbage collector does not look through what is loaded, as little as that of a worker.
+The engine alone computes the same lines in the same stacks, in this process. Because the machine's speed drifts, it
+runs every other stack right before the batch and the rest right after it; the ratio is the median of several such
+rounds. As in a worker, the garbage collector skips the objects that are loaded at the start.
 """
 
 import contextlib
@@ -56,19 +56,19 @@ STANDARD: dict[str, Any] = {
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A service that runs: its settings and address."""
+    """A running service: its settings and port."""
 
     settings: Settings
     port: int
 
     @property
     def address(self) -> str:
-        """Return where it listens."""
+        """Return the service's base URL."""
         return f"http://127.0.0.1:{self.port}"
 
 
 def service(lines: int = 1000) -> Iterator[tuple[str, float]]:
-    """Yield all figures of the service: medians of several runs where a run is short."""
+    """Yield all figures of the service; short runs are repeated and their median is taken."""
     documents = _documents(lines)
     stacks = _stacks(documents)
     ratios = []
@@ -88,7 +88,7 @@ def service(lines: int = 1000) -> Iterator[tuple[str, float]]:
 
 
 def _documents(count: int) -> list[dict[str, Any]]:
-    """Draw plausible lines: the source's one with its measures varied by tens of percent."""
+    """Draw plausible lines: the source's twin bundle with its dimensions varied by up to 20 %, on other spans."""
     generator = np.random.default_rng(20260101)
     return [_document(generator, number) for number in range(1, count + 1)]
 
@@ -105,7 +105,7 @@ def _document(generator: np.random.Generator, number: int) -> dict[str, Any]:
 
 
 def _stacks(documents: list[dict[str, Any]]) -> list[list[Line]]:
-    """Return the lines as the engine takes them, in the stacks in which a worker computes them."""
+    """Return the engine's lines, in the stacks in which a worker computes them."""
     analysis = schemas.Analysis.model_validate(STANDARD)
     lines = [_specification(document, analysis)[0] for document in documents]
     return [lines[first : first + STACK] for first in range(0, len(lines), STACK)]
@@ -139,7 +139,7 @@ def _analyse(lines: list[Line], analysis: Analysis) -> None:
 
 @contextlib.contextmanager
 def _running() -> Iterator[Running]:
-    """Run the API on a fresh PostgreSQL and Redis."""
+    """Run the API on a new PostgreSQL and a new Redis."""
     with tempfile.TemporaryDirectory() as directory, postgres_server() as database, redis_server() as broker:
         unlimited = {"reads_per_minute": 10**9, "changes_per_minute": 10**9}
         settings = Settings(
@@ -166,7 +166,7 @@ def _is_up(running: Running) -> bool:
 
 @contextlib.contextmanager
 def _working(running: Running, workers: int) -> Iterator[httpx.Client]:
-    """Run worker processes that have loaded the engine, and give a client."""
+    """Run worker processes, warm them up with a batch each, and yield a client."""
     settings = running.settings.model_copy(update={"worker_processes": workers})
     with (settings.data_dir / "worker.log").open("ab") as log:
         worker = processes.start(settings, "worker", log=log)
@@ -181,7 +181,7 @@ def _working(running: Running, workers: int) -> Iterator[httpx.Client]:
 
 @dataclass(frozen=True, slots=True)
 class Times:
-    """Seconds from the first byte of a batch to the last of its results, and those of work on its chunks."""
+    """Time from the first byte of a batch to the last byte of its results, and from its first chunk to its last [s]."""
 
     whole: float
     working: float
@@ -201,7 +201,7 @@ def _timed_batch(running: Running, documents: list[dict[str, Any]], workers: int
 
 
 def _costs(running: Running, documents: list[dict[str, Any]]) -> Iterator[tuple[str, float]]:
-    """Yield what a line of a batch costs: processor time by role [ms], messages, rows, and bytes in the database."""
+    """Yield the cost per line of a batch: processor time by role [ms], messages, rows, and bytes in the database."""
     body, lines = _body(documents), len(documents)
     with _working(running, 1) as client, psycopg.connect(_plain(running), autocommit=True) as database:
         spent, rows, stored, logged = seconds_by_role(), *_stored(database)
@@ -221,7 +221,7 @@ def _plain(running: Running) -> str:
 
 
 def _stored(database: psycopg.Connection) -> tuple[float, float, float]:
-    """Return rows and bytes of everything stored, and bytes of the write-ahead log so far."""
+    """Return total rows and bytes stored, and bytes of the write-ahead log so far."""
     tables = ("jobs", "job_events", "batches", "batch_items", "results")
     rows = sum(_number(database, f"SELECT count(*) FROM {table}") for table in tables)
     stored = sum(_number(database, f"SELECT pg_total_relation_size('{table}')") for table in tables)
@@ -250,7 +250,7 @@ def _run_batch(client: httpx.Client, body: bytes) -> bytes:
 def _wait(condition: Callable[[], bool], seconds: float) -> None:
     deadline = time.monotonic() + seconds
     while not condition():
-        assert time.monotonic() < deadline, f"nothing came within {seconds:g} s"
+        assert time.monotonic() < deadline, f"the service did not start within {seconds:g} s"
         time.sleep(0.05)
 
 
@@ -274,7 +274,7 @@ def _posts(running: Running) -> Iterator[tuple[str, float]]:
 
 
 def _post(tension: float) -> bytes:
-    """Return a whole request; no two have the same line."""
+    """Return a complete HTTP request; the tension makes its line different from all others."""
     line = example("c11-twin")
     body = json.dumps({"line": line | {"span": line["span"] | {"horizontal_tension_n": tension}}}).encode()
     fields = f"Host: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"

@@ -1,4 +1,4 @@
-"""Starts of several energies, directions and phases for the hybrid models of lines, and where they end."""
+"""Initial states of several energies, directions and phases for hybrid models, and the motions they settle on."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,16 +14,16 @@ from engine.spec import Line
 
 LOOPS = (1, 2)
 WINDS = (4.0, 6.0, 9.0, 12.0)
-LEVELS = (0.02, 0.1, 0.3, 0.8)  # of the largest start: rad of torsion, or of the turn of the wind by vertical motion
-MIXES = 4  # starts a level: one a direction and one of all three
-LONGEST = 600  # blocks of some fifty periods
+LEVELS = (0.02, 0.1, 0.3, 0.8)  # size of a start [rad]: its torsion, or the turn of the wind by its vertical motion
+MIXES = 4  # starts per level: one in each direction and one in all three
+LONGEST = 600  # blocks of about fifty periods
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A line (counted from 1), a number of loops and a wind speed [m/s], with what it takes to measure motions there.
+    """A line (from 1), a number of loops, a wind speed [m/s], and the weights for distances between motions.
 
-    weight: (3,), root of M_ii over the shape where motion is observed, so that distances are those of kinetic energy.
+    weight: (3,), root of M_ii over the shape where motion is observed, so distances are those of kinetic energy.
     """
 
     line: int
@@ -34,7 +34,7 @@ class Case:
 
 @dataclass(frozen=True, slots=True)
 class Ends:
-    """Where the starts of all cases ended, equally many a case, one case after the other; sizes are where observed."""
+    """The motions on which all starts settled, equally many per case in order; sizes are at the observed position."""
 
     cases: list[Case]
     runs: SettledMotions
@@ -47,11 +47,15 @@ def ends(lines: Sequence[Line], seed: int, winds: Sequence[float] = WINDS, longe
     ----------
     lines : sequence of Line
     seed : int
-        Of the generator of the starts.
+        Of the random generator of the starts.
     winds : sequence of float
         [m/s].
     longest : int
-        Number of blocks after which a start is given up.
+        Number of blocks after which the integration of a start stops.
+
+    Returns
+    -------
+    Ends
     """
     discretization = discretized(lines)
     model, _ = hybrid_models(discretization, LOOPS)

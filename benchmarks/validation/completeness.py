@@ -1,4 +1,4 @@
-"""Attractors that direct integration reaches from a spread of starts, held against the stable motions reported."""
+"""Attractors that direct integration reaches from a spread of starts, compared with the stable motions reported."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -22,13 +22,13 @@ from engine.result import LimitCycleRow, Orbit, Result
 from engine.spec import Analysis, Line, Model
 
 SEED, LINES = 20261122, 96
-COMPARED, COMPARED_LINES = 40, 8  # shortest periods, and lines, held against DOP853
+COMPARED, COMPARED_LINES = 40, 8  # shortest periods, and lines, compared with DOP853
 SAME = 0.01  # relative distance of two motions that count as one
-STRAIGHT = 0.9  # share of its last change by which a motion comes nearer to one that it is on its way to
+STRAIGHT = 0.9  # least share of a motion's last change that brings it nearer to the motion that it approaches
 
 
 class Verdict(StrEnum):
-    """What the product says of an attractor."""
+    """What the engine reports about an attractor."""
 
     REPORTED = "reported as stable"
     MISJUDGED = "reported, but not as stable"
@@ -37,10 +37,10 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Attractor:
-    """Where starts of one case settled.
+    """A motion on which starts of one case settled.
 
     size: (6,), root mean square of V, W [m], Theta [rad] and their rates where they are observed; starts: their number;
-    verdict; nearest: distance of the nearest stable motion that the product reports, relative to the larger of both.
+    verdict; nearest: distance of the nearest stable motion that the engine reports, relative to the larger of both.
     """
 
     case: Case
@@ -63,11 +63,11 @@ class Attractor:
 
 @dataclass(frozen=True, slots=True)
 class Explored:
-    """What the starts of some lines led to.
+    """Outcome of all starts of some lines.
 
-    approaching, unsettled, diverged: the case of each start that was still on its straight way to a motion reported as
-    stable, that still changed otherwise, and that left all bounds; starts: number of all; stable: number of motions
-    reported as stable; unreached: of these, that no start settled on.
+    approaching, unsettled, diverged: the case of each start that was still approaching a reported stable motion, that
+    still changed otherwise, and that diverged; starts: number of all starts; stable: number of motions reported as
+    stable; unreached: number of these on which no start settled.
     """
 
     cases: list[Case]
@@ -81,12 +81,12 @@ class Explored:
 
 
 def reported(lines: Sequence[Line], winds: Sequence[float] = WINDS) -> list[Result]:
-    """Analyse the hybrid models of lines as the product does."""
+    """Analyse lines with the hybrid model."""
     return analysed(lines, Analysis(loops=LOOPS, models=(Model.HYBRID,), wind_speeds=tuple(winds)))
 
 
 def compared(ended: Ends, results: Sequence[Result]) -> Explored:
-    """Hold the ends of starts against what `reported` says of the lines at the same wind speeds."""
+    """Compare the ends of starts with the results of `reported` for the same lines and wind speeds."""
     runs, each = ended.runs, ended.runs.outcome.size // len(ended.cases)
     found = Explored(ended.cases, [], [], [], [], runs.outcome.size, 0, 0)
     for i, case in enumerate(ended.cases):
@@ -107,7 +107,7 @@ def compared(ended: Ends, results: Sequence[Result]) -> Explored:
 
 
 def _comes_nearer(case: Case, runs: SettledMotions, row: int, motion: FloatArray) -> bool:
-    """Tell whether a start goes straight to a motion of size (6,)."""
+    """Return whether a start approaches a motion of size (6,) in a straight line."""
     before, now = runs.before[row], runs.size[row]
     was, is_now, step = (np.linalg.norm(case.weight * x[:3]) for x in (before - motion, now - motion, now - before))
     return bool(was - is_now > STRAIGHT * step)

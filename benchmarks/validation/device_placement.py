@@ -1,4 +1,4 @@
-"""What pendulums do to the source's lines, placed by the search and without them."""
+"""The effect of pendulums, placed by the search, on the source's lines."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""The orbits of harmonic balance as starts of direct integration."""
+"""Direct integration that starts on the orbits of the harmonic balance."""
 
 from collections.abc import Iterator
 

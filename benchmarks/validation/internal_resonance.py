@@ -1,4 +1,4 @@
-"""How near the source's lines are to internal resonance, and how their cycles divide between the directions."""
+"""How close the source's lines are to internal resonance, and how their cycles' energy divides between directions."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""A search for lines whose motion stays quasi-periodic, and what direct integration makes of what it finds."""
+"""A search for lines with quasi-periodic motion, and a check of each motion by direct integration."""
 
 import math
 from collections.abc import Iterator
@@ -37,7 +37,7 @@ SAMPLES = 16  # a cycle
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A quasi-periodic motion with its line and the number of that in the generator, number of loops and model."""
+    """A quasi-periodic motion with its line, the line's number in the drawn sequence, number of loops and model."""
 
     number: int
     line: Line
@@ -76,7 +76,7 @@ def section() -> Iterator[str]:
 
 @cache
 def _searched() -> tuple[dict[str, int], list[Found]]:
-    """Analyse the lines of the generator; return counts and the motions."""
+    """Analyse the drawn lines; return counts and the quasi-periodic motions."""
     generator = np.random.default_rng(SEED)
     counts = dict.fromkeys(("models that are statically stable", "with torus points", "wind speeds of those models"), 0)
     motions: list[Found] = []
@@ -124,7 +124,7 @@ def _listed(line: tuple[int, Line], loops: int, model: ReducedModel, known: Quas
 
 
 def _rows(found: list[Found]) -> Iterator[list[object]]:
-    """Yield a row of the table for each torus; all are integrated side by side, each in its own time."""
+    """Yield a row of the table for each torus; all are integrated side by side, each in its own phase w t."""
     tau = 2.0 * math.pi * (CYCLES - WINDOW + np.arange(WINDOW * SAMPLES) / SAMPLES)
     for one, reached in zip(found, _integrated(found, tau), strict=True):
         fast = float(one.torus.angular_frequency[0, 0])
@@ -147,7 +147,7 @@ def _largest(one: Found) -> int:
 
 
 def _integrated(found: list[Found], tau: FloatArray) -> list[FloatArray]:
-    """Integrate from beside each torus and return its largest coordinate at w t = tau."""
+    """Integrate from a state near each torus; return its largest coordinate at w t = tau."""
     fast = np.array([float(one.torus.angular_frequency[0, 0]) for one in found])
     wind = np.array([float(one.torus.wind_speed[0]) for one in found])
     inverse = np.linalg.inv(np.concatenate([one.model.mass for one in found]))

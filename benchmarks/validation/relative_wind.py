@@ -1,4 +1,4 @@
-"""What the relative wind changes (theory section 5), and its expansion beside the load that is not expanded."""
+"""The effect of the relative wind (theory section 5), and its expansion compared with the exact load."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -111,7 +111,7 @@ def _onsets() -> Iterator[list[object]]:
 
 
 def unexpanded_rows(subconductors: int, cycles: int = CYCLES) -> Iterator[list[object]]:
-    """Yield the amplitudes of the stable cycles of one line, and what direct integration makes of them."""
+    """Yield the amplitudes of the stable cycles of one line, and those of direct integration."""
     line = _line(subconductors)
     discretization = discretized((line,))
     analysis = _asked(AerodynamicModel.RELATIVE_WIND)
@@ -180,7 +180,7 @@ def unexpanded(discretization: Discretization, model: ReducedModel, wind_speed: 
 
 
 def settle(model: ReducedModel, orbits: Orbits, force: Force, cycles: int) -> tuple[FloatArray, FloatArray]:
-    """Integrate all cycles side by side, each in its own time, and return the last block of each.
+    """Integrate all cycles side by side, each in its own phase w t, and return the last block of each.
 
     Returns
     -------

@@ -13,7 +13,7 @@ LINES = ("single", *BUNDLES)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Stable cycles of one line and number of loops in rising order of the abscissa: A_y/s_a and A_z/s_a."""
+    """Stable cycles of one line and number of loops in ascending order of the abscissa: A_y/s_a and A_z/s_a."""
 
     line: str
     loops: int

@@ -1,4 +1,4 @@
-"""The static twist beside the elliptic integral, and what it makes of long spans."""
+"""The static twist compared with the elliptic integral, and its effect on long spans."""
 
 import math
 from collections.abc import Iterator

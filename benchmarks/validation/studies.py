@@ -1,4 +1,4 @@
-"""The source's Figures 4 to 9 on its four lines: pictures, and what the source says of them beside what comes out."""
+"""The source's Figures 4 to 9 on its four lines: plots, and the source's statements compared with the results."""
 
 import cmath
 import math
