@@ -10,6 +10,7 @@ from dataclasses import fields, replace
 from typing import Any, TypeVar
 
 from app import schemas
+from app.schemas.placement import Range
 from engine import spec
 from engine.outcome import Fault, InvalidSpec, require
 
@@ -126,7 +127,7 @@ def _value(part: schemas.Document, name: str) -> Any:
     given, unit = getattr(part, name), type(part).model_fields[name].json_schema_extra
     if name == "aerodynamics":
         return aerodynamics(given, getattr(part, "at_rest", None))
-    if isinstance(given, schemas.Range):
+    if isinstance(given, Range):
         return given.pair
     return math.radians(given) if unit == {"unit": "deg"} else given
 

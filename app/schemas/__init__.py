@@ -15,7 +15,7 @@ from app.schemas.environment import (
 from app.schemas.fields import Document
 from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
-from app.schemas.placement import PendulumChoice, Placement, Range, SpoilerChoice
+from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
 
 __all__ = [
     "Aerodynamics",
@@ -39,7 +39,6 @@ __all__ = [
     "PendulumChoice",
     "Placement",
     "ProfilePoint",
-    "Range",
     "Spacer",
     "Span",
     "SpoilerChoice",

@@ -150,6 +150,15 @@ _DEVICE = st.one_of(
     st.fixed_dictionaries(
         {"type": st.just("airflow_spoiler"), "from_m": st.just(2.0), "to_m": _ON_SPAN, "aerodynamics": COEFFICIENTS}
     ),
+    st.fixed_dictionaries(
+        {
+            "type": st.just("torsional_damper"),
+            "position_m": _ON_SPAN,
+            "mass_kg": near(15.0),
+            "polar_inertia_kg_m2": near(1.5),
+            "damping_n_m_s": near(2.0),
+        }
+    ),
 )
 LINES = st.fixed_dictionaries(
     {"conductor": _CONDUCTOR, "bundle": _BUNDLE, "span": _SPAN, "ice": _ICE, "damping": _DAMPING},

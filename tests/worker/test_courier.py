@@ -178,7 +178,7 @@ def test_a_receiver_gets_the_next_as_soon_as_it_has_taken_one(
     received: tuple[Receiver, Path],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("worker.courier._LOOK_SECONDS", 600.0)
+    monkeypatch.setattr("worker.courier._POLL_SECONDS", 600.0)
     count = 3 * MOST_TO_ONE_RECEIVER
     ends = [ended(client, open_settings, received[0].url) for _ in range(count)]
     with courier(sessions, open_settings):

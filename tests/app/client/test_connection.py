@@ -106,6 +106,6 @@ def test_another_try_waits_as_long_as_is_asked_for(monkeypatch: pytest.MonkeyPat
     assert 0.0 < pauses[1] <= 3.0  # the last try comes at the end of patience
 
 
-def test_an_address_that_is_none_is_told_at_once() -> None:
-    with pytest.raises(ServiceError, match="no address"), Client("ftp://host") as client:
+def test_an_address_that_is_none_is_refused_at_once() -> None:
+    with pytest.raises(ServiceError, match="not the address of a service"), Client("ftp://host") as client:
         client.job("a")
