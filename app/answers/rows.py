@@ -23,7 +23,7 @@ class Row(Answer):
     @model_validator(mode="before")
     @classmethod
     def _completed(cls, row: Any) -> Any:
-        """Read a row that was stored before one of its columns was declared as if that were null."""
+        """Add columns that a stored row lacks, because they were declared later, as null."""
         return {**dict.fromkeys(cls.model_fields), **row} if isinstance(row, dict) else row
 
 

@@ -16,7 +16,7 @@ from engine.outcome import Fault, InvalidSpec, require
 
 Made = TypeVar("Made", bound=spec.Device | spec.PendulumChoice | spec.SpoilerChoice)
 
-_DEVICES: Mapping[str, type[spec.Device]] = {
+DEVICES: Mapping[str, type[spec.Device]] = {
     "spacer": spec.Spacer,
     "detuning_pendulum": spec.DetuningPendulum,
     "airflow_spoiler": spec.AirflowSpoiler,
@@ -115,7 +115,7 @@ def damping(part: schemas.Damping) -> spec.Damping:
 
 def device(part: schemas.Device) -> spec.Device:
     """Build a device of any kind."""
-    return _by_name(_DEVICES[part.type], part)
+    return _by_name(DEVICES[part.type], part)
 
 
 def _by_name(made: type[Made], part: schemas.Document) -> Made:

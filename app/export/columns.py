@@ -17,7 +17,7 @@ _UNIT = re.compile(r" \[(.+)\]$")
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class ExportedColumn:
     """One column: name, kind of values (each may be null), unit if it has one, and description."""
 
     name: str
@@ -26,7 +26,7 @@ class Column:
     description: str
 
 
-def columns_of(table: str, names: Iterable[str]) -> list[Column]:
+def exported_columns(table: str, names: Iterable[str]) -> list[ExportedColumn]:
     """Return the columns of a table by name; what the table itself does not know is a label of a batch's line.
 
     Raises
@@ -49,7 +49,7 @@ def all_tables() -> list[dict[str, Any]]:
             "columns": [
                 {**asdict(column), "example": example}
                 for column, example in zip(
-                    columns_of(name, convert.columns(name)),
+                    exported_columns(name, convert.columns(name)),
                     convert.example_row(convert.TABLES[name].row).values(),
                     strict=True,
                 )
@@ -59,11 +59,11 @@ def all_tables() -> list[dict[str, Any]]:
     ]
 
 
-def axis_columns(axes: Sequence[Mapping[str, Any]]) -> list[Column]:
+def axis_columns(axes: Sequence[Mapping[str, Any]]) -> list[ExportedColumn]:
     """Return the columns of a study's axes, which stand before all others, with the units of the fields they vary."""
     units = {row["name"]: row["unit"] for row in input_fields()}
     return [
-        Column(
+        ExportedColumn(
             axis["parameter"],
             "text" if any(isinstance(value, str) for value in axis["values"]) else "number",
             units.get(f"line.{axis['parameter']}"),
@@ -73,21 +73,23 @@ def axis_columns(axes: Sequence[Mapping[str, Any]]) -> list[Column]:
     ]
 
 
-def _declared(row: type[Any], prefix: str = "") -> dict[str, Column]:
+def _declared(row: type[Any], prefix: str = "") -> dict[str, ExportedColumn]:
     """Return the columns that a dataclass of rows declares."""
     return {
-        prefix + name: Column(prefix + name, _kind(kind), column.unit, column.description)
+        prefix + name: ExportedColumn(prefix + name, _kind(kind), column.unit, column.description)
         for name, (kind, column) in convert.columns_of(row).items()
     }
 
 
-def _labels() -> dict[str, Column]:
+def _labels() -> dict[str, ExportedColumn]:
     """Return the columns that only the summary of a batch has, whose units stand in their descriptions."""
     found = {}
     for name, field in LineSummary.model_fields.items():
         description = str(field.description)
         unit = _UNIT.search(description)
-        found[name] = Column(name, _kind(field.annotation), unit.group(1) if unit else None, _UNIT.sub("", description))
+        found[name] = ExportedColumn(
+            name, _kind(field.annotation), unit.group(1) if unit else None, _UNIT.sub("", description)
+        )
     return found
 
 
@@ -96,7 +98,7 @@ def _kind(annotation: Any) -> Kind:
     return kinds.pop()
 
 
-_SUMMARY: Mapping[str, Column] = {
+_SUMMARY: Mapping[str, ExportedColumn] = {
     **_labels(),
     **_declared(convert.StaticState),
     **_declared(convert.DenHartog, "den_hartog_"),

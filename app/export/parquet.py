@@ -8,7 +8,7 @@ from typing import Any
 import pyarrow as pa
 from pyarrow.parquet import ParquetWriter
 
-from app.export.columns import Column, Kind
+from app.export.columns import ExportedColumn, Kind
 
 _TYPES: Mapping[Kind, pa.DataType] = {
     "number": pa.float64(),
@@ -19,12 +19,12 @@ _TYPES: Mapping[Kind, pa.DataType] = {
 _ROWS_A_GROUP = 10_000
 
 
-def parquet_bytes(columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
+def parquet_bytes(columns: Sequence[ExportedColumn], rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
     """Yield the pieces of a Parquet file, one row group at a time.
 
     Parameters
     ----------
-    columns : sequence of Column
+    columns : sequence of ExportedColumn
         The unit and the description become metadata of the field under these names.
     rows : iterable of mappings
         Values by the name of their column; an absent value is null.
@@ -65,6 +65,6 @@ class _Sink(io.RawIOBase):
         return b"".join(pieces)
 
 
-def _field(column: Column) -> pa.Field:
+def _field(column: ExportedColumn) -> pa.Field:
     metadata = {"unit": column.unit, "description": column.description}
     return pa.field(column.name, _TYPES[column.kind], metadata={name: text for name, text in metadata.items() if text})

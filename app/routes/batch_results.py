@@ -13,7 +13,7 @@ from app import convert
 from app.answers.batches import BatchErrors, BatchTableName
 from app.batches import line_results
 from app.export import formats
-from app.export.columns import columns_of
+from app.export.columns import exported_columns
 from app.http.conditional import strong_tag, unless_known
 from app.http.problems import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation
@@ -84,7 +84,7 @@ def batch_results(
         if form == "parquet":
             from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
-            return parquet.parquet_bytes(columns_of(name, line_results.columns(name)), rows)
+            return parquet.parquet_bytes(exported_columns(name, line_results.columns(name)), rows)
         text = formats.csv_text(line_results.columns(name), rows) if form == "csv" else formats.ndjson_text(rows)
         return formats.in_blocks(text)
 

@@ -12,7 +12,7 @@ from app import convert
 from app.answers.results import ResultDocument, TableName
 from app.batches import batch_records
 from app.export import formats
-from app.export.columns import axis_columns, columns_of
+from app.export.columns import axis_columns, exported_columns
 from app.export.formats import Format
 from app.http.problems import ProblemError, ProblemKind
 from app.routes import documentation
@@ -173,8 +173,8 @@ def _parquet(job: Job, name: str, rows: Rows) -> Iterator[bytes]:
     from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
     study = (job.document.get("study") or {"axes": []})["axes"]
-    before = columns_of("summary", ["number"]) if job.batch_id is not None else axis_columns(study)
-    return parquet.parquet_bytes([*before, *columns_of(name, convert.columns(name))], rows)
+    before = exported_columns("summary", ["number"]) if job.batch_id is not None else axis_columns(study)
+    return parquet.parquet_bytes([*before, *exported_columns(name, convert.columns(name))], rows)
 
 
 def _axes(job: Job) -> list[str]:

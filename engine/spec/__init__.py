@@ -2,7 +2,7 @@
 
 Every class checks its own fields on construction and raises `engine.outcome.InvalidSpec` with all faults at once.
 Axes (docs/conventions.md): X along the span, Y up, Z horizontal and downwind. Positions are horizontal distances from
-the left support. Every property of a sub-conductor is that of one iced sub-conductor.
+the left support. Properties are given per sub-conductor, with its ice.
 """
 
 from engine.spec.analysis import (

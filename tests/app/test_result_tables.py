@@ -16,7 +16,7 @@ from app.answers.batches import BatchTableName
 from app.answers.results import ResultDocument, TableName
 from app.answers.rows import row_schema, with_tables
 from app.convert.run import point_results
-from app.export.columns import columns_of
+from app.export.columns import exported_columns
 from app.export.formats import csv_text
 from app.export.parquet import parquet_bytes
 from app.runtime.settings import Settings
@@ -83,7 +83,7 @@ def test_csv_follows(sways: Table) -> None:
 
 
 def test_parquet_follows_with_units(sways: Table) -> None:
-    columns = columns_of("sways", convert.columns("sways"))
+    columns = exported_columns("sways", convert.columns("sways"))
     read = pq.read_table(io.BytesIO(b"".join(parquet_bytes(columns, ROWS))))
     assert read.to_pylist() == ROWS
     assert read.schema.field("sway_m").metadata == {b"unit": b"m", b"description": b"Sway; null at rest"}

@@ -7,10 +7,10 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from app import schemas
-from app.answers import aerodynamics, batches, clearance, health, jobs, problem_pages, reference, results
 from app.answers.rows import row_schema
 from app.convert import TABLES
 from app.schemas.fields import Answer
+from tests.app.answer_modules import ANSWER_MODULES
 
 MODELS = [
     model
@@ -19,9 +19,9 @@ MODELS = [
 ]
 ANSWERS = [
     model
-    for module in (jobs, results, problem_pages, health, batches, aerodynamics, clearance, reference)
+    for module in ANSWER_MODULES
     for model in vars(module).values()
-    if isinstance(model, type) and issubclass(model, Answer)
+    if isinstance(model, type) and issubclass(model, Answer) and model.model_fields
 ] + [row_schema(table.row) for table in TABLES.values()]
 FIELDS = [(model, name, field) for model in (*MODELS, *ANSWERS) for name, field in model.model_fields.items()]
 

@@ -1,9 +1,12 @@
 import math
-from typing import Any
+from dataclasses import fields
+from enum import Enum
+from typing import Any, get_args
 
 import pytest
 
 from app import schemas
+from app.convert import parts
 from app.convert.assemble import SoundParts, gather
 from app.reference.source_lines import example
 from engine import spec
@@ -74,6 +77,22 @@ def test_every_field_of_an_analysis_arrives_in_the_engine() -> None:
         harmonics=7,
         finite_element_loops=(2, 3),
     )
+
+
+def test_every_choice_of_an_analysis_arrives_in_the_engine() -> None:
+    choices = {
+        field.name: list(type(field.default)) for field in fields(spec.Analysis) if isinstance(field.default, Enum)
+    }
+    assert len(choices) >= 9
+    for name, members in choices.items():
+        for member in members:
+            asked = schemas.Analysis.model_validate({name: member.value})
+            assert getattr(parts.analysis(asked), name) is member, (name, member)
+
+
+def test_every_device_of_the_schema_has_its_class_in_the_engine() -> None:
+    types = {get_args(device.model_fields["type"].annotation)[0] for device in get_args(get_args(schemas.Device)[0])}
+    assert types == set(parts.DEVICES)
 
 
 def test_absent_parts_are_the_defaults_of_the_engine() -> None:

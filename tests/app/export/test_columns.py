@@ -5,13 +5,13 @@ import pytest
 from app import convert
 from app.answers.results import ResultDocument
 from app.batches import line_results
-from app.export.columns import Column, axis_columns, columns_of
+from app.export.columns import ExportedColumn, axis_columns, exported_columns
 
 
 @pytest.mark.parametrize("table", [*convert.TABLES, "summary"])
 def test_every_column_of_every_table_has_its_kind_and_meaning(table: str) -> None:
     names = line_results.columns(table)
-    columns = columns_of(table, names)
+    columns = exported_columns(table, names)
     assert [column.name for column in columns] == names
     assert all(column.description for column in columns)
     for column in columns:
@@ -23,22 +23,22 @@ def test_every_column_of_every_table_has_its_kind_and_meaning(table: str) -> Non
 
 def test_kinds_follow_the_schemas() -> None:
     names = ["loops", "branch", "stability", "vertical_m", "outcome"]
-    assert [column.kind for column in columns_of("limit_cycles", names)] == [
+    assert [column.kind for column in exported_columns("limit_cycles", names)] == [
         "integer",
         "integer",
         "text",
         "number",
         "text",
     ]
-    assert columns_of("summary", ["den_hartog_unstable"])[0].kind == "truth"
-    assert columns_of("frequencies", ["number", "vertical_hz"])[1] == Column(
+    assert exported_columns("summary", ["den_hartog_unstable"])[0].kind == "truth"
+    assert exported_columns("frequencies", ["number", "vertical_hz"])[1] == ExportedColumn(
         "vertical_hz", "number", "Hz", "Dominantly vertical"
     )
 
 
 def test_an_unknown_column_is_an_error() -> None:
     with pytest.raises(KeyError):
-        columns_of("frequencies", ["colour"])
+        exported_columns("frequencies", ["colour"])
 
 
 def test_axes_have_the_units_of_the_fields_that_they_vary() -> None:

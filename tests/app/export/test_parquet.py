@@ -5,14 +5,14 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from app.export.columns import Column
+from app.export.columns import ExportedColumn
 from app.export.parquet import parquet_bytes
 
 COLUMNS = [
-    Column("number", "integer", "1", "Number of the line"),
-    Column("vertical_m", "number", "m", "Vertical amplitude"),
-    Column("unstable", "truth", None, "Whether"),
-    Column("kind", "text", None, "Kind"),
+    ExportedColumn("number", "integer", "1", "Number of the line"),
+    ExportedColumn("vertical_m", "number", "m", "Vertical amplitude"),
+    ExportedColumn("unstable", "truth", None, "Whether"),
+    ExportedColumn("kind", "text", None, "Kind"),
 ]
 ROW: dict[str, Any] = {"number": 1, "vertical_m": 0.25, "unstable": True, "kind": "=1+1"}
 
