@@ -43,6 +43,8 @@ from app.security.gate import Gate
 from app.security.quotas import Meter
 from app.storage.database import make_engine, session_factory
 
+_INBOX_PAUSE_SECONDS = 0.006  # about as long as one group of posts takes
+_MESSAGES_PAUSE_SECONDS = 0.05  # nobody waits for a message to leave; each group costs a transaction
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
 
 Post a line to `/v1/jobs`, follow `Location` until the status is `successful`, then read `/results`.
@@ -122,8 +124,12 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
-    app.state.inbox = GroupedCalls("inbox", partial(committed_together, app.state.writers, submissions.accept))
-    app.state.messages = GroupedCalls("messages", lambda job_ids: [app.state.sender.send(job_ids)] * len(job_ids))
+    app.state.inbox = GroupedCalls(
+        "inbox", partial(committed_together, app.state.writers, submissions.accept), _INBOX_PAUSE_SECONDS
+    )
+    app.state.messages = GroupedCalls(
+        "messages", lambda job_ids: [app.state.sender.send(job_ids)] * len(job_ids), _MESSAGES_PAUSE_SECONDS
+    )
     app.state.statuses = GroupedCalls("statuses", partial(look_up, app.state.readers))
     app.state.job_watch = SharedWatch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
     app.state.batch_watch = SharedWatch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)

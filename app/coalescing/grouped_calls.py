@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import Generic, TypeVar
 
 from sqlalchemy.orm import Session, sessionmaker
@@ -20,15 +21,24 @@ class GroupedCalls(Generic[Argument, Result]):
     competes with the event loop for the interpreter; a thread for every request would slow all of them down.
     """
 
-    def __init__(self, name: str, work: Callable[[Sequence[Argument]], Sequence[Result | Exception]]) -> None:
+    def __init__(
+        self,
+        name: str,
+        work: Callable[[Sequence[Argument]], Sequence[Result | Exception]],
+        pause_seconds: float = 0.0,
+    ) -> None:
         """Take the function that works on a group, which is called in a thread of this object's own.
 
-        It returns for every argument its result, or the exception that is raised in the call of that argument.
+        It returns for every argument its result, or the exception that is raised in the call of that argument. After a
+        group of several the next one gathers for the pause, unless it is full: under load, fewer and larger groups save
+        more than the pause delays.
         """
         self._work = work
         self._thread = ThreadPoolExecutor(1, thread_name_prefix=name)
         self._waiting: list[tuple[Argument, asyncio.Future[Result]]] = []
         self._worker: asyncio.Task[None] | None = None
+        self._pause_seconds = pause_seconds
+        self._closing = asyncio.Event()
 
     async def call(self, argument: Argument) -> Result:
         """Return the result for an argument.
@@ -50,6 +60,7 @@ class GroupedCalls(Generic[Argument, Result]):
 
     async def close(self) -> None:
         """Work on what is still waiting, then end the thread."""
+        self._closing.set()
         if self._worker is not None:
             await self._worker
         self._thread.shutdown()
@@ -62,8 +73,14 @@ class GroupedCalls(Generic[Argument, Result]):
                 results = await self._results([argument for argument, _ in group])
                 for (_, future), result in zip(group, results, strict=True):
                     _settle(future, result)
+                await self._pause(len(group))
         finally:
             self._worker = None
+
+    async def _pause(self, calls: int) -> None:
+        if self._pause_seconds and calls > 1 and len(self._waiting) < _MOST_AT_ONCE:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._closing.wait(), self._pause_seconds)
 
     async def _results(self, arguments: Sequence[Argument]) -> Sequence[Result | Exception]:
         try:

@@ -18,10 +18,12 @@ from app.runtime.correlation import Ids
 from app.security import audit
 from app.security.caller import Caller, Owned
 from app.storage import counters
-from app.storage.database import database_time
+from app.storage.database import database_time, insert_rows
 from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
 LABELS = frozenset({"name", "asset_id", "tags"})
+
+_COLUMNS = tuple(column.key for column in Job.__table__.columns)
 
 
 class CancelOutcome(StrEnum):
@@ -60,7 +62,7 @@ class Submission:
 
 
 def make(submission: Submission, now: datetime) -> Job:
-    """Return the job of a submission with its tags and its first event, to be added to a session.
+    """Return the job of a submission with its tags, for `insert` to store.
 
     Raises
     ------
@@ -83,8 +85,22 @@ def make(submission: Submission, now: datetime) -> Job:
         request_id=submission.ids.request_id,
         trace_parent=submission.ids.trace_parent,
         tags=[JobTag(key=key, value=value) for key, value in sorted(submission.tags.items())],
-        events=[JobEvent(at=now, kind=JobEventKind.ACCEPTED, attempt=0)],
     )
+
+
+def insert(session: Session, jobs: Sequence[Job]) -> None:
+    """Store new jobs with their tags and first events, one statement per table; they do not join the session.
+
+    Raises
+    ------
+    sqlalchemy.exc.SQLAlchemyError
+        If the database refuses a row, or fails.
+    """
+    insert_rows(session, Job, [{name: getattr(job, name) for name in _COLUMNS} for job in jobs])
+    tags = [{"job_id": job.id, "key": tag.key, "value": tag.value} for job in jobs for tag in job.tags]
+    insert_rows(session, JobTag, tags)
+    accepted = {"kind": JobEventKind.ACCEPTED, "attempt": 0}
+    insert_rows(session, JobEvent, [{"job_id": job.id, "at": job.created_at, **accepted} for job in jobs])
 
 
 def input_hash(document: Mapping[str, Any]) -> str:

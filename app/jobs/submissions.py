@@ -11,7 +11,7 @@ from app.jobs.idempotency import Answer, Kept, Key, KeyTaken
 from app.jobs.job_records import Submission
 from app.security import audit
 from app.storage.database import database_time
-from app.tables import AuditAction, Job
+from app.tables import Job
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +56,11 @@ def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
             reuse.adopt(job, source, ENGINE_VERSION)
     taken = _taken(session, orders, jobs)
     new = [item for item in zip(orders, jobs, sources, strict=True) if item[1] not in taken]
-    for order, job, _ in new:
-        session.add(job)
-        audit.record(session, order.submission.caller, AuditAction.JOB_SUBMITTED, job.id, at=now)
+    job_records.insert(session, [job for _, job, _ in new])
+    audit.record_submissions(session, [(order.submission.caller, job.id) for order, job, _ in new], now)
+    for order, job, source in new:
         if order.webhook_url is not None:
             webhooks.register(session, job.owner, order.webhook_url, job_id=job.id)
-    session.flush()
-    for _, job, source in new:
         if source is not None:
             reuse.copy(session, job.id, source)
     return [KeyTaken() if job in taken else job for job in jobs]

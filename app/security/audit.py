@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
 from app.security.caller import Caller
-from app.storage.database import database_time
+from app.storage.database import database_time, insert_rows
 from app.tables import AuditAction, AuditEvent
 
 OPERATOR = Caller("operator", frozenset())
@@ -31,6 +31,19 @@ def record(
         AuditEvent(
             id=uuid7(), at=at or database_time(session), action=action, subject=subject, detail=detail, **made_by
         )
+    )
+
+
+def record_submissions(session: Session, jobs: Sequence[tuple[Caller, UUID]], at: datetime) -> None:
+    """Add to the audit record, in one statement, that callers submitted jobs at this moment."""
+    of_all = {"at": at, "action": AuditAction.JOB_SUBMITTED, "detail": None}
+    insert_rows(
+        session,
+        AuditEvent,
+        [
+            {"id": uuid7(), "owner": caller.owner, "key_id": caller.key_id, "subject": job_id, **of_all}
+            for caller, job_id in jobs
+        ],
     )
 
 

@@ -40,6 +40,26 @@ def test_calls_made_while_a_group_is_at_work_are_the_next_group() -> None:
     assert max(sizes) == 100
 
 
+def test_after_a_group_of_several_the_next_gathers_for_the_pause() -> None:
+    sizes: list[int] = []
+
+    def work(arguments: Sequence[int]) -> Sequence[int]:
+        sizes.append(len(arguments))
+        return arguments
+
+    async def call() -> None:
+        calls = GroupedCalls("test", work, pause_seconds=30.0)
+        await asyncio.gather(calls.call(1), calls.call(2))
+        late = [calls.submit(number) for number in (3, 4, 5)]
+        await asyncio.sleep(0.05)
+        assert not any(future.done() for future in late)
+        await calls.close()  # ends the pause
+        assert [future.result() for future in late] == [3, 4, 5]
+
+    asyncio.run(call())
+    assert sizes == [2, 3]
+
+
 def test_an_exception_is_raised_in_its_call() -> None:
     def work(arguments: Sequence[int]) -> list[int | Exception]:
         if 13 in arguments:
