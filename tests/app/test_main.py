@@ -9,6 +9,7 @@ from pydantic import BaseModel
 from app import convert, schemas
 from app.export.formats import PARQUET
 from app.main import create_app
+from app.schemas.batch import BatchRequest
 from tests.app import service
 from tests.app.answer_modules import ANSWER_MODULES
 from tests.app.lines import faults
@@ -19,6 +20,10 @@ def document(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Give the OpenAPI document."""
     made: dict[str, Any] = create_app(service.sqlite_settings(tmp_path_factory.mktemp("openapi"))).openapi()
     return made
+
+
+INLINED: dict[str, type[BaseModel]] = {"post /v1/batches request": BatchRequest}
+"""Bodies whose schema stands in the place of a reference, since the route reads them as a stream."""
 
 
 def bodies(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
@@ -58,7 +63,7 @@ def test_every_body_of_text_has_an_example(document: dict[str, Any]) -> None:
 def test_every_example_is_valid_by_its_own_schema(document: dict[str, Any]) -> None:
     checked = 0
     for place, media_type, content in bodies(document):
-        model = model_of(content)
+        model = INLINED.get(place) or model_of(content)
         if media_type in {"application/json", "application/problem+json"} and model is not None:
             for value in examples(content):
                 model.model_validate(value)
