@@ -13,7 +13,11 @@ class Outcome(StrEnum):
         "statically_unstable",
         "The static state is unstable even without wind: the ice moment exceeds the torsional stiffness.",
     )
-    OUTSIDE_FIT = ("outside_fit", "The angle of attack leaves the range to which the coefficients were fitted.")
+    OUTSIDE_FIT = (
+        "outside_fit",
+        "The motion leaves the range of the load: the angles of attack to which the coefficients were fitted, or the "
+        "velocities up to which the expanded load holds.",
+    )
     LIMIT_REACHED = ("limit_reached", "The computation reached a set limit before it was complete.")
 
     sentence: str

@@ -78,7 +78,8 @@ class Analysis(Document):
     )
     aerodynamic_model: Literal["published", "relative_wind"] = Field(
         default="published",
-        description="How the section's velocity changes the wind; relative_wind needs aerodynamics_at_rest",
+        description="Which velocities change the wind: the vertical one, or all those of each sub-conductor; "
+        "relative_wind needs ice.aerodynamics_at_rest or a table",
         examples=["published"],
     )
     longitudinal_inertia: Literal["neglected", "condensed"] = Field(

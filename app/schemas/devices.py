@@ -58,7 +58,7 @@ class AirflowSpoiler(Document):
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,
         alias="aerodynamics_at_rest",
-        description="Coefficients at rest on the stretch",
+        description="Coefficients at rest on the stretch; those of the line if absent",
         examples=[AT_REST],
     )
     mass: float = quantity("mass_kg_per_m", "Added mass per length of a sub-conductor", "kg/m", (0.0, 100.0), 0.3, 0.0)

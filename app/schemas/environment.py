@@ -72,7 +72,7 @@ class IceSegment(Document):
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,
         alias="aerodynamics_at_rest",
-        description="Coefficients at rest on the stretch",
+        description="Coefficients at rest on the stretch; those of the line if absent",
         examples=[AT_REST],
     )
     eccentricity_y: float | None = quantity(

@@ -171,12 +171,17 @@ def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatA
 
 
 def _coefficients(line: Line) -> Iterator[tuple[float, float, Aerodynamics]]:
-    """Yield the coefficients of the span, then of each stretch [m] that has its own; later ones override."""
+    """Yield the coefficients of the span, then of each stretch [m] that has its own; later ones override.
+
+    A stretch that does not say its coefficients at rest has those of the span (theory section 13).
+    """
     yield -np.inf, np.inf, line.ice.aerodynamics
     parts: list[IceSegment | StretchDevice] = [*line.ice.segments, *line.stretches]
     for part in parts:
-        if part.aerodynamics is not None:
-            yield part.start, part.stop, part.aerodynamics
+        own = part.aerodynamics
+        if own is not None:
+            at_rest = line.ice.aerodynamics.at_rest if own.at_rest is None else own.at_rest
+            yield part.start, part.stop, replace(own, at_rest=at_rest)
 
 
 def _at_local_angle(aerodynamics: Aerodynamics, twist: FloatArray) -> FloatArray:

@@ -10,8 +10,8 @@ from engine.mechanics.cross_sections import Sections, sections, wind_factor
 from engine.mechanics.finite_elements import Matrices, matrices, shape_functions
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
 from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state
-from engine.models.aerodynamic_load import angle_forms
-from engine.spec import Line, StaticTwist
+from engine.models.relative_wind import NodalMotion, local_motion_forms, turned_arms
+from engine.spec import AerodynamicModel, Line, StaticTwist
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +41,10 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
     return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, sections_of_lines, state), state)
 
 
-def nodal_angle_forms(discretization: Discretization, line: IntArray, shapes: FloatArray) -> FloatArray:
-    """Return the linear form of alpha in (q, q'/U) at the nodes, eq. (16).
+def nodal_motion(
+    discretization: Discretization, line: IntArray, shapes: FloatArray, model: AerodynamicModel
+) -> NodalMotion:
+    """Return the local motion at the nodes of a stack of models.
 
     The nodes, unlike the quadrature points, stay where they are however the ice is divided into pieces.
 
@@ -53,17 +55,20 @@ def nodal_angle_forms(discretization: Discretization, line: IntArray, shapes: Fl
         Index of the line of each model.
     shapes : (members, m, 3, nodes)
         V, W and Theta of each generalized coordinate.
-
-    Returns
-    -------
-    (members, nodes, 2 m)
+    model : AerodynamicModel
     """
-    lines, profile = discretization.lines, discretization.profile
-    arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, shapes.shape[-1])
+    lines, profile, nodes = discretization.lines, discretization.profile, shapes.shape[-1]
+    arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, nodes)
     positions = horizontal_position(profile, arc)
     factor = np.stack([wind_factor(*of_line) for of_line in zip(lines, positions, strict=True)])
     diameter = np.array([of_line.conductor.diameter for of_line in lines])
-    return angle_forms(shapes[:, None], diameter[line, None, None], factor[line, None])[:, 0]
+    twist = np.zeros((len(lines), 1)) if discretization.twist is None else np.nan_to_num(discretization.twist.angle)
+    return NodalMotion(
+        forms=local_motion_forms(shapes[:, None], np.ones((1, 1, 1)), factor[line, None])[:, 0],
+        arms=turned_arms(lines, twist)[line],
+        diameter=diameter[line],
+        model=model,
+    )
 
 
 def observation(discretization: Discretization, shapes: FloatArray, loops: int) -> FloatArray:

@@ -10,7 +10,14 @@ import numpy as np
 from engine.arrays import FloatArray
 from engine.mechanics.finite_elements import FIELDS, Matrices, device_damping
 from engine.mechanics.modes import DirectionalShapes, at_points
-from engine.models.aerodynamic_load import PolynomialLoad, integrate_along_span, published_load, span_load, take_load
+from engine.models.aerodynamic_load import (
+    PolynomialLoad,
+    integrate_along_span,
+    integrate_each,
+    published_load,
+    span_load,
+    take_load,
+)
 from engine.models.discretization import Discretization
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals
 from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, LongitudinalInertia
@@ -136,8 +143,10 @@ def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: An
         values,
         analysis.aerodynamic_model,
     )
-    published = analysis.aerodynamic_model is AerodynamicModel.PUBLISHED
-    return integrate_along_span(load, (2, 5, 3) if published else (2, 5, 3, 4))
+    q_theta, (v_rate, w_rate, theta_rate) = 2, range(nodal.shape[2], nodal.shape[2] + 3)
+    if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
+        return integrate_along_span(load, (q_theta, theta_rate, v_rate))
+    return integrate_each(load, (q_theta, v_rate, w_rate, theta_rate))
 
 
 def _diagonal_fields(shapes: FloatArray) -> FloatArray:

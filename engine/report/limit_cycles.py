@@ -11,20 +11,22 @@ from engine.arrays import FloatArray, IntArray, eigenvalues
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
 from engine.mechanics.static_profile import horizontal_position
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
-from engine.models.discretization import Discretization, nodal_angle_forms, observation
+from engine.models.discretization import Discretization, nodal_motion, observation
+from engine.models.relative_wind import FASTEST, largest_reach
 from engine.outcome import Outcome, Stability
 from engine.report.cells import finite_or_none, lists_by_line
 from engine.report.findings import ModelFindings
 from engine.report.internal_resonances import divide_by_direction, motion_shares
 from engine.result import LimitCycleRow
-from engine.tori.spectrum import amplitude_range, base_frequencies, largest_angle, mean_square_velocity
+from engine.spec import AerodynamicModel, Analysis
+from engine.tori.spectrum import amplitude_range, base_frequencies, mean_square_velocity, sampled_states
 
-ANGLE_SAMPLES = 48
+REACH_SAMPLES = 48
 _UNSTABLE, _NOT_FOUND = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
 _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
 _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
-_ANGLE = "largest_angle_of_attack_rad"
+_REACH = ("largest_angle_of_attack_rad", "largest_velocity_ratio")
 _FREQUENCIES = ("frequency_hz", "second_frequency_hz")
 _VERDICTS = (Stability.UNKNOWN, Stability.UNSTABLE, Stability.STABLE)
 _NAMES = tuple(field.name for field in fields(LimitCycleRow))
@@ -39,7 +41,7 @@ class Motion:
 
 
 def limit_cycle_rows(
-    discretization: Discretization, findings: ModelFindings, loops: tuple[int, ...], lowest: FloatArray
+    discretization: Discretization, findings: ModelFindings, analysis: Analysis, lowest: FloatArray
 ) -> list[list[Motion]]:
     """Return a row for the equilibrium, every cycle and every torus at each wind speed, one list per line.
 
@@ -47,8 +49,8 @@ def limit_cycle_rows(
     ----------
     discretization : Discretization
     findings : ModelFindings
-    loops : tuple of int
-        Numbers of loops for which the equilibrium has a row.
+    analysis : Analysis
+        Its loops, for each of which the equilibrium has a row, and its aerodynamic model.
     lowest : (lines,)
         Lowest vertical frequency of each line [Hz].
     """
@@ -56,12 +58,12 @@ def limit_cycle_rows(
     scales = _Scales(
         sag=discretization.profile.sag,
         speed=lowest * discretization.profile.span_length,
-        observed={k: _observed_at(discretization, k) for k in {*loops, *np.unique(findings.loops).tolist()}},
+        observed={k: _observed_at(discretization, k) for k in {*analysis.loops, *np.unique(findings.loops).tolist()}},
     )
     for line, motion in chain(
-        _equilibria(findings, loops, scales),
-        _cycles(discretization, findings, scales),
-        _quasi_periodic_motions(discretization, findings, scales),
+        _equilibria(findings, analysis.loops, scales),
+        _cycles(discretization, findings, analysis.aerodynamic_model, scales),
+        _quasi_periodic_motions(discretization, findings, analysis.aerodynamic_model, scales),
     ):
         table[line].append(motion)
     for motions in table:
@@ -127,7 +129,9 @@ def _without_motion(
     return _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), labels)
 
 
-def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Scales) -> Iterator[tuple[int, Motion]]:
+def _cycles(
+    discretization: Discretization, findings: ModelFindings, model: AerodynamicModel, scales: _Scales
+) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all cycles with their Fourier series at the point of observation."""
     cycles = findings.cycles
     if cycles.member.size == 0:
@@ -139,19 +143,34 @@ def _cycles(discretization: Discretization, findings: ModelFindings, scales: _Sc
         here = loops == k
         observed_shapes = observation(discretization, shapes[here], int(k))
         series[here] = observed_shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
-    angles = _largest_angles(discretization, findings)
-    outside = angles > discretization.sections.fitted_range[line]
+    state = states(cycles.orbits, 2.0 * np.pi * np.arange(REACH_SAMPLES) / REACH_SAMPLES)
+    motion = nodal_motion(discretization, findings.line, findings.model.shapes, model)
+    reach = largest_reach(motion, cycles.member, state)
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
         "stability": cycles.floquet.stability.tolist(),
         "branch": cycles.branch.tolist(),
         "found_by": cycles.found_by,
         "harmonics": cycles.harmonics.tolist(),
-        "outcome": [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()],
+        "outcome": _outcomes(discretization, line, reach, model),
     }
     keys = _RowKeys(line, loops, cycles.orbits.wind_speed)
-    measures = _measures(findings, series) | {_ANGLE: angles}
+    measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
     return _rows(findings, scales, keys, measures, labels, series)
+
+
+def _outcomes(
+    discretization: Discretization, line: IntArray, reach: FloatArray, model: AerodynamicModel
+) -> list[Outcome]:
+    """Tell which motions leave the range that the coefficients were fitted to, or that of the expanded load.
+
+    reach: (2, motions), largest angles of attack and velocities.
+    """
+    angle, velocity = reach
+    outside = angle > discretization.sections.fitted_range[line]
+    if model is not AerodynamicModel.PUBLISHED:
+        outside |= velocity > FASTEST
+    return [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()]
 
 
 def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
@@ -170,7 +189,7 @@ def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArr
 
 
 def _quasi_periodic_motions(
-    discretization: Discretization, findings: ModelFindings, scales: _Scales
+    discretization: Discretization, findings: ModelFindings, model_of_wind: AerodynamicModel, scales: _Scales
 ) -> Iterator[tuple[int, Motion]]:
     """Yield rows of all quasi-periodic motions, and of wind speeds where one must exist but none was found."""
     known, model = findings.quasi_periodic, findings.model
@@ -178,20 +197,18 @@ def _quasi_periodic_motions(
     frequency, _ = base_frequencies(model, member, tori)
     energy = model.modal_masses[member] * mean_square_velocity(tori)
     loops = findings.loops[member, energy.argmax(axis=-1)]
-    forms = nodal_angle_forms(discretization, findings.line, model.shapes)
-    ranges, angles, outcome = np.empty((2, 3, member.size)), np.empty(member.size), []
+    motion = nodal_motion(discretization, findings.line, model.shapes, model_of_wind)
+    ranges, reach = np.empty((2, 3, member.size)), np.empty((2, member.size))
     for i in range(member.size):
         one = tori.select(np.array([i]))
         series = observation(discretization, model.shapes[member[i]], int(loops[i])).T @ one.coefficients[0]
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
-        angles[i] = largest_angle(one, forms[member[i]])
-        beyond = angles[i] > discretization.sections.fitted_range[line[i]]
-        outcome.append(Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED)
+        reach[:, [i]] = largest_reach(motion, member[[i]], sampled_states(one))
     measures = {
         **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
         **dict(zip(_SHARES, divide_by_direction(energy, model.direction).T, strict=True)),
         **dict(zip(_FREQUENCIES, frequency.T / (2.0 * np.pi), strict=True)),
-        _ANGLE: angles,
+        **dict(zip(_REACH, reach, strict=True)),
         "residual": known.residual,
         "truncation": known.truncation,
         "direct_difference": known.direct,
@@ -202,7 +219,7 @@ def _quasi_periodic_motions(
         "branch": known.branch.tolist(),
         "found_by": known.found_by,
         "harmonics": repeat(tori.order[0]),
-        "outcome": outcome,
+        "outcome": _outcomes(discretization, line, reach, model_of_wind),
     }
     yield from _rows(findings, scales, _RowKeys(line, loops, tori.wind_speed), measures, labels)
     yield from _without_motion(findings, scales, known.missing, "quasi_periodic")
@@ -254,11 +271,3 @@ def _dominant_loops(findings: ModelFindings) -> IntArray:
     mass = findings.model.modal_masses[findings.cycles.member]
     energy = mass * (findings.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
     return np.asarray(findings.loops[findings.cycles.member, energy.argmax(axis=-1)])
-
-
-def _largest_angles(discretization: Discretization, findings: ModelFindings) -> FloatArray:
-    """Return the largest |alpha| of each cycle at the nodes and over the period (cycles,) [rad]."""
-    cycles = findings.cycles
-    state = states(cycles.orbits, 2.0 * np.pi * np.arange(ANGLE_SAMPLES) / ANGLE_SAMPLES)
-    forms = nodal_angle_forms(discretization, findings.line, findings.model.shapes)[cycles.member]
-    return np.asarray(np.abs(state @ forms.swapaxes(-1, -2)).max(axis=(-1, -2), initial=0.0))

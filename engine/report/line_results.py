@@ -14,7 +14,7 @@ from engine.report.frequencies import NaturalFrequencies, frequency_rows
 from engine.report.internal_resonances import internal_resonance_rows
 from engine.report.limit_cycles import Motion, limit_cycle_rows
 from engine.report.model_comparisons import model_comparisons
-from engine.report.warnings import dropped_warnings, fit_warnings, line_warnings, twist_warnings
+from engine.report.warnings import dropped_warnings, fit_warnings, line_warnings, rest_warnings, twist_warnings
 from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
 from engine.spec import AmplitudeCurves, Analysis
 
@@ -50,14 +50,14 @@ def line_results(
     frequencies = [frequency_rows(table, analysis.loops) for table in natural_frequencies]
     critical = [critical_wind_speed_rows(model_findings) for model_findings in findings]
     bifurcations = [bifurcation_rows(model_findings) for model_findings in findings]
-    motions = [limit_cycle_rows(discretization, model_findings, analysis.loops, lowest) for model_findings in findings]
+    motions = [limit_cycle_rows(discretization, model_findings, analysis, lowest) for model_findings in findings]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     curves = [amplitude_curve_rows(discretization, model_findings) for model_findings in reported]
     dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
     results = []
     for i, line in enumerate(discretization.lines):
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
-        about_line = line_warnings(line) + twist_warnings(discretization, i)
+        about_line = line_warnings(line) + rest_warnings(line, analysis) + twist_warnings(discretization, i)
         own_frequencies = tuple(row for table in frequencies for row in table[i])
         results.append(
             Result(
@@ -72,7 +72,11 @@ def line_results(
                 model_comparisons=model_comparisons(cycles),
                 loop_competitions=tuple(competitions[i]),
                 orbits=orbits,
-                warnings=(*about_line, *fit_warnings(cycles), *(text for table in dropped for text in table[i])),
+                warnings=(
+                    *about_line,
+                    *fit_warnings(cycles, analysis),
+                    *(text for table in dropped for text in table[i]),
+                ),
                 engine_version=ENGINE_VERSION,
             )
         )

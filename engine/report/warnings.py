@@ -6,10 +6,20 @@ import numpy as np
 
 from engine.mechanics.static_profile import mean_mass
 from engine.models.discretization import Discretization
+from engine.models.relative_wind import FASTEST
 from engine.outcome import Outcome
 from engine.report.findings import ModelFindings
 from engine.result import LimitCycleRow
-from engine.spec import Ice, IceSegment, Line, ice_properties
+from engine.spec import (
+    AerodynamicModel,
+    Aerodynamics,
+    Analysis,
+    Ice,
+    IceSegment,
+    Line,
+    StretchDevice,
+    ice_properties,
+)
 
 HEAVY_DEVICES = 0.1  # share of the span's weight above which a warning names the devices' weight
 LEAST_INERTIA = 1e-6  # least ratio of the inertias about mass centre and reference curve: M is nearly singular below it
@@ -39,6 +49,23 @@ def line_warnings(line: Line) -> list[str]:
     return result
 
 
+def rest_warnings(line: Line, analysis: Analysis) -> list[str]:
+    """Return a sentence if stretches have coefficients of their own without those at rest, which the load needs."""
+    if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
+        return []
+    parts: list[tuple[str, Sequence[IceSegment | StretchDevice]]]
+    parts = [(f"ice.segments.{i}", [segment]) for i, segment in enumerate(line.ice.segments)]
+    parts += [(f"devices.{i}", device.stretches) for i, device in enumerate(line.devices)]
+    without = [name for name, owners in parts if any(_lacks_rest(owner.aerodynamics) for owner in owners)]
+    if not without:
+        return []
+    return [f"The line's coefficients at rest are used where {', '.join(without)} give no aerodynamics_at_rest."]
+
+
+def _lacks_rest(aerodynamics: Aerodynamics | None) -> bool:
+    return aerodynamics is not None and aerodynamics.at_rest is None
+
+
 def _inertia_share(line: Line, piece: Ice | IceSegment) -> float:
     """Return the section's polar inertia about its mass centre over that about the reference curve."""
     e_y, e_z, mass = ice_properties(line, piece)
@@ -55,12 +82,21 @@ def twist_warnings(discretization: Discretization, line: int) -> list[str]:
     return ["The static twist could not be computed; all results refer to the untwisted state."]
 
 
-def fit_warnings(cycles: Sequence[LimitCycleRow]) -> list[str]:
-    """Return a sentence if cycles leave the fitted range of the aerodynamic coefficients."""
-    outside = sum(cycle.outcome is Outcome.OUTSIDE_FIT for cycle in cycles)
-    if not outside:
-        return []
-    return [f"{outside} cycles leave the range of angles of attack to which the coefficients were fitted."]
+def fit_warnings(cycles: Sequence[LimitCycleRow], analysis: Analysis) -> list[str]:
+    """Return a sentence if cycles leave the fitted range of the coefficients, and one if the range of the expansion."""
+    outside = [cycle for cycle in cycles if cycle.outcome is Outcome.OUTSIDE_FIT]
+    expanded = analysis.aerodynamic_model is not AerodynamicModel.PUBLISHED
+    fast = sum(expanded and (cycle.largest_velocity_ratio or 0.0) > FASTEST for cycle in outside)
+    result = []
+    if len(outside) > fast:
+        left = len(outside) - fast
+        result.append(f"{left} cycles leave the range of angles of attack to which the coefficients were fitted.")
+    if fast:
+        result.append(
+            f"In {fast} cycles a sub-conductor moves faster than {FASTEST:g} of the wind. The load is expanded in the "
+            "velocity and does not hold there."
+        )
+    return result
 
 
 def dropped_warnings(findings: ModelFindings, lines: int) -> list[list[str]]:

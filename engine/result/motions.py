@@ -58,6 +58,10 @@ class LimitCycleRow:
         float | None,
         Column("Largest absolute angle of attack along the span and over time; null at rest", 0.1194, unit="rad"),
     ]
+    largest_velocity_ratio: Annotated[
+        float | None,
+        Column("Largest velocity of a sub-conductor over that of the wind; null at rest", 0.1186, unit="1"),
+    ]
     found_by: Annotated[
         FoundBy | None,
         Column(

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from engine.outcome import Fault, require
-from engine.spec.environment import Aerodynamics
 from engine.spec.line import Line
 from engine.spec.rules import positive
 
@@ -27,7 +26,7 @@ class Closure(StrEnum):
 
 
 class AerodynamicModel(StrEnum):
-    """Which velocities change the relative wind: the vertical one, as published, or all of them. Theory section 5."""
+    """Which velocities change the wind: the vertical one, as published, or all of each sub-conductor. Section 13."""
 
     PUBLISHED = "published"
     RELATIVE_WIND = "relative_wind"
@@ -153,9 +152,6 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     most = max(analysis.loops + analysis.finite_element_loops)
     published = analysis.closure is Closure.PUBLISHED
     relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
-    owners: list[tuple[str, Aerodynamics | None]] = [("ice", line.ice.aerodynamics)]
-    owners += [(f"ice.segments.{i}", segment.aerodynamics) for i, segment in enumerate(line.ice.segments)]
-    owners += [(f"devices.{i}", part.aerodynamics) for i, d in enumerate(line.devices) for part in d.stretches]
     require(
         Fault("loops", most, f"must not exceed the number of elements ({line.span.elements})")
         if most > line.span.elements
@@ -163,9 +159,7 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
         Fault("closure", analysis.closure.value, "must be exact for a wind profile")
         if published and line.wind.profile
         else None,
-        *(
-            Fault(f"{path}.aerodynamics_at_rest", None, "must be given for the relative-wind model")
-            for path, owner in owners
-            if relative and owner is not None and owner.at_rest is None
-        ),
+        Fault("ice.aerodynamics_at_rest", None, "must be given for the relative-wind model")
+        if relative and line.ice.aerodynamics.at_rest is None
+        else None,
     )

@@ -33,8 +33,9 @@ class MeasuredCoefficients:
 class Aerodynamics:
     """Cubic coefficients a_i1, a_i2, a_i3 of one sub-conductor over the angle of attack [1/rad^j], eqs. (A11)-(A17).
 
-    at_rest: a_y0, a_z0, a_theta0, which only the relative-wind model needs; fitted_range: the largest |alpha| [rad] for
-    which the fit holds, None if unknown; measured: the table behind the fit, None if there is none.
+    at_rest: a_y0, a_z0, a_theta0, which only the relative wind needs; a stretch without them has those of the line.
+    fitted_range: the largest |alpha| [rad] for which the fit holds, None if unknown; measured: the table behind the
+    fit, None if there is none.
     """
 
     vertical: Coefficients

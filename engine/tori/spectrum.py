@@ -87,11 +87,10 @@ def mean_square_velocity(tori: Tori) -> FloatArray:
     return np.asarray(0.5 * (np.abs(rate[:, None] * phasors(tori.coefficients)) ** 2).sum(axis=-1))
 
 
-def largest_angle(torus: Tori, forms: FloatArray) -> float:
-    """Return the largest |alpha| of one torus over all time and over points with forms (points, 2 m) [rad]."""
+def sampled_states(torus: Tori) -> FloatArray:
+    """Return q and q'/U of one torus on a grid over both phases: (1, samples, 2 m)."""
     phase = 2.0 * np.pi * np.arange(GRID // 2) / (GRID // 2)
-    state = states(torus, _grid(phase, phase))[0]
-    return float(np.abs(state @ forms.T).max(initial=0.0))
+    return states(torus, _grid(phase, phase))
 
 
 def _grid(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -1,7 +1,8 @@
 """The aerodynamic load against direct quadrature of eq. (16) and the unexpanded relative wind."""
 
+from collections.abc import Callable
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,32 +11,35 @@ from hypothesis import strategies as st
 
 from engine.arrays import FloatArray
 from engine.mechanics.modes import at_points
-from engine.models.aerodynamic_load import force, force_gradient, integrate_along_span, relative_wind_table, span_load
+from engine.models.aerodynamic_load import force, force_gradient, integrate_along_span, integrate_each, span_load
 from engine.models.reduced_model import ReducedModel
-from engine.spec import AerodynamicModel, Aerodynamics, AirflowSpoiler, Analysis, IceSegment, Line, Wind
-from tests.builders import discretized, finite_element, hybrid, random_line, sorted_products, source_line
+from engine.spec import AerodynamicModel, Aerodynamics, AirflowSpoiler, Analysis, Bundle, IceSegment, Line, Wind
+from tests.builders import discretized, finite_element, hybrid, random_line, source_line
+from tests.engine.unexpanded_wind import on_bundle
 
 RELATIVE = Analysis(aerodynamic_model=AerodynamicModel.RELATIVE_WIND)
 AT_REST = (0.05, 1.1, -0.2)
 OTHER = Aerodynamics((-0.3, 1.0, 4.0), (0.5, 0.2, 0.1), (0.3, 0.2, 2.0), (0.1, 0.9, 0.3))
+WITHOUT_REST = Aerodynamics((0.4, 1.0, -1.0), (0.5, 0.2, 0.1), (0.3, 0.2, 2.0))
 
 
 def varied() -> Line:
-    """Return a triple bundle with segments, a spoiler and a wind profile."""
+    """Return a triple bundle off its centroid with segments, a spoiler and a wind profile."""
     line = source_line(3)
     ice = replace(
         line.ice,
         aerodynamics=replace(line.ice.aerodynamics, at_rest=AT_REST),
-        segments=(IceSegment(0.0, 33.0, OTHER), IceSegment(80.0, 91.0, replace(OTHER, vertical=(0.4, 0.0, -1.0)))),
+        segments=(IceSegment(0.0, 33.0, OTHER), IceSegment(80.0, 91.0, WITHOUT_REST)),
     )
     wind = Wind(1.2, profile=((10.0, 0.7), (62.94, 1.3), (100.0, 0.9)))
-    return replace(line, ice=ice, wind=wind, devices=(AirflowSpoiler(50.0, 61.0, OTHER),))
+    bundle = Bundle(tuple((y + 0.05, z - 0.03) for y, z in line.bundle.positions))
+    return replace(line, bundle=bundle, ice=ice, wind=wind, devices=(AirflowSpoiler(50.0, 61.0, OTHER),))
 
 
 def pieces(line: Line) -> list[tuple[float, float, Aerodynamics]]:
     """List the stretches of the varied line on which the coefficients and the slope of the wind are constant."""
     marks = [0.0, 10.0, 33.0, 50.0, 61.0, 62.94, 80.0, 91.0, 100.0, line.span.length]
-    own = {0.0: OTHER, 10.0: OTHER, 50.0: OTHER, 80.0: replace(OTHER, vertical=(0.4, 0.0, -1.0))}
+    own = {0.0: OTHER, 10.0: OTHER, 50.0: OTHER, 80.0: WITHOUT_REST}
     return [(a, b, own.get(a, line.ice.aerodynamics)) for a, b in pairwise(marks)]
 
 
@@ -53,8 +57,11 @@ def by_quadrature(line: Line, model: ReducedModel, state: FloatArray, relative: 
         phi = np.interp(x, [10.0, 62.94, 100.0], [0.7, 1.3, 0.9])
         v, w, turn = shapes[:, 0], shapes[:, 1], shapes[:, 2]
         theta = state[:m] @ turn
-        rise, sway = (state[m:] @ (v + 0.5 * d * turn)) / phi, (state[m:] @ w) / phi
-        loads = unexpanded(a, theta, rise, sway) if relative else cubic(a, theta - rise)
+        rise, sway, spin = (state[m:] @ shape / phi for shape in (v, w, turn))
+        if relative:
+            loads = on_bundle(line, table_of(a), np.stack([theta, rise, sway, spin]))
+        else:
+            loads = cubic(a, theta - rise - 0.5 * d * spin)
         density = loads[0] * v + loads[1] * w + d * loads[2] * turn
         total += np.trapezoid(0.5 * rho * d * n * phi**2 * density, s, axis=-1)
     return total
@@ -68,23 +75,16 @@ def interpolated(nodal: FloatArray, along: FloatArray) -> FloatArray:
     return np.asarray(sum(nodal[..., 2 * element + i] * weights[i] for i in range(3)))
 
 
-def cubic(a: Aerodynamics, alpha: FloatArray) -> list[FloatArray]:
+def cubic(a: Aerodynamics, alpha: FloatArray) -> FloatArray:
     """Return the cubics in the angle of attack."""
     rows = (a.vertical, a.horizontal, a.torsional)
-    return [np.asarray(r[0] * alpha + r[1] * alpha**2 + r[2] * alpha**3) for r in rows]
+    return np.stack([r[0] * alpha + r[1] * alpha**2 + r[2] * alpha**3 for r in rows])
 
 
-def unexpanded(a: Aerodynamics, theta: FloatArray, rise: FloatArray, sway: FloatArray) -> list[FloatArray]:
-    """Return the load of the relative wind as theory section 5 writes it, less its value at rest."""
-    assert a.at_rest is not None
-    alpha = theta - np.arctan2(rise, 1.0 - sway)
-    pressure = (1.0 - sway) ** 2 + rise**2
-    c_y, c_z, c_m = (r + c for r, c in zip(a.at_rest, cubic(a, alpha), strict=True))
-    return [
-        pressure * (c_y * np.cos(theta) - c_z * np.sin(theta)) - a.at_rest[0],
-        pressure * (c_y * np.sin(theta) + c_z * np.cos(theta)) - a.at_rest[1],
-        pressure * c_m - a.at_rest[2],
-    ]
+def table_of(a: Aerodynamics) -> FloatArray:
+    """Return a_i0 to a_i3, those at rest of the span where a stretch has none."""
+    rows = (a.vertical, a.horizontal, a.torsional)
+    return np.array([(a_0, *row) for a_0, row in zip(a.at_rest or AT_REST, rows, strict=True)])
 
 
 @pytest.mark.parametrize("loops", [1, 2])
@@ -108,39 +108,26 @@ def test_finite_element_load_is_the_integral_of_eq_16() -> None:
     assert found == pytest.approx(expected, rel=1e-5, abs=1e-6 * np.abs(expected).max())
 
 
-def test_relative_wind_load_is_the_integral_of_the_unexpanded_one_to_third_order() -> None:
+@pytest.mark.parametrize(
+    ("build", "largest"),
+    [
+        (lambda line: hybrid(line, 2, RELATIVE), 0.02),
+        (lambda line: finite_element(line, (1, 2), RELATIVE), 0.3),  # modes of unit mass: smaller motion
+    ],
+)
+def test_relative_wind_load_is_the_integral_of_the_unexpanded_one_to_third_order(
+    build: Callable[[Line], ReducedModel], largest: float
+) -> None:
     line = varied()
-    model = hybrid(line, 2, RELATIVE)
-    state = np.random.default_rng(7).normal(size=6)
+    model = build(line)
+    state = np.random.default_rng(7).normal(size=2 * model.mass.shape[-1])
     error = []
-    for scale in (0.02, 0.01):
+    for scale in (largest, 0.5 * largest):
         expected = by_quadrature(line, model, scale * state, relative=True)
         error.append(np.abs(force(model.load, scale * state[None, None])[0, 0] - expected).max() / scale)
     # What is left out begins at fourth order, so half the motion leaves an eighth, relative to the motion.
     assert error[0] < 1e-3 * np.abs(model.load.table).max()
     assert np.log2(error[0] / error[1]) == pytest.approx(3.0, abs=0.3)
-
-
-@settings(max_examples=6)
-@given(st.integers(0, 10**6))
-def test_relative_wind_table_is_the_taylor_expansion_of_the_unexpanded_formula(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    a = rng.normal(size=(3, 4))
-    y, z, m = ([float(value) for value in row] for row in a)
-    coefficients = Aerodynamics((y[1], y[2], y[3]), (z[1], z[2], z[3]), (m[1], m[2], m[3]), (y[0], z[0], m[0]))
-    table = relative_wind_table(a)
-    # A polynomial of degree 5 fitted through 11^3 points in a cube of 0.06 leaves sixth-order terms only.
-    axis = 0.06 * np.cos(np.pi * (np.arange(11) + 0.5) / 11.0)
-    points = np.array(list(product(axis, axis, axis)))
-    values = np.stack(unexpanded(coefficients, *points.T), axis=-1)
-    exponents = [e for e in product(range(6), repeat=3) if 0 < sum(e) <= 5]
-    scaled = points / 0.06
-    design = np.stack([np.prod(scaled ** np.array(e), axis=-1) for e in exponents], axis=-1)
-    fitted = np.linalg.lstsq(design, values, rcond=None)[0]
-    for column, monomial in enumerate(sorted_products(3)):
-        e = tuple(monomial.count(i) for i in range(3))
-        expected = fitted[exponents.index(e)] / 0.06 ** len(monomial)
-        assert table[:, column] == pytest.approx(expected, rel=1e-3, abs=2e-3)
 
 
 @settings(max_examples=8)
@@ -175,6 +162,18 @@ def test_integrated_load_is_the_pointwise_one() -> None:
     expected = force(pointwise, state)
     assert force(once, state) == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())
     assert force(model.load, state[:, 0]) == pytest.approx(expected[:, 0], rel=1e-10, abs=1e-9)
+
+
+def test_load_whose_variables_are_components_is_integrated_alike() -> None:
+    line = varied()
+    discretization = discretized(line)
+    values = at_points(discretization.matrices, hybrid(line, 1).shapes)[:, None]
+    pointwise = span_load(
+        (line,), discretization.sections, discretization.matrices.weight, values, AerodynamicModel.RELATIVE_WIND
+    )
+    each, general = (integrate(pointwise, (2, 3, 4, 5)) for integrate in (integrate_each, integrate_along_span))
+    assert each.forms == pytest.approx(general.forms)
+    assert each.table == pytest.approx(general.table, rel=1e-11, abs=1e-12 * np.abs(general.table).max())
 
 
 def test_uniform_wind_factor_scales_the_wind() -> None:

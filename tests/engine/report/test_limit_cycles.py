@@ -3,10 +3,9 @@ from dataclasses import replace
 
 import pytest
 
+from engine.models.relative_wind import FASTEST
 from engine.outcome import Outcome
-from engine.spec import (
-    Analysis,
-)
+from engine.spec import AerodynamicModel, Analysis, Line, Model
 from tests.builders import ICE_AT_40, run, source_line, stable_cycles
 
 SHORT = Analysis(loops=(1, 2), wind_speeds=(5.0,))
@@ -77,3 +76,47 @@ def test_a_cycle_leaves_the_fit_where_its_largest_angle_of_attack_does() -> None
         else:
             assert row.largest_angle_of_attack_rad is not None
             assert (row.outcome is Outcome.OUTSIDE_FIT) == (row.largest_angle_of_attack_rad > middle)
+
+
+def driven(torsional_ratio: float, drag: float) -> Line:
+    line = source_line(2, torsional_ratio=torsional_ratio)
+    return replace(line, ice=replace(line.ice, aerodynamics=replace(ICE_AT_40, at_rest=(0.0, drag, 0.0))))
+
+
+@pytest.mark.parametrize("model", list(AerodynamicModel))
+def test_largest_velocity_is_that_of_the_fastest_sub_conductor(model: AerodynamicModel) -> None:
+    """At mid-span of a cycle in one loop, where V is largest and Theta' adds r Theta' to it."""
+    asked = Analysis(loops=(1,), models=(Model.HYBRID,), wind_speeds=(6.0,), aerodynamic_model=model)
+    result = run(driven(0.308, 1.0), asked)
+    (orbit,) = result.orbits
+    row = result.limit_cycles[orbit.cycle]
+    assert row.frequency_hz is not None
+    rate = 2.0 * math.pi * row.frequency_hz / 6.0
+    largest = 0.0
+    for tau in (2.0 * math.pi * i / 2000.0 for i in range(2000)):
+        v, w, theta = (rate * value(slope(of), tau) for of in (orbit.vertical, orbit.horizontal, orbit.torsional))
+        largest = max(largest, *(math.hypot(v - z * theta, w) for z in (-0.2355, 0.2355)))
+    assert row.largest_velocity_ratio == pytest.approx(largest, rel=3e-3)
+
+
+def slope(series: tuple[float, ...]) -> tuple[float, ...]:
+    """Differentiate (mean, cos 1, sin 1, ...) by the phase."""
+    pairs = ((k * series[2 * k], -k * series[2 * k - 1]) for k in range(1, len(series) // 2 + 1))
+    return (0.0, *(number for pair in pairs for number in pair))
+
+
+def test_a_cycle_beyond_the_range_of_the_expanded_load_says_so() -> None:
+    """A steep lift curve without drag drives the motion beyond the velocities up to which the expansion holds."""
+    asked = Analysis(loops=(1,), models=(Model.HYBRID,), wind_speeds=(2.5, 6.0))
+    fast = replace(asked, aerodynamic_model=AerodynamicModel.RELATIVE_WIND)
+    line = driven(0.308, 0.0)
+    steep = replace(line.ice.aerodynamics, vertical=(-2.0, 0.0, 8.0))
+    result = run(replace(line, ice=replace(line.ice, aerodynamics=steep)), fast)
+    cycles = [row for row in result.limit_cycles if row.kind == "periodic"]
+    assert cycles
+    for row in cycles:
+        assert row.largest_velocity_ratio is not None
+        assert (row.outcome is Outcome.OUTSIDE_FIT) == (row.largest_velocity_ratio > FASTEST)
+    count = sum(row.outcome is Outcome.OUTSIDE_FIT for row in cycles)
+    assert count
+    assert any(text.startswith(f"In {count} cycles a sub-conductor moves faster") for text in result.warnings)
