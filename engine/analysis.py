@@ -15,7 +15,7 @@ from engine.cycles.search import Cycles, explicit_starts, find_cycles
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
-from engine.models.discretization import Discretization, discretize
+from engine.models.discretization import Discretization, discretize, with_wind_twist
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, with_published_load
 from engine.models.reduced_model import ReducedModel, take
@@ -27,7 +27,7 @@ from engine.report.frequencies import NaturalFrequencies, coupled_frequencies
 from engine.report.line_results import line_results
 from engine.report.loop_competitions import loop_competitions
 from engine.result import LoopCompetitionRow, Result
-from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, check_compatible
+from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, StaticTwist, check_compatible
 from engine.tori.quasi_periodic import check_by_integration, quasi_periodic_motions
 
 
@@ -125,6 +125,8 @@ def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, N
 
 def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
     discretization = discretize(lines, analysis.static_twist)
+    if analysis.static_twist is StaticTwist.SOLVED and any(line.has_table for line in lines):
+        discretization = with_wind_twist(discretization, _winds(analysis))
     system, arc_length = discretization.matrices, discretization.profile.arc_length
     finite_element = Model.FINITE_ELEMENT in analysis.models
     loops = set(analysis.loops) | {1, 2}

@@ -60,7 +60,7 @@ def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
     local = edges[..., :-1, None] + 0.5 * width * (abscissae + 1.0)
     shape = (len(lines), elements, -1)
     local = local.reshape(shape)
-    position = _positions(profile, local)
+    position = positions(profile, local)
     values = [_line_properties(line, x) for line, x in zip(lines, position, strict=True)]
     return Sections(
         local=local,
@@ -95,7 +95,7 @@ def turned(lines: Sequence[Line], profile: StaticProfile, section_points: Sectio
     InvalidSpec
         If a table of coefficients has too few rows around the local angle.
     """
-    position = _positions(profile, section_points.local)
+    position = positions(profile, section_points.local)
     stack = zip(lines, position, twist, strict=True)
     return replace(
         turned_moments(section_points, twist),
@@ -111,7 +111,7 @@ def turned_moments(section_points: Sections, twist: FloatArray) -> Sections:
     return replace(section_points, first_moment=moment, twist=twist)
 
 
-def _positions(profile: StaticProfile, local: FloatArray) -> FloatArray:
+def positions(profile: StaticProfile, local: FloatArray) -> FloatArray:
     """Return the horizontal positions [m] of points given by their element coordinates."""
     elements = local.shape[1]
     arc = (np.arange(elements)[:, None] + 0.5 * (local + 1.0)) * (profile.arc_length[:, None, None] / elements)
@@ -164,13 +164,13 @@ def _line_properties(line: Line, position: FloatArray) -> tuple[FloatArray, Floa
 def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatArray:
     """Return the coefficients at positions [m], of a device, else of an ice segment, else of the span: (..., 3, 4)."""
     result = np.empty((*position.shape, 3, 4))
-    for start, stop, aerodynamics in _coefficients(line):
+    for start, stop, aerodynamics in coefficients_along(line):
         here = (position >= start) & (position < stop)
         result[here] = _at_local_angle(aerodynamics, twist[here])
     return result
 
 
-def _coefficients(line: Line) -> Iterator[tuple[float, float, Aerodynamics]]:
+def coefficients_along(line: Line) -> Iterator[tuple[float, float, Aerodynamics]]:
     """Yield the coefficients of the span, then of each stretch [m] that has its own; later ones override.
 
     A stretch that does not say its coefficients at rest has those of the span (theory section 13).
@@ -206,5 +206,5 @@ def _table(aerodynamics: Aerodynamics) -> FloatArray:
 
 
 def _fitted_range(line: Line) -> float:
-    ranges = [aerodynamics.fitted_range for _, _, aerodynamics in _coefficients(line)]
+    ranges = [aerodynamics.fitted_range for _, _, aerodynamics in coefficients_along(line)]
     return min((r for r in ranges if r is not None), default=np.inf)

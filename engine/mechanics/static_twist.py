@@ -34,7 +34,7 @@ from engine.mechanics.finite_elements import (
     turned_sums,
 )
 from engine.mechanics.static_profile import StaticProfile
-from engine.numerics.newton import NewtonOptions, newton
+from engine.numerics.newton import NewtonOptions, newton, solve_systems
 from engine.spec import GRAVITY, Line
 
 FIRST_GUESS = 0.1  # rad at mid-span
@@ -87,7 +87,7 @@ def twisted_state(lines: Sequence[Line], profile: StaticProfile, section_points:
     def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
         few = [lines[i] for i in active]
         gradient, tangent = energy_derivatives(few, _select(profile, active), _select(section_points, active), x)
-        return np.where(held[active], 0.0, gradient), _downhill(_held(tangent, held[active]))
+        return np.where(held[active], 0.0, gradient), downhill(_held(tangent, held[active]))
 
     solution = newton(system, np.where(held, 0.0, start), np.ones_like(start), OPTIONS)
     displacement = np.where(solution.converged[:, None], np.where(held, 0.0, solution.x), np.nan)
@@ -113,6 +113,24 @@ def twisted_matrices(
     _, stiffness = energy_derivatives(lines, profile, section_points, displacement)
     mass = mass_matrix(lines, profile, here, angle)
     return here, Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
+
+
+def linear_twist(
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, matrices: Matrices
+) -> FloatArray:
+    """Return the largest twist that eccentric weight would cause at the untwisted line's stiffness: (lines,) [rad].
+
+    It is infinite where the weight turns the line against that stiffness. Beyond some ten degrees it is too large,
+    because the weight pulls less and less sideways.
+    """
+    nodes = matrices.stiffness.shape[-1] // FIELDS
+    gradient, _ = _ice_energy(lines, profile, section_points, np.zeros((len(lines), nodes)))
+    for line, here, values, device in mounted(lines, profile):
+        gradient[line, here] -= np.kron(values, device.load())
+    moment = -gradient[:, THETA::FIELDS][:, 1:-1]
+    turn = solve_systems(matrices.stiffness[:, THETA::FIELDS, THETA::FIELDS][:, 1:-1, 1:-1], moment)
+    against = (turn * moment).sum(axis=-1) < 0.0
+    return np.where(against, np.inf, np.abs(turn).max(axis=-1))
 
 
 def energy_derivatives(
@@ -227,7 +245,7 @@ def _held(tangent: FloatArray, held: BoolArray) -> FloatArray:
     return np.asarray(tangent * (free[:, :, None] & free[:, None, :]) + held[:, :, None] * np.eye(held.shape[1]))
 
 
-def _downhill(tangent: FloatArray) -> FloatArray:
+def downhill(tangent: FloatArray) -> FloatArray:
     """Replace negative eigenvalues by their absolute values: (lines, freedoms, freedoms)."""
     values, vectors = np.linalg.eigh(tangent)
     absolute = (vectors * np.abs(values)[:, None, :]) @ vectors.swapaxes(-1, -2)

@@ -1,7 +1,7 @@
 """From lines to finite element matrices, the basis of both reduced models. Theory sections 2 and 3."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,19 +10,26 @@ from engine.mechanics.cross_sections import Sections, sections, wind_factor
 from engine.mechanics.finite_elements import Matrices, matrices, shape_functions
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
 from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state
+from engine.mechanics.torsional_elements import torsional_elements
+from engine.mechanics.wind_twist import WindTwist, wind_twist
 from engine.models.relative_wind import NodalMotion, local_motion_forms, turned_arms
 from engine.spec import AerodynamicModel, Line, StaticTwist
 
 
 @dataclass(frozen=True, slots=True)
 class Discretization:
-    """Static profile, sections and matrices of a stack of lines; twist is None if it is neglected."""
+    """Static profile, sections and matrices of a stack of lines.
+
+    twist: in still air, None if it is neglected; wind_twist: in the wind, from the state in still air on, None if it is
+    not followed.
+    """
 
     lines: tuple[Line, ...]
     profile: StaticProfile
     sections: Sections
     matrices: Matrices
     twist: TwistedState | None = None
+    wind_twist: WindTwist | None = None
 
 
 def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NEGLECTED) -> Discretization:
@@ -39,6 +46,21 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
         return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
     state = twisted_state(lines, profile, sections_of_lines)
     return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, sections_of_lines, state), state)
+
+
+def with_wind_twist(discretization: Discretization, wind_speeds: FloatArray) -> Discretization:
+    """Add the static twist at rising wind speeds (winds,) [m/s] of lines whose tables are curves. Theory section 14."""
+    system, twist = discretization.matrices, discretization.twist
+    still = np.zeros((len(discretization.lines), 2 * discretization.lines[0].span.elements + 1))
+    elements = torsional_elements(
+        discretization.lines,
+        discretization.profile,
+        discretization.sections,
+        system,
+        still if twist is None else np.nan_to_num(twist.angle),
+    )
+    asked = np.array([line.has_table and not any(line.curve_faults()) for line in discretization.lines])
+    return replace(discretization, wind_twist=wind_twist(elements, wind_speeds, asked))
 
 
 def nodal_motion(

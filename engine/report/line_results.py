@@ -3,6 +3,7 @@
 import numpy as np
 
 from engine import ENGINE_VERSION
+from engine.arrays import BoolArray
 from engine.mechanics.modes import DirectionalShapes
 from engine.models.discretization import Discretization
 from engine.outcome import Outcome
@@ -14,7 +15,16 @@ from engine.report.frequencies import NaturalFrequencies, frequency_rows
 from engine.report.internal_resonances import internal_resonance_rows
 from engine.report.limit_cycles import Motion, limit_cycle_rows
 from engine.report.model_comparisons import model_comparisons
-from engine.report.warnings import dropped_warnings, fit_warnings, line_warnings, rest_warnings, twist_warnings
+from engine.report.static_equilibria import static_equilibrium_rows
+from engine.report.warnings import (
+    dropped_warnings,
+    fit_warnings,
+    line_warnings,
+    neglected_twist_warnings,
+    rest_warnings,
+    twist_warnings,
+    wind_twist_warnings,
+)
 from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
 from engine.spec import AmplitudeCurves, Analysis
 
@@ -54,10 +64,13 @@ def line_results(
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     curves = [amplitude_curve_rows(discretization, model_findings) for model_findings in reported]
     dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
+    neglected = neglected_twist_warnings(discretization, _statically_unstable(findings, len(discretization.lines)))
+    equilibria = static_equilibrium_rows(discretization, np.unique(analysis.wind_speeds))
     results = []
     for i, line in enumerate(discretization.lines):
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
         about_line = line_warnings(line) + rest_warnings(line, analysis) + twist_warnings(discretization, i)
+        about_line += neglected[i] + wind_twist_warnings(discretization, i)
         own_frequencies = tuple(row for table in frequencies for row in table[i])
         results.append(
             Result(
@@ -66,6 +79,7 @@ def line_results(
                 frequencies=own_frequencies,
                 internal_resonances=internal_resonance_rows(own_frequencies),
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
+                static_equilibria=tuple(equilibria[i]),
                 limit_cycles=cycles,
                 bifurcations=tuple(row for table in bifurcations for row in table[i]),
                 amplitude_curves=tuple(row for table in curves for row in table[i]),
@@ -81,6 +95,14 @@ def line_results(
             )
         )
     return results
+
+
+def _statically_unstable(findings: tuple[ModelFindings, ...], lines: int) -> BoolArray:
+    """Return whether a model of each line is statically unstable: (lines,)."""
+    unstable = np.zeros(lines, dtype=np.bool_)
+    for model_findings in findings:
+        unstable[model_findings.line[model_findings.model.statically_unstable]] = True
+    return unstable
 
 
 def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...], tuple[Orbit, ...]]:

@@ -1,10 +1,13 @@
 """The warnings of a result: assumptions that a line does not meet, and solutions that are left out."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from engine.arrays import BoolArray
 from engine.mechanics.static_profile import mean_mass
+from engine.mechanics.static_twist import linear_twist
 from engine.models.discretization import Discretization
 from engine.models.relative_wind import FASTEST
 from engine.outcome import Outcome
@@ -22,6 +25,8 @@ from engine.spec import (
 )
 
 HEAVY_DEVICES = 0.1  # share of the span's weight above which a warning names the devices' weight
+LARGE_TWIST = math.radians(5.0)  # static twist above which a warning names its neglect
+LINEAR_TWIST = math.radians(15.0)  # up to which the linear estimate of the static twist holds within some per cent
 LEAST_INERTIA = 1e-6  # least ratio of the inertias about mass centre and reference curve: M is nearly singular below it
 
 
@@ -80,6 +85,44 @@ def twist_warnings(discretization: Discretization, line: int) -> list[str]:
     if discretization.twist is None or discretization.twist.outcome[line] is Outcome.CONVERGED:
         return []
     return ["The static twist could not be computed; all results refer to the untwisted state."]
+
+
+def wind_twist_warnings(discretization: Discretization, line: int) -> list[str]:
+    """Return a sentence for each table of a line that is no curve, where the twist in the wind is asked for."""
+    if discretization.wind_twist is None:
+        return []
+    return [
+        f"The static equilibria in the wind are not computed, because a table of coefficients is no curve: {fault}."
+        for fault in discretization.lines[line].curve_faults()
+    ]
+
+
+def neglected_twist_warnings(discretization: Discretization, unstable: BoolArray) -> list[list[str]]:
+    """Return a sentence for each line whose neglected static twist matters: one list per line.
+
+    unstable: (lines,), whether a model of the line is statically unstable.
+    """
+    lines = discretization.lines
+    if discretization.twist is not None:
+        return [[] for _ in lines]
+    angle = linear_twist(lines, discretization.profile, discretization.sections, discretization.matrices)
+    return [_neglected_twist(float(a), bool(fails)) for a, fails in zip(angle, unstable, strict=True)]
+
+
+def _neglected_twist(angle: float, unstable: bool) -> list[str]:
+    """Return the sentence about a neglected twist of a size [rad], none if it is small."""
+    if unstable:
+        return [
+            "The ice moment exceeds the torsional stiffness, so the line cannot hang as it was given. Set static_twist "
+            "to solved to analyse it about the angle to which the ice turns it."
+        ]
+    if angle <= LARGE_TWIST:
+        return []
+    size = f"about {math.degrees(angle):.0f}" if angle <= LINEAR_TWIST else f"more than {math.degrees(LARGE_TWIST):.0f}"
+    return [
+        f"Eccentric ice would turn this line by {size} degrees from the angles and eccentricity that were given. They "
+        "are taken as those of the line as it hangs; if they describe the untwisted line, set static_twist to solved."
+    ]
 
 
 def fit_warnings(cycles: Sequence[LimitCycleRow], analysis: Analysis) -> list[str]:

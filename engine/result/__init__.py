@@ -10,6 +10,7 @@ from engine.result.at_rest import (
     Direction,
     FrequencyRow,
     InternalResonanceRow,
+    StaticEquilibriumRow,
     StaticState,
 )
 from engine.result.columns import Column, Table, Title, columns_of, tables_of
@@ -44,6 +45,7 @@ __all__ = [
     "Orbit",
     "PlacedDeviceRow",
     "Result",
+    "StaticEquilibriumRow",
     "StaticState",
     "Table",
     "Tables",

@@ -88,3 +88,19 @@ class CriticalWindSpeedRow:
     direction: Annotated[Direction, Column("Dominant direction of the growing motion", "vertical")]
     frequency_hz: Annotated[float, Column("Frequency of the growing motion; 0 for a divergence", 0.4816, unit="Hz")]
     unstable_pairs_after: Annotated[int, Column("Unstable pairs of eigenvalues above this wind speed", 1, unit="1")]
+
+
+@dataclass(frozen=True, slots=True)
+class StaticEquilibriumRow:
+    """A stable angle at which the sections rest under the mean moment of the wind, counted from still air.
+
+    Theory section 14. The first one at each wind speed is that which a rising wind finds.
+    """
+
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed", 10.0, unit="m/s")]
+    equilibrium: Annotated[int, Column("0 for the one that a rising wind finds, then further ones", 0)]
+    twist_rad: Annotated[
+        float | None, Column("Twist at mid-span; null where no equilibrium was found", 0.0137, unit="rad")
+    ]
+    largest_twist_rad: Annotated[float | None, Column("Twist of largest size along the span", 0.0137, unit="rad")]
+    outcome: OutcomeColumn

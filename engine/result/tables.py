@@ -4,7 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
-from engine.result.at_rest import CriticalWindSpeedRow, DenHartog, FrequencyRow, InternalResonanceRow, StaticState
+from engine.result.at_rest import (
+    CriticalWindSpeedRow,
+    DenHartog,
+    FrequencyRow,
+    InternalResonanceRow,
+    StaticEquilibriumRow,
+    StaticState,
+)
 from engine.result.columns import Table, Title, tables_of
 from engine.result.devices import DeviceEffectRow, PlacedDeviceRow
 from engine.result.motions import (
@@ -27,6 +34,10 @@ class Tables:
     critical_wind_speeds: Annotated[
         tuple[CriticalWindSpeedRow, ...],
         Title("Wind speeds at which the resting span loses or regains stability"),
+    ] = ()
+    static_equilibria: Annotated[
+        tuple[StaticEquilibriumRow, ...],
+        Title("Angles at rest in the wind; empty unless the twist is solved for a table of coefficients"),
     ] = ()
     limit_cycles: Annotated[tuple[LimitCycleRow, ...], Title("Motions at every wind speed")] = ()
     bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Bifurcations of the motions over the wind speed")] = ()

@@ -29,7 +29,9 @@ from engine.spec.devices import (
     TorsionalDamper,
 )
 from engine.spec.environment import (
+    CLOSED,
     GRAVITY,
+    TURN,
     Aerodynamics,
     BlowOut,
     Coefficients,
@@ -45,7 +47,9 @@ from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerC
 from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 
 __all__ = [
+    "CLOSED",
     "GRAVITY",
+    "TURN",
     "AerodynamicModel",
     "Aerodynamics",
     "AirflowSpoiler",

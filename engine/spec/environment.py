@@ -1,5 +1,7 @@
 """Ice, wind and damping of a span."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
@@ -10,6 +12,10 @@ from engine.spec.rules import finite, not_negative, overlap_faults, positive, st
 Coefficients = tuple[float, float, float]
 
 GRAVITY = 9.81  # m/s2
+TURN = 2.0 * math.pi
+LARGEST_STEP = math.radians(20.0)  # between two rows of a table that is used as it stands
+CLOSED = 1e-6  # rad, or relative: a table within this of a full turn covers the circle
+SAME_VALUE = 1e-6  # of the column's largest value: difference of the first and the last row of a circle
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +33,30 @@ class MeasuredCoefficients:
     moment: tuple[float, ...]
     static_angle: float
     half_range: float
+
+    @property
+    def closes_circle(self) -> bool:
+        """Whether the table covers the full circle, with or without a last row that repeats the first."""
+        missing = TURN - (self.angle[-1] - self.angle[0])
+        widest = min(max(b - a for a, b in pairwise(self.angle)), LARGEST_STEP)
+        return missing <= (1.0 + CLOSED) * widest
+
+    def curve_faults(self) -> Iterator[Fault]:
+        """Check that the table is a curve over its angles: without gaps, and the same at both ends of a circle."""
+        steps = [b - a for a, b in pairwise(self.angle)]
+        widest = max(range(len(steps)), key=steps.__getitem__)
+        whole = self.angle[-1] - self.angle[0]
+        if steps[widest] > LARGEST_STEP * (1.0 + CLOSED):
+            rule = f"must not leave a gap of more than {math.degrees(LARGEST_STEP):.0f} degrees between two rows"
+            yield Fault(f"table.{widest + 1}.angle", self.angle[widest + 1], rule)
+        if whole > TURN + CLOSED:
+            yield Fault(f"table.{len(steps)}.angle", self.angle[-1], "must not go beyond one full turn from the first")
+        elif whole > TURN - CLOSED:
+            columns = {"lift": self.lift, "drag": self.drag, "moment": self.moment}
+            for name, column in columns.items():
+                if abs(column[-1] - column[0]) > SAME_VALUE * max(map(abs, column)):
+                    rule = "must be the value of the first row, one full turn before"
+                    yield Fault(f"table.{len(steps)}.{name}", column[-1], rule)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from engine.outcome import Fault, require
 from engine.spec.devices import Device, StretchDevice
-from engine.spec.environment import Damping, Ice, IceSegment, Wind
+from engine.spec.environment import Aerodynamics, Damping, Ice, IceSegment, Wind
 from engine.spec.rules import overlap_faults
 from engine.spec.span import Bundle, Conductor, Span, Supports
 
@@ -42,6 +42,27 @@ class Line:
     def stretches(self) -> tuple[StretchDevice, ...]:
         """The parts of the devices that act on a stretch."""
         return tuple(part for device in self.devices for part in device.stretches)
+
+    @property
+    def coefficients(self) -> Iterator[tuple[str, Aerodynamics]]:
+        """The coefficients of the span, its ice segments and its devices, with the path of what owns them."""
+        yield "ice", self.ice.aerodynamics
+        owners: list[tuple[str, IceSegment | StretchDevice]] = []
+        owners += [(f"ice.segments.{i}", segment) for i, segment in enumerate(self.ice.segments)]
+        owners += [(f"devices.{i}", part) for i, device in enumerate(self.devices) for part in device.stretches]
+        yield from ((path, owner.aerodynamics) for path, owner in owners if owner.aerodynamics is not None)
+
+    @property
+    def has_table(self) -> bool:
+        """Whether any coefficients come from a measured table."""
+        return any(owner.measured is not None for _, owner in self.coefficients)
+
+    def curve_faults(self) -> Iterator[Fault]:
+        """Check that every measured table is a curve over its angles, which only some analyses need."""
+        for path, owner in self.coefficients:
+            if owner.measured is not None:
+                for fault in owner.measured.curve_faults():
+                    yield replace(fault, field=f"{path}.aerodynamics.{fault.field}")
 
     def _stretches_by_field(self) -> Iterator[tuple[str, float, float]]:
         for i, device in enumerate(self.devices):

@@ -1,18 +1,29 @@
+import math
 from dataclasses import replace
+
+import pytest
 
 from engine.spec import (
     AerodynamicModel,
     AirflowSpoiler,
     Analysis,
+    DetuningPendulum,
     IceSegment,
+    Line,
     Model,
     Spacer,
+    StaticTwist,
 )
 from tests.builders import ICE_AT_40, run, source_line
 
 
+def centred(line: Line) -> Line:
+    """Return a line whose ice does not turn it."""
+    return replace(line, ice=replace(line.ice, eccentricity_y=0.0, eccentricity_z=0.0))
+
+
 def test_heavy_devices_and_uneven_ice_carry_a_warning() -> None:
-    line = source_line(1)
+    line = centred(source_line(1))
     span_mass = 2.379 * 125.88
     light = replace(line, devices=(Spacer(60.0, 0.09 * span_mass, 0.0),))
     heavy = replace(line, devices=(Spacer(60.0, 0.11 * span_mass, 0.0),))
@@ -48,3 +59,32 @@ def test_coefficients_at_rest_taken_from_the_line_are_named() -> None:
     assert "ice.segments.0, devices.1 " in said
     published = replace(asked, aerodynamic_model=AerodynamicModel.PUBLISHED)
     assert not any("at rest" in text for text in run(line, published).warnings)
+
+
+def twist_sentences(line: Line, static_twist: StaticTwist = StaticTwist.NEGLECTED) -> list[str]:
+    analysis = Analysis(loops=(1,), wind_speeds=(4.0,), models=(Model.HYBRID,), static_twist=static_twist)
+    return [text for text in run(line, analysis).warnings if "static_twist" in text]
+
+
+def test_a_neglected_twist_of_more_than_five_degrees_carries_a_warning() -> None:
+    pendulum = DetuningPendulum(62.94, 1.0, 0.3, 0.5)
+    hung = replace(centred(source_line(1)), devices=(pendulum,))
+    turn = run(hung, Analysis(loops=(1,), wind_speeds=(), models=(Model.HYBRID,), static_twist=StaticTwist.SOLVED))
+    assert turn.static.twist_rad is not None
+    assert 5.0 < abs(math.degrees(turn.static.twist_rad)) < 15.0
+    (sentence,) = twist_sentences(hung)
+    assert float(sentence.split("about ")[1].split(" ")[0]) == pytest.approx(
+        abs(math.degrees(turn.static.twist_rad)), rel=0.15
+    )
+    (sentence,) = twist_sentences(source_line(1))
+    assert "more than 5 degrees" in sentence
+    assert twist_sentences(source_line(1), StaticTwist.SOLVED) == []
+    assert twist_sentences(source_line(2)) == []
+    assert twist_sentences(centred(source_line(1))) == []
+
+
+def test_a_line_that_ice_would_turn_over_is_told_how_to_find_its_state() -> None:
+    line = replace(source_line(1), span=replace(source_line(1).span, length=300.0))
+    (sentence,) = twist_sentences(line)
+    assert "exceeds the torsional stiffness" in sentence
+    assert twist_sentences(line, StaticTwist.SOLVED) == []
