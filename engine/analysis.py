@@ -2,16 +2,18 @@
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merge_axes
+from engine.checks.bounded_motions import bounded_motions
 from engine.checks.confidence import confidence
 from engine.checks.direct_starts import direct_starts
 from engine.cycles.bifurcations import bifurcations
 from engine.cycles.harmonic_balance import Orbits, resized
 from engine.cycles.known_cycles import Starts
-from engine.cycles.search import Cycles, explicit_starts, find_cycles
+from engine.cycles.search import Cycles, DirectIntegration, explicit_starts, find_cycles
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
@@ -174,8 +176,11 @@ def _analyse_finite_element(
 def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: Analysis) -> ModelFindings:
     """Find all motions of a stack of models at the wind speeds, and check them by direct integration if asked for."""
     model, direct = stack.model, analysis.check is Check.DIRECT
-    integrated_starts = direct_starts(model, winds, analysis.harmonics) if direct else None
-    cycles = find_cycles(model, stack.crossings, winds, starts, analysis.harmonics, integrated_starts)
+    integration = DirectIntegration(
+        starts=direct_starts(model, winds, analysis.harmonics) if direct else None,
+        settle=partial(bounded_motions, model, winds, analysis.harmonics),
+    )
+    cycles = find_cycles(model, stack.crossings, winds, starts, analysis.harmonics, integration)
     bifurcation_points = bifurcations(cycles.branch_sets, cycles.followed, model, stack.crossings)
     tori = quasi_periodic_motions(model, cycles, bifurcation_points, winds, analysis.quasi_periodic)
     return ModelFindings(

@@ -18,6 +18,16 @@ class Outcome(StrEnum):
         "The motion leaves the range of the load: the angles of attack to which the coefficients were fitted, or the "
         "velocities up to which the expanded load holds.",
     )
+    BEYOND_DATA = (
+        "beyond_data",
+        "The motion is larger than the input can vouch for: its angle of attack passes 30 degrees and no fitted range "
+        "is given, or its amplitude passes the static sag.",
+    )
+    NO_BOUNDED_MOTION = (
+        "no_bounded_motion",
+        "No stable motion was found, and every motion integrated from small and large starts passed an angle of attack "
+        "of 180 degrees: nothing in the equations bounds the motion.",
+    )
     LIMIT_REACHED = ("limit_reached", "The computation reached a set limit before it was complete.")
 
     sentence: str

@@ -64,7 +64,7 @@ WITHOUT_A_TEST_FILE = {
     "engine.report.bifurcations": "tests/app/routes/test_further_tables.py holds its rows.",
     "engine.report.cells": "Two helpers that every table uses; tests/engine/test_analysis.py compares their rows.",
     "engine.report.critical_wind_speeds": "tests/validation/test_critical_wind_speeds.py holds its rows.",
-    "engine.report.findings": "It declares a dataclass; tests/engine/test_analysis.py goes through it.",
+    "engine.report.findings": "tests/engine/test_outcome.py and tests/engine/report/test_limit_cycles.py use it.",
     "engine.report.frequencies": "tests/validation/test_table_2.py holds its rows.",
     "engine.result": "It declares dataclasses; tests/app/convert/test_run.py holds their columns.",
     "engine.spec.analysis": RULES,

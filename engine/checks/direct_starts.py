@@ -9,6 +9,7 @@ import numpy as np
 from engine.arrays import FloatArray, IntArray
 from engine.checks.settled_motion import (
     BLOCK_PERIODS,
+    SettledMotions,
     integrate_until_settled,
     lawson_equations,
     lawson_step,
@@ -98,21 +99,31 @@ def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
     state = spread_starts(model, member, wind_speeds[wind], LEVELS, np.random.default_rng(0))
     per_case = state.shape[1]
     member, wind, state = np.repeat(member, per_case), np.repeat(wind, per_case), state.reshape(-1, state.shape[-1])
-    groups = np.array_split(np.arange(member.size), -(-member.size // TOGETHER) or 1)
-    parts = [_settled_cycles(model, member[i], wind_speeds[wind[i]], state[i], harmonics) for i in groups]
-    index = np.concatenate([group[kept] for group, (kept, _) in zip(groups, parts, strict=True)])
-    names = ("coefficients", "angular_frequency", "wind_speed")
-    orbits = Orbits(*(np.concatenate([getattr(cycles, name) for _, cycles in parts]) for name in names))
+    index, orbits = settled_cycles(model, member, wind_speeds[wind], state, harmonics)
     return Starts(member[index], wind[index], orbits)
 
 
-def _settled_cycles(
+def settled_cycles(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, harmonics: int
 ) -> tuple[IntArray, Orbits]:
-    """Integrate starts; return the indices of those that keep moving and the cycles fitted to them."""
-    slowest, fastest = natural_frequency_range(model, member)
-    ratio = np.minimum(fastest / slowest, LARGEST_RATIO)
-    blocks = np.ceil(PERIODS * ratio / BLOCK_PERIODS).astype(np.intp)
+    """Integrate starts (starts, 2 m) of members at wind speeds (starts,).
+
+    Returns
+    -------
+    (cycles,), Orbits
+        Indices of the starts that keep moving, and the cycles fitted to their motions.
+    """
+    groups = np.array_split(np.arange(member.size), -(-member.size // TOGETHER) or 1)
+    parts = [_settled_group(model, member[i], wind_speed[i], start[i], harmonics) for i in groups]
+    index = np.concatenate([group[kept] for group, (kept, _) in zip(groups, parts, strict=True)])
+    names = ("coefficients", "angular_frequency", "wind_speed")
+    return index, Orbits(*(np.concatenate([getattr(cycles, name) for _, cycles in parts]) for name in names))
+
+
+def _settled_group(
+    model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, harmonics: int
+) -> tuple[IntArray, Orbits]:
+    ratio, blocks = _lengths(model, member)
     runs = integrate_until_settled(model, member, wind_speed, start, blocks, STEPS)
     kept = np.flatnonzero(~runs.at_rest & (runs.outcome != Outcome.NO_CONVERGENCE))
     equations = lawson_equations(model, member[kept], wind_speed[kept], STEPS)
@@ -129,6 +140,20 @@ def _settled_cycles(
     shape = (len(cycles), weight.shape[1], 2 * harmonics + 1)
     coefficients = np.array([item[0] for item in cycles]).reshape(shape)
     return kept[moving], Orbits(coefficients, np.array([item[1] for item in cycles]), wind_speed[kept[moving]])
+
+
+def integrated_to_limit(
+    model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray
+) -> SettledMotions:
+    """Integrate starts as `settled_cycles` does, and return what they settled on."""
+    return integrate_until_settled(model, member, wind_speed, start, _lengths(model, member)[1], STEPS)
+
+
+def _lengths(model: ReducedModel, member: IntArray) -> tuple[FloatArray, IntArray]:
+    """Return the bounded ratio of the natural frequencies of members (starts,), and the most blocks of each."""
+    slowest, fastest = natural_frequency_range(model, member)
+    ratio = np.minimum(fastest / slowest, LARGEST_RATIO)
+    return ratio, np.ceil(PERIODS * ratio / BLOCK_PERIODS).astype(np.intp)
 
 
 def _fitted_cycle(

@@ -27,7 +27,7 @@ class KnownCycles:
 
     def __init__(self, model: ReducedModel) -> None:
         """Start with no cycles of a stack of models."""
-        self._model = model
+        self.model = model
         self._locations: list[tuple[int, int]] = []
         self._orbits: list[tuple[FloatArray, float, float]] = []
         self._links: list[tuple[int, int]] = []
@@ -47,7 +47,7 @@ class KnownCycles:
 
     def orbits(self, ids: IntArray) -> Orbits:
         """Return the orbits of the cycles with these numbers."""
-        size = self._model.mass.shape[-1]
+        size = self.model.mass.shape[-1]
         if ids.size == 0:
             return Orbits(np.zeros((0, size, 3)), np.zeros(0), np.zeros(0))
         coefficients, frequency, speed = zip(*(self._orbits[i] for i in ids), strict=True)
@@ -90,13 +90,13 @@ class KnownCycles:
         known = order[np.minimum(first[:, None] + column, order.size - 1)]
         frequency = np.array([orbit[1] for orbit in self._orbits])[known]
         sizes = np.array(self._sizes)[known]
-        size = lengths(_phase_invariants(self._model, starts))[:, None]
+        size = lengths(_phase_invariants(self.model, starts))[:, None]
         near = np.abs(frequency / starts.orbits.angular_frequency[:, None] - 1.0) <= NEAR
         return np.where(near & (column < count[:, None]), np.abs(np.log(sizes / size)), np.inf)
 
     def add(self, starts: Starts, good: BoolArray, found_by: FoundBy) -> IntArray:
         """Record the solutions marked good; return the number of each one's cycle, -1 for the others: (starts,)."""
-        invariants = _phase_invariants(self._model, starts)
+        invariants = _phase_invariants(self.model, starts)
         sizes = lengths(invariants).tolist()
         numbers = np.full(good.size, -1, dtype=np.intp)
         for i in np.flatnonzero(good).tolist():

@@ -4,11 +4,12 @@ Branches are followed from every Hopf point. Every further cycle that a start le
 until no new cycle appears. Cycles on the same branch, or on branches that share a cycle, form a family.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
 from engine.cycles.branches import (
     SLOWEST,
     BranchSet,
@@ -18,17 +19,16 @@ from engine.cycles.branches import (
     guessed_cycles,
 )
 from engine.cycles.first_harmonic import FirstHarmonic, energy_balance_cycles, explicit_cycles
-from engine.cycles.floquet import Floquet, floquet
+from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.cycles.known_cycles import KnownCycles, Starts
-from engine.models.critical_wind_speeds import Crossings
+from engine.cycles.resolution import resolved_stability
+from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
 from engine.models.reduced_model import ReducedModel, lowest_frequency, take
+from engine.outcome import Stability
 from engine.result import FoundBy
 
-LARGEST_TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which a cycle is refined
 SMALLEST = 1e-6  # size relative to the start's, below which a solution is the equilibrium
-MOST_HARMONICS = 12
-STEP_FACTOR = 4  # on the number of steps of the Floquet integration, for cycles that need more harmonics
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +52,30 @@ class Cycles:
     followed: IntArray
     found_by: tuple[FoundBy, ...]
     harmonics: IntArray
+    unbounded: IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """What direct integration tells about wind speeds without a stable cycle.
+
+    starts: approximate cycles, of the motions that did not diverge; unbounded: as in `Cycles`.
+    """
+
+    starts: Starts
+    unbounded: IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class DirectIntegration:
+    """What direct integration adds to the search for cycles.
+
+    starts: all of them are tried; settle: integrates members at wind speeds, both (places,) indices, where neither the
+    static state nor a known cycle is stable.
+    """
+
+    starts: Starts | None = None
+    settle: Callable[[IntArray, IntArray], Settled] | None = None
 
 
 def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
@@ -74,7 +98,7 @@ def find_cycles(
     wind_speeds: FloatArray,
     starts: Starts,
     harmonics: int,
-    integrated: Starts | None = None,
+    integration: DirectIntegration | None = None,
 ) -> Cycles:
     """Find the cycles at the wind speeds that lie on a branch from a Hopf point or that a start leads to.
 
@@ -91,8 +115,7 @@ def find_cycles(
         In rising order [m/s].
     starts : Starts
     harmonics : int
-    integrated : Starts, optional
-        Cycles read from direct integration; all of them are tried.
+    integration : DirectIntegration, optional
 
     Returns
     -------
@@ -107,14 +130,41 @@ def find_cycles(
         _add_cycles_on(known, branch_set, wind_speeds, "hopf_branch")
     known.add(*solve_starts(model, known.new_starts(starts)), "explicit")
     known.add(*solve_starts(model, known.new_starts(energy_starts(model, wind_speeds, harmonics))), "energy_balance")
-    if integrated is not None:
-        known.add(*solve_starts(model, integrated), "direct_integration")
+    integration = integration or DirectIntegration()
+    if integration.starts is not None:
+        known.add(*solve_starts(model, integration.starts), "direct_integration")
+    _follow_new_cycles(known, branch_sets, wind_speeds)
+    cycles = _sorted_cycles(model, known, tuple(branch_sets))
+    member, wind = _without_stable_motion(model, cycles, wind_speeds)
+    if integration.settle is None or member.size == 0:
+        return cycles
+    settled = integration.settle(member, wind)
+    before = len(known)
+    known.add(*solve_starts(model, settled.starts), "direct_integration")
+    if len(known) > before:
+        _follow_new_cycles(known, branch_sets, wind_speeds)
+        cycles = _sorted_cycles(model, known, tuple(branch_sets))
+    return replace(cycles, unbounded=settled.unbounded)
+
+
+def _follow_new_cycles(known: KnownCycles, branch_sets: list[BranchSet], wind_speeds: FloatArray) -> None:
+    """Follow cycles that lie on no branch yet, both ways, until no new cycle appears; append their branches."""
     while (unfollowed := known.unfollowed()).size:
         member, _ = known.locations(unfollowed)
-        branch_set = follow_from_cycles(model, member, known.orbits(unfollowed), wind_speeds)
+        branch_set = follow_from_cycles(known.model, member, known.orbits(unfollowed), wind_speeds)
         known.link(_add_cycles_on(known, branch_set, wind_speeds, "branch"), np.tile(unfollowed, 2))
         branch_sets.append(branch_set)
-    return _sorted_cycles(model, known, tuple(branch_sets))
+
+
+def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
+    """Return member and wind speed index (places,) where neither the static state nor a known cycle is stable."""
+    stable = np.repeat(model.statically_unstable[:, None], wind_speeds.size, axis=1)
+    lasting = np.asarray(cycles.floquet.stability == Stability.STABLE, dtype=np.bool_)
+    stable[cycles.member[lasting], cycles.wind[lasting]] = True
+    member, wind = np.nonzero(~stable)
+    values = eigenvalues(at_wind(state_matrices(take(model, member)), wind_speeds[wind]))
+    unstable = unstable_pairs(values) > 0
+    return member[unstable], wind[unstable]
 
 
 def _branches_from_hopf_points(
@@ -193,58 +243,7 @@ def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[B
         followed,
         tuple(found_by[i] for i in order.tolist()),
         harmonics[order],
-    )
-
-
-def resolved_stability(
-    model: ReducedModel, member: IntArray, orbits: Orbits
-) -> tuple[Orbits, Floquet, BoolArray, IntArray]:
-    """Compute the stability of cycles (k,), with more harmonics and finer steps where the first ones are too coarse.
-
-    Returns
-    -------
-    Orbits, Floquet, (k,), (k,)
-        The cycles, their stability, which of them are resolved, and the number of harmonics of each.
-    """
-    floquet_result = floquet(model, member, orbits)
-    largest = np.abs(floquet_result.multipliers).max(axis=-1, initial=1.0)
-    coarse = np.flatnonzero(
-        (_tail(model, member, orbits) > LARGEST_TAIL) | (floquet_result.trivial_error > LARGEST_TAIL * largest)
-    )
-    resolved = np.ones(member.size, dtype=np.bool_)
-    harmonics = np.full(member.size, orbits.coefficients.shape[-1] // 2)
-    if coarse.size:
-        orbits, floquet_result, resolved[coarse] = _refined(model, member, orbits, floquet_result, coarse)
-        harmonics[coarse] = orbits.coefficients.shape[-1] // 2
-    return orbits, floquet_result, resolved, harmonics
-
-
-def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return the share of the last two harmonics in the size of each cycle; 0 for fewer than three harmonics."""
-    if orbits.coefficients.shape[-1] // 2 < 3:
-        return np.zeros(member.size)
-    last = Orbits(orbits.coefficients[..., -5:], orbits.angular_frequency, orbits.wind_speed)
-    return oscillation_size(model, member, last) / oscillation_size(model, member, orbits)
-
-
-def _refined(
-    model: ReducedModel, member: IntArray, orbits: Orbits, floquet_result: Floquet, coarse: IntArray
-) -> tuple[Orbits, Floquet, BoolArray]:
-    """Solve coarse cycles again with more harmonics; return all cycles, their stability and which are now resolved."""
-    harmonics = max(MOST_HARMONICS, orbits.coefficients.shape[-1] // 2)
-    finer, solution = balance(model, member[coarse], resized(select(orbits, coarse), harmonics))
-    finer_result = floquet(model, member[coarse], finer, STEP_FACTOR)
-    orbits = resized(orbits, harmonics)
-    orbits.coefficients[coarse] = finer.coefficients
-    frequency, multipliers = orbits.angular_frequency.copy(), floquet_result.multipliers.copy()
-    error, stability = floquet_result.trivial_error.copy(), floquet_result.stability.copy()
-    frequency[coarse], multipliers[coarse] = finer.angular_frequency, finer_result.multipliers
-    error[coarse], stability[coarse] = finer_result.trivial_error, finer_result.stability
-    resolved_again = solution.converged & (_tail(model, member[coarse], finer) <= LARGEST_TAIL)
-    return (
-        Orbits(orbits.coefficients, frequency, orbits.wind_speed),
-        Floquet(multipliers, error, stability),
-        resolved_again,
+        np.zeros((0, 2), dtype=np.intp),
     )
 
 
@@ -255,4 +254,6 @@ def _no_cycles(model: ReducedModel, branch_sets: tuple[BranchSet, ...], followed
     floquet_result = Floquet(np.zeros((0, 2 * m), dtype=np.complex128), empty, np.zeros(0, dtype=np.object_))
     orbits = Orbits(np.zeros((0, m, 3)), empty, empty)
     dropped = np.zeros(model.mass.shape[0], dtype=np.intp)
-    return Cycles(none, none, none, orbits, floquet_result, dropped, branch_sets, followed, (), none)
+    return Cycles(
+        none, none, none, orbits, floquet_result, dropped, branch_sets, followed, (), none, none.reshape(0, 2)
+    )

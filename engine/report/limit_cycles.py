@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, eigenvalues
+from engine.checks.data_limits import motion_outcomes
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
 from engine.mechanics.static_profile import horizontal_position
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
@@ -15,14 +16,14 @@ from engine.models.discretization import Discretization, nodal_motion, observati
 from engine.models.relative_wind import FASTEST, largest_reach
 from engine.outcome import Outcome, Stability
 from engine.report.cells import finite_or_none, lists_by_line
-from engine.report.findings import ModelFindings
+from engine.report.findings import MissingMotions, ModelFindings, missing_motions
 from engine.report.internal_resonances import divide_by_direction, motion_shares
 from engine.result import LimitCycleRow
 from engine.spec import AerodynamicModel, Analysis
 from engine.tori.spectrum import amplitude_range, base_frequencies, mean_square_velocity, sampled_states
 
 REACH_SAMPLES = 48
-_UNSTABLE, _NOT_FOUND = Outcome.STATICALLY_UNSTABLE, Outcome.NO_CONVERGENCE
+_UNSTABLE = Outcome.STATICALLY_UNSTABLE
 _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
 _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
@@ -90,7 +91,7 @@ class _RowKeys:
 
 
 def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales) -> Iterator[tuple[int, Motion]]:
-    """Yield rows of the static state, and of wind speeds where it is unstable to oscillation but no cycle was found."""
+    """Yield rows of the static state, and of wind speeds where it is unstable and no stable motion is known."""
     members, winds = findings.line.size, findings.winds.size
     values = eigenvalues(at_wind(state_matrices(findings.model), np.broadcast_to(findings.winds, (members, winds))))
     size = np.abs(values).max(axis=-1, initial=0.0)
@@ -108,23 +109,19 @@ def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales
         "outcome": [_UNSTABLE if missing else Outcome.CONVERGED for missing in static[member].tolist()],
     }
     yield from _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
-    oscillating = ((values.real > 0.0) & (values.imag > 0.0)).any(axis=-1) & ~static[:, None]
-    oscillating[findings.cycles.member, findings.cycles.wind] = False
     # One row, with the loops of the first coordinate, stands for all unstable modes of a member.
-    oscillating &= np.isin(findings.loops[:, :1], loops)
-    yield from _without_motion(findings, scales, np.argwhere(oscillating), "periodic")
+    shown = np.isin(findings.loops[:, :1], loops) & ~static[:, None]
+    yield from _without_motion(findings, scales, missing_motions(findings, growing & shown))
 
 
-def _without_motion(
-    findings: ModelFindings, scales: _Scales, missing: IntArray, kind: str
-) -> Iterator[tuple[int, Motion]]:
-    """Yield a row for each member and wind speed index (k, 2) where a motion must exist but none was found."""
-    member, wind = missing.reshape(-1, 2).T
-    keys = _RowKeys(findings.line[member], findings.loops[member, 0], findings.winds[wind])
+def _without_motion(findings: ModelFindings, scales: _Scales, missing: MissingMotions) -> Iterator[tuple[int, Motion]]:
+    """Yield a row for each wind speed where a stable motion must exist but none is known."""
+    member = missing.member
+    keys = _RowKeys(findings.line[member], findings.loops[member, 0], findings.winds[missing.wind])
     labels: dict[str, Iterable[Any]] = {
-        "kind": repeat(kind),
+        "kind": missing.kind,
         "stability": repeat(Stability.UNKNOWN),
-        "outcome": repeat(_NOT_FOUND),
+        "outcome": missing.outcome,
     }
     return _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), labels)
 
@@ -146,31 +143,17 @@ def _cycles(
     state = states(cycles.orbits, 2.0 * np.pi * np.arange(REACH_SAMPLES) / REACH_SAMPLES)
     motion = nodal_motion(discretization, findings.line, findings.model.shapes, model)
     reach = largest_reach(motion, cycles.member, state)
+    measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
         "stability": cycles.floquet.stability.tolist(),
         "branch": cycles.branch.tolist(),
         "found_by": cycles.found_by,
         "harmonics": cycles.harmonics.tolist(),
-        "outcome": _outcomes(discretization, line, reach, model),
+        "outcome": _outcomes(discretization, line, measures, model),
     }
     keys = _RowKeys(line, loops, cycles.orbits.wind_speed)
-    measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
     return _rows(findings, scales, keys, measures, labels, series)
-
-
-def _outcomes(
-    discretization: Discretization, line: IntArray, reach: FloatArray, model: AerodynamicModel
-) -> list[Outcome]:
-    """Tell which motions leave the range that the coefficients were fitted to, or that of the expanded load.
-
-    reach: (2, motions), largest angles of attack and velocities.
-    """
-    angle, velocity = reach
-    outside = angle > discretization.sections.fitted_range[line]
-    if model is not AerodynamicModel.PUBLISHED:
-        outside |= velocity > FASTEST
-    return [Outcome.OUTSIDE_FIT if beyond else Outcome.CONVERGED for beyond in outside.tolist()]
 
 
 def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
@@ -191,7 +174,7 @@ def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArr
 def _quasi_periodic_motions(
     discretization: Discretization, findings: ModelFindings, model_of_wind: AerodynamicModel, scales: _Scales
 ) -> Iterator[tuple[int, Motion]]:
-    """Yield rows of all quasi-periodic motions, and of wind speeds where one must exist but none was found."""
+    """Yield the rows of all quasi-periodic motions."""
     known, model = findings.quasi_periodic, findings.model
     tori, member, line = known.tori, known.member, findings.line[known.member]
     frequency, _ = base_frequencies(model, member, tori)
@@ -219,10 +202,20 @@ def _quasi_periodic_motions(
         "branch": known.branch.tolist(),
         "found_by": known.found_by,
         "harmonics": repeat(tori.order[0]),
-        "outcome": _outcomes(discretization, line, reach, model_of_wind),
+        "outcome": _outcomes(discretization, line, measures, model_of_wind),
     }
-    yield from _rows(findings, scales, _RowKeys(line, loops, tori.wind_speed), measures, labels)
-    yield from _without_motion(findings, scales, known.missing, "quasi_periodic")
+    return _rows(findings, scales, _RowKeys(line, loops, tori.wind_speed), measures, labels)
+
+
+def _outcomes(
+    discretization: Discretization, line: IntArray, measures: Mapping[str, FloatArray], model: AerodynamicModel
+) -> list[Outcome]:
+    """Return the outcomes of computed motions of lines (motions,)."""
+    angle, velocity = (measures[name] for name in _REACH)
+    amplitudes = np.stack([measures[name] for name in _AMPLITUDES[:2]])
+    sag, fitted_range = discretization.profile.sag[line], discretization.sections.fitted_range[line]
+    too_fast = (velocity > FASTEST) & (model is not AerodynamicModel.PUBLISHED)
+    return motion_outcomes(angle, fitted_range, too_fast, amplitudes, sag)
 
 
 def _rows(

@@ -20,6 +20,7 @@ from engine.report.warnings import (
     dropped_warnings,
     fit_warnings,
     line_warnings,
+    motion_warnings,
     neglected_twist_warnings,
     rest_warnings,
     twist_warnings,
@@ -89,6 +90,7 @@ def line_results(
                 warnings=(
                     *about_line,
                     *fit_warnings(cycles, analysis),
+                    *motion_warnings(cycles),
                     *(text for table in dropped for text in table[i]),
                 ),
                 engine_version=ENGINE_VERSION,

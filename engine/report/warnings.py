@@ -1,6 +1,7 @@
 """The warnings of a result: assumptions that a line does not meet, and solutions that are left out."""
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,7 +11,7 @@ from engine.mechanics.static_profile import mean_mass
 from engine.mechanics.static_twist import linear_twist
 from engine.models.discretization import Discretization
 from engine.models.relative_wind import FASTEST
-from engine.outcome import Outcome
+from engine.outcome import Outcome, Stability
 from engine.report.findings import ModelFindings
 from engine.result import LimitCycleRow
 from engine.spec import (
@@ -27,6 +28,13 @@ from engine.spec import (
 HEAVY_DEVICES = 0.1  # share of the span's weight above which a warning names the devices' weight
 LARGE_TWIST = math.radians(5.0)  # static twist above which a warning names its neglect
 LINEAR_TWIST = math.radians(15.0)  # up to which the linear estimate of the static twist holds within some per cent
+MOTION_WARNINGS = {
+    Outcome.BEYOND_DATA: "{} motions reach beyond what the input can vouch for: an angle of attack over 30 degrees "
+    "although no range of the coefficients is given (fitted_range_deg), or an amplitude over the static sag. They "
+    "satisfy the equations; whether the line moves like that is not known.",
+    Outcome.NO_BOUNDED_MOTION: "At {} combinations of model, loops and wind speed no motion is bounded: every motion "
+    "that was integrated grew past an angle of attack of 180 degrees.",
+}
 LEAST_INERTIA = 1e-6  # least ratio of the inertias about mass centre and reference curve: M is nearly singular below it
 
 
@@ -140,6 +148,14 @@ def fit_warnings(cycles: Sequence[LimitCycleRow], analysis: Analysis) -> list[st
             "velocity and does not hold there."
         )
     return result
+
+
+def motion_warnings(motions: Sequence[LimitCycleRow]) -> list[str]:
+    """Return a sentence for each way in which motions go beyond what the input carries, and for missing ones."""
+    # An unstable cycle without data to carry it is no motion that anyone would see, so its row says enough.
+    told = (m.outcome for m in motions if (m.outcome, m.stability) != (Outcome.BEYOND_DATA, Stability.UNSTABLE))
+    counts = Counter(told)
+    return [text.format(counts[outcome]) for outcome, text in MOTION_WARNINGS.items() if counts[outcome]]
 
 
 def dropped_warnings(findings: ModelFindings, lines: int) -> list[list[str]]:

@@ -84,7 +84,12 @@ class LimitCycleRow:
     ]
     detuning_sensitivity: Annotated[
         float | None,
-        Column("Relative change of the amplitude if the horizontal frequency rises by 0.1 %", -0.0031, unit="1"),
+        Column(
+            "Relative change of the amplitude if the horizontal frequency shifts by 0.1 %, up or down, whichever "
+            "changes it more; null if the cycle does not survive one of the two",
+            -0.0031,
+            unit="1",
+        ),
     ]
     direct_difference: Annotated[
         float | None,

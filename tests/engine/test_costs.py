@@ -6,7 +6,7 @@ from benchmarks.engine_speed import STANDARD_JOB, analysed
 from benchmarks.lines import random_line
 from benchmarks.measure import numpy_forms, recorded_lapack
 
-STEPS_A_CYCLE = 12.5  # of Newton's method for each cycle found: branches and confidence included
+STEPS_A_CYCLE = 15.0  # of Newton's method for each cycle found: branches and confidence included; detuning takes four
 CALLS_A_STACK = 700
 
 

@@ -19,16 +19,19 @@ def linear_line() -> Line:
 
 
 def test_every_outcome_has_its_word_and_its_sentence() -> None:
-    words = ["converged", "no_convergence", "statically_unstable", "outside_fit", "limit_reached"]
+    words = ["converged", "no_convergence", "statically_unstable", "outside_fit", "beyond_data", "no_bounded_motion"]
+    words.append("limit_reached")
     assert [outcome.value for outcome in Outcome] == words
     sentences = [outcome.sentence for outcome in Outcome]
     assert len(set(sentences)) == len(Outcome)
     assert all(len(sentence.split()) > 3 and sentence.endswith(".") for sentence in sentences)
 
 
-def test_a_wind_speed_without_a_cycle_to_converge_to_has_its_row_and_stops_no_other() -> None:
-    rows = run(linear_line(), BOTH).limit_cycles
-    lost = [row for row in rows if row.outcome is Outcome.NO_CONVERGENCE]
+def test_a_wind_speed_without_bounded_motion_has_its_row_and_stops_no_other() -> None:
+    result = run(linear_line(), BOTH)
+    rows = result.limit_cycles
+    lost = [row for row in rows if row.outcome is Outcome.NO_BOUNDED_MOTION]
+    assert any("no motion is bounded" in warning for warning in result.warnings)
     assert {row.wind_speed_m_per_s for row in lost} == {4.0, 6.0}
     assert {row.model for row in lost} == set(BOTH.models)
     assert {row.stability for row in lost} == {Stability.UNKNOWN}

@@ -10,7 +10,8 @@ from engine.checks.direct_starts import WINDS, direct_starts
 from engine.cycles import search
 from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select
 from engine.cycles.known_cycles import Starts
-from engine.cycles.search import Cycles, find_cycles, resolved_stability, solve_starts
+from engine.cycles.resolution import resolved_stability
+from engine.cycles.search import Cycles, DirectIntegration, find_cycles, solve_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
@@ -74,7 +75,7 @@ def test_a_cycle_that_nothing_else_leads_to_is_found_and_followed(monkeypatch: p
     monkeypatch.setattr(search, "energy_starts", lambda *_: nothing)
 
     def found(integrated: Starts | None) -> Cycles:
-        return find_cycles(model, none, winds, nothing, 5, integrated)
+        return find_cycles(model, none, winds, nothing, 5, DirectIntegration(integrated))
 
     assert found(None).member.size == 0
     alone = found(direct_starts(model, winds, 5))

@@ -6,7 +6,7 @@ import pytest
 from engine.models.relative_wind import FASTEST
 from engine.outcome import Outcome
 from engine.spec import AerodynamicModel, Analysis, Line, Model
-from tests.builders import ICE_AT_40, run, source_line, stable_cycles
+from tests.builders import ICE_AT_40, only, run, source_line, stable_cycles
 
 SHORT = Analysis(loops=(1, 2), wind_speeds=(5.0,))
 
@@ -120,3 +120,37 @@ def test_a_cycle_beyond_the_range_of_the_expanded_load_says_so() -> None:
     count = sum(row.outcome is Outcome.OUTSIDE_FIT for row in cycles)
     assert count
     assert any(text.startswith(f"In {count} cycles a sub-conductor moves faster") for text in result.warnings)
+
+
+def test_a_stable_cycle_larger_than_the_sag_keeps_its_numbers_and_says_what_it_is() -> None:
+    line = source_line(2)
+    wide = replace(line, ice=replace(line.ice, aerodynamics=replace(ICE_AT_40, fitted_range=3.0)))
+    for x in (line, wide):
+        result = run(x, only(Model.HYBRID, loops=(2,), wind_speeds=(6.0, 10.0)))
+        small, large = (stable_cycles(result, loops=2, wind_speed=wind)[0] for wind in (6.0, 10.0))
+        assert (small.horizontal_ratio, large.horizontal_ratio) == pytest.approx((0.615, 1.787), abs=2e-3)
+        assert (small.outcome, large.outcome) == (Outcome.CONVERGED, Outcome.BEYOND_DATA)
+        assert sum("over the static sag" in warning for warning in result.warnings) == 1
+
+
+def test_an_unstable_cycle_beyond_thirty_degrees_has_its_outcome_but_no_warning() -> None:
+    result = run(source_line(1), only(Model.HYBRID, loops=(1,), wind_speeds=(6.0,)))
+    (row,) = (row for row in result.limit_cycles if row.stability == "unstable" and row.kind == "periodic")
+    assert row.largest_angle_of_attack_rad == pytest.approx(0.847, abs=2e-3)
+    assert row.outcome is Outcome.BEYOND_DATA
+    assert not any("vouch for" in warning for warning in result.warnings)
+
+
+def test_a_wind_speed_without_a_stable_motion_says_so_whatever_its_unstable_cycles_are() -> None:
+    # With the cubic coefficient of lift turned round the cycle is unstable: it bounds the basin of rest, and beyond the
+    # critical wind speed nothing bounds the motion.
+    line = source_line(2)
+    lift = (ICE_AT_40.vertical[0], ICE_AT_40.vertical[1], -ICE_AT_40.vertical[2])
+    line = replace(line, ice=replace(line.ice, aerodynamics=replace(ICE_AT_40, vertical=lift)))
+    result = run(line, only(Model.HYBRID, loops=(1,), wind_speeds=(2.0, 6.0)))
+    for wind in (2.0, 6.0):
+        rows = [row for row in result.limit_cycles if row.wind_speed_m_per_s == wind]
+        stable = any(row.stability == "stable" for row in rows)
+        missing = [row.outcome for row in rows if row.vertical_m is None]
+        assert stable != bool(missing)
+        assert missing in ([], [Outcome.NO_BOUNDED_MOTION])

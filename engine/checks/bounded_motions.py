@@ -1,0 +1,64 @@
+"""Whether a bounded motion exists where no stable one is known, and starts near it. Theory sections 7.5 and 12."""
+
+import numpy as np
+
+from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.checks.direct_starts import integrated_to_limit, settled_cycles, spread_starts
+from engine.cycles.known_cycles import Starts
+from engine.cycles.search import Settled
+from engine.models.reduced_model import ReducedModel
+from engine.outcome import Outcome
+
+LEVELS = (0.03, 0.3)  # rad of torsion, or of the change of wind direction by vertical motion
+ROUNDS = 10  # of integration, each as long as a direct start: weak growth needs many periods
+SEED = 0
+
+
+def bounded_motions(
+    model: ReducedModel, wind_speeds: FloatArray, harmonics: int, member: IntArray, wind: IntArray
+) -> Settled:
+    """Integrate small and large starts at wind speeds where the static state is unstable.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    wind_speeds : (winds,)
+        [m/s].
+    harmonics : int
+    member, wind : (places,)
+        Indices of statically stable members and of their wind speeds.
+
+    Returns
+    -------
+    Settled
+        Starts of cycles, approximate, from the motions that did not diverge, and the places where every start diverged.
+    """
+    state = spread_starts(model, member, wind_speeds[wind], LEVELS, np.random.default_rng(SEED))
+    place = np.repeat(np.arange(member.size), state.shape[1])
+    state = state.reshape(place.size, -1)
+    diverged = _diverged(model, member[place], wind_speeds[wind[place]], state, place)
+    bounded = np.flatnonzero(~diverged)
+    own = place[bounded]
+    index, orbits = settled_cycles(model, member[own], wind_speeds[wind[own]], state[bounded], harmonics)
+    everywhere = np.bincount(own, minlength=member.size) == 0
+    return Settled(Starts(member[own[index]], wind[own[index]], orbits), np.stack([member, wind], axis=-1)[everywhere])
+
+
+def _diverged(
+    model: ReducedModel, member: IntArray, wind_speed: FloatArray, state: FloatArray, place: IntArray
+) -> BoolArray:
+    """Return which starts (starts, 2 m) diverge; leave the last state of the others in their place.
+
+    Where some starts of a place diverge, those that still change at the end are integrated for further rounds.
+    """
+    diverged, active = np.zeros(place.size, dtype=np.bool_), np.arange(place.size)
+    for _ in range(ROUNDS):
+        if active.size == 0:
+            break
+        runs = integrated_to_limit(model, member[active], wind_speed[active], state[active])
+        state[active] = runs.state
+        diverged[active] = runs.outcome == Outcome.NO_CONVERGENCE
+        changing = active[np.asarray(runs.outcome == Outcome.LIMIT_REACHED, dtype=np.bool_)]
+        active = changing[np.isin(place[changing], place[diverged])]
+    return diverged

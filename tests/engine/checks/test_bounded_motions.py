@@ -1,0 +1,29 @@
+"""Motions that stay bounded are told from those that diverge, against equations whose end is known."""
+
+import numpy as np
+import pytest
+
+from engine.checks.bounded_motions import bounded_motions
+from engine.cycles.harmonic_balance import half_peak_to_peak
+from tests.builders import Oscillators, hand_made
+
+GROWTH = 0.02
+WINDS = np.array([1.0, 2.0])
+
+
+def test_of_two_wind_speeds_one_has_a_cycle_and_one_has_none() -> None:
+    # q'' + q = mu (U - (3 - 2 U) q^2) q' / U: at U = 1 van der Pol's cycle of amplitude 2, at U = 2 growth without end.
+    terms: dict[tuple[int, tuple[int, ...]], float] = {(0, (1,)): GROWTH, (0, (0, 0, 1)): -GROWTH}
+    bounded = hand_made(Oscillators(np.eye(1), np.zeros((1, 1)), np.eye(1), terms))
+    unbounded = hand_made(
+        Oscillators(np.eye(1), np.zeros((1, 1)), np.eye(1), {(0, (1,)): GROWTH, (0, (0, 0, 1)): GROWTH})
+    )
+    place = np.zeros(1, dtype=np.intp)
+    settled = bounded_motions(bounded, WINDS, 5, place, place)
+    assert settled.unbounded.shape == (0, 2)
+    assert set(settled.starts.member.tolist()) == {0}
+    assert set(settled.starts.wind.tolist()) == {0}
+    assert half_peak_to_peak(settled.starts.orbits.coefficients) == pytest.approx(2.0, rel=1e-3)
+    diverged = bounded_motions(unbounded, WINDS, 5, place, place + 1)
+    assert diverged.unbounded.tolist() == [[0, 1]]
+    assert diverged.starts.member.size == 0

@@ -1,0 +1,47 @@
+"""Cycles that a few harmonics do not resolve are solved again with more, and only those."""
+
+import numpy as np
+
+from engine.cycles.floquet import floquet
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select
+from engine.cycles.resolution import LARGEST_TAIL, MOST_HARMONICS, resolved_stability
+from engine.models.reduced_model import ReducedModel
+from engine.outcome import Stability
+from tests.builders import Oscillators, hand_made
+
+SPEED = np.array([1.0])
+ONE = np.zeros(1, dtype=np.intp)
+
+
+def van_der_pol(mu: float) -> ReducedModel:
+    terms: dict[tuple[int, tuple[int, ...]], float] = {(0, (1,)): mu, (0, (0, 0, 1)): -mu}
+    return hand_made(Oscillators(np.eye(1), np.zeros((1, 1)), np.eye(1), terms))
+
+
+def cycle(model: ReducedModel, harmonics: int) -> Orbits:
+    start = Orbits(np.array([[[0.0, 2.0, 0.0]]]), np.ones(1), SPEED)
+    orbits, solution = balance(model, ONE, resized(start, harmonics))
+    assert solution.converged.all()
+    return orbits
+
+
+def test_a_smooth_cycle_keeps_its_harmonics_and_a_sharp_one_gets_more() -> None:
+    smooth, sharp = (van_der_pol(mu) for mu in (0.01, 0.5))
+    orbits, judged, resolved, harmonics = resolved_stability(smooth, ONE, cycle(smooth, 5))
+    assert (harmonics.tolist(), resolved.tolist(), judged.stability.tolist()) == ([5], [True], [Stability.STABLE])
+    assert orbits.coefficients.shape[-1] == 11
+    orbits, judged, resolved, harmonics = resolved_stability(sharp, ONE, cycle(sharp, 3))
+    assert (harmonics.tolist(), resolved.tolist()) == ([MOST_HARMONICS], [True])
+    exact = cycle(sharp, 30)
+    assert np.abs(half_peak_to_peak(orbits.coefficients) / half_peak_to_peak(exact.coefficients) - 1.0).max() < 1e-5
+    finest = floquet(sharp, ONE, exact, 8)
+    assert np.abs(judged.multipliers - finest.multipliers).max() < LARGEST_TAIL
+
+
+def test_a_cycle_that_more_harmonics_do_not_resolve_either_is_said_to_be_unresolved() -> None:
+    model = van_der_pol(6.0)
+    start = select(cycle(van_der_pol(2.0), 8), ONE)
+    for mu in (3.0, 4.0, 5.0, 6.0):
+        start, _ = balance(van_der_pol(mu), ONE, start)
+    _, _, resolved, _ = resolved_stability(model, ONE, start)
+    assert resolved.tolist() == [False]
