@@ -71,6 +71,7 @@ WITHOUT_A_TEST_FILE = {
     "engine.spec.devices": RULES,
     "engine.spec.environment": RULES,
     "engine.spec.line": RULES,
+    "engine.spec.physics": RULES,
     "engine.spec.placement": "tests/engine/studies/test_placement.py holds its rules.",
     "engine.spec.rules": RULES,
     "engine.spec.span": RULES,

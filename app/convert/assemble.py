@@ -118,28 +118,23 @@ def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Li
     comparable = line or _apart_from_positions(values)
     if comparable is not None and options is not None:
         _compare(gathered, comparable, options)
+        if "analysis" not in gathered.neutral:
+            with_physics = partial(spec.with_physics, comparable, analysis, parts.physics(options))
+            analysis = gathered.attempt("analysis.", with_physics) or _NEUTRAL_ANALYSIS
     return line, analysis, gathered.faults
 
 
 def _compare(gathered: Gathered, line: spec.Line, options: schemas.Analysis) -> None:
-    """Check a line against the options of an analysis; check conflicting options one by one to find all faults."""
+    """Check a line against the options of an analysis, and apart from these against its physics, to find all faults."""
     loops, more_loops = tuple(options.loops), tuple(options.finite_element_loops)
-    for choice in _choices(loops, more_loops, options.closure, options.aerodynamic_model):
+    bare = _without_physics(loops, more_loops, spec.Closure(options.closure))
+    for choice in (bare, spec.with_physics(line, _NEUTRAL_ANALYSIS, parts.physics(options))):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
 
 
-@lru_cache
-def _choices(
-    loops: tuple[int, ...], more_loops: tuple[int, ...], closure: str, aerodynamic_model: str
-) -> tuple[spec.Analysis, ...]:
-    # Cached, because all lines of a batch have the same options: it saves 33 of 118 us in the check of a line.
-    options = replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops)
-    closed = replace(_NEUTRAL_ANALYSIS, closure=spec.Closure(closure))
-    modelled = replace(_NEUTRAL_ANALYSIS, aerodynamic_model=spec.AerodynamicModel(aerodynamic_model))
-    try:
-        return (replace(options, closure=closed.closure, aerodynamic_model=modelled.aerodynamic_model),)
-    except InvalidSpec:
-        return options, closed, modelled
+@lru_cache  # all lines of a batch have the same options
+def _without_physics(loops: tuple[int, ...], more_loops: tuple[int, ...], closure: spec.Closure) -> spec.Analysis:
+    return replace(_NEUTRAL_ANALYSIS, loops=loops, finite_element_loops=more_loops, closure=closure)
 
 
 def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:

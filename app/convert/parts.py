@@ -7,6 +7,7 @@ knows it, otherwise at the part itself.
 import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
+from enum import StrEnum
 from typing import Any, TypeVar
 
 from app import schemas
@@ -14,6 +15,7 @@ from app.schemas.placement import Range
 from engine import spec
 from engine.outcome import Fault, InvalidSpec, require
 
+Choice = TypeVar("Choice", bound=StrEnum)
 Made = TypeVar("Made", bound=spec.Device | spec.PendulumChoice | spec.SpoilerChoice)
 
 DEVICES: Mapping[str, type[spec.Device]] = {
@@ -150,15 +152,26 @@ def _choice(part: schemas.PendulumChoice | schemas.SpoilerChoice) -> spec.Pendul
         raise InvalidSpec(*(replace(f, field=f"choice.{f.field}") for f in error.faults)) from error
 
 
+def physics(part: schemas.Analysis) -> spec.PhysicsRequest:
+    """Build what was asked of the physics."""
+    return spec.PhysicsRequest(
+        physics=_choice_of(spec.Physics, part.physics),
+        aerodynamic_model=_choice_of(spec.AerodynamicModel, part.aerodynamic_model),
+        longitudinal_inertia=_choice_of(spec.LongitudinalInertia, part.longitudinal_inertia),
+    )
+
+
+def _choice_of(options: type[Choice], word: str | None) -> Choice | None:
+    return None if word is None else options(word)
+
+
 def analysis(part: schemas.Analysis) -> spec.Analysis:
-    """Build the analysis."""
+    """Build the analysis, except what its physics decides."""
     return spec.Analysis(
         loops=tuple(part.loops),
         models=tuple(spec.Model(model) for model in part.models),
         wind_speeds=part.speeds(),
         closure=spec.Closure(part.closure),
-        aerodynamic_model=spec.AerodynamicModel(part.aerodynamic_model),
-        longitudinal_inertia=spec.LongitudinalInertia(part.longitudinal_inertia),
         critical_wind_limit=part.critical_wind_limit,
         harmonics=part.harmonics,
         finite_element_loops=tuple(part.finite_element_loops),

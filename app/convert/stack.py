@@ -1,6 +1,5 @@
 """Run many lines under one analysis, in stacks of the engine, with one point for each line."""
 
-import itertools
 import logging
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -99,7 +98,7 @@ def seconds_a_line(analysis: schemas.Analysis) -> float:
 
 
 def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> Iterator[Advance | PointResult]:
-    """Run many lines, those with equal numbers of elements together.
+    """Run many lines, those with equal numbers of elements and equal physics together.
 
     Parameters
     ----------
@@ -137,13 +136,11 @@ _Made = tuple[int, spec.Line, spec.Analysis]
 
 
 def _stacks(made: Iterable[_Made]) -> Iterator[list[_Made]]:
-    """Yield lines with equal numbers of elements in stacks of limited size."""
-
-    def elements(item: _Made) -> int:
-        return item[1].span.elements
-
-    for _, group in itertools.groupby(sorted(made, key=elements), key=elements):
-        equal = list(group)
+    """Yield lines with equal numbers of elements and equal physics in stacks of limited size."""
+    groups: dict[tuple[int, spec.Analysis], list[_Made]] = {}
+    for item in made:
+        groups.setdefault((item[1].span.elements, item[2]), []).append(item)
+    for equal in groups.values():
         for first in range(0, len(equal), STACK):
             yield equal[first : first + STACK]
 

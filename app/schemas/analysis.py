@@ -76,14 +76,23 @@ class Analysis(Document):
     closure: Literal["exact", "published"] = Field(
         default="exact", description="How the angle of attack varies along the span", examples=["exact"]
     )
-    aerodynamic_model: Literal["published", "relative_wind"] = Field(
-        default="published",
-        description="Which velocities change the wind: the vertical one, or all those of each sub-conductor; "
-        "relative_wind needs ice.aerodynamics_at_rest or a table",
+    physics: Literal["full", "source"] | None = Field(
+        default="source",
+        description="Full physics, or the source's simplifications; null: full if the line's coefficients at rest are "
+        "known. Sets aerodynamic_model and longitudinal_inertia where they are null",
+        examples=["full"],
+    )
+    aerodynamic_model: Literal["published", "relative_wind"] | None = Field(
+        default=None,
+        description="Which velocities change the wind: the vertical one (published, source), or all those of each "
+        "sub-conductor (relative_wind, full), which needs ice.aerodynamics_at_rest or a table; null: as physics has it",
         examples=["published"],
     )
-    longitudinal_inertia: Literal["neglected", "condensed"] = Field(
-        default="neglected", description="Longitudinal inertia in the hybrid model", examples=["neglected"]
+    longitudinal_inertia: Literal["neglected", "condensed"] | None = Field(
+        default=None,
+        description="Longitudinal inertia in the hybrid model: neglected (source), condensed (full); null: as physics "
+        "has it",
+        examples=["neglected"],
     )
     critical_wind_limit: float = quantity(
         "critical_wind_limit_m_per_s",

@@ -22,11 +22,11 @@ from engine.report.warnings import (
     line_warnings,
     motion_warnings,
     neglected_twist_warnings,
-    rest_warnings,
+    physics_warnings,
     twist_warnings,
     wind_twist_warnings,
 )
-from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, Result, StaticState
+from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, PhysicsRow, Result, StaticState
 from engine.spec import AmplitudeCurves, Analysis
 
 
@@ -64,19 +64,21 @@ def line_results(
     motions = [limit_cycle_rows(discretization, model_findings, analysis, lowest) for model_findings in findings]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     curves = [amplitude_curve_rows(discretization, model_findings) for model_findings in reported]
+    physics = PhysicsRow(analysis.physics, analysis.aerodynamic_model, analysis.longitudinal_inertia)
     dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
     neglected = neglected_twist_warnings(discretization, _statically_unstable(findings, len(discretization.lines)))
     equilibria = static_equilibrium_rows(discretization, np.unique(analysis.wind_speeds))
     results = []
     for i, line in enumerate(discretization.lines):
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
-        about_line = line_warnings(line) + rest_warnings(line, analysis) + twist_warnings(discretization, i)
+        about_line = line_warnings(line) + physics_warnings(line, analysis) + twist_warnings(discretization, i)
         about_line += neglected[i] + wind_twist_warnings(discretization, i)
         own_frequencies = tuple(row for table in frequencies for row in table[i])
         results.append(
             Result(
                 static=_static_state(discretization, i),
                 den_hartog=_den_hartog(discretization, i),
+                physics=(physics,),
                 frequencies=own_frequencies,
                 internal_resonances=internal_resonance_rows(own_frequencies),
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),

@@ -21,6 +21,7 @@ from engine.spec import (
     Ice,
     IceSegment,
     Line,
+    LongitudinalInertia,
     StretchDevice,
     ice_properties,
 )
@@ -62,17 +63,35 @@ def line_warnings(line: Line) -> list[str]:
     return result
 
 
-def rest_warnings(line: Line, analysis: Analysis) -> list[str]:
-    """Return a sentence if stretches have coefficients of their own without those at rest, which the load needs."""
+def physics_warnings(line: Line, analysis: Analysis) -> list[str]:
+    """Return sentences on physics that the line's data kept from being full, and on values at rest taken from it."""
+    result = []
+    if analysis.lacks is not None:
+        result.append(
+            f"The physics is the source's, because {analysis.lacks} is not given: {_neglected(analysis)}. Motion in "
+            f"two and more loops depends on it. Give {analysis.lacks}, or a measured table in the place of "
+            'ice.aerodynamics, for full physics, or ask for "physics": "source".'
+        )
     if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
-        return []
+        return result
     parts: list[tuple[str, Sequence[IceSegment | StretchDevice]]]
     parts = [(f"ice.segments.{i}", [segment]) for i, segment in enumerate(line.ice.segments)]
     parts += [(f"devices.{i}", device.stretches) for i, device in enumerate(line.devices)]
     without = [name for name, owners in parts if any(_lacks_rest(owner.aerodynamics) for owner in owners)]
-    if not without:
-        return []
-    return [f"The line's coefficients at rest are used where {', '.join(without)} give no aerodynamics_at_rest."]
+    if without:
+        names = ", ".join(without)
+        result.append(f"The line's coefficients at rest are used where {names} give no aerodynamics_at_rest.")
+    return result
+
+
+def _neglected(analysis: Analysis) -> str:
+    """Return what an analysis with the source's physics neglects, as a clause."""
+    parts = []
+    if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
+        parts.append("how the horizontal velocity and the rotation of the sub-conductors change the wind")
+    if analysis.longitudinal_inertia is LongitudinalInertia.NEGLECTED:
+        parts.append("the longitudinal inertia of the hybrid model")
+    return "it neglects " + " and ".join(parts) if parts else "every option was said singly"
 
 
 def _lacks_rest(aerodynamics: Aerodynamics | None) -> bool:

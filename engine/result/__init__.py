@@ -10,6 +10,7 @@ from engine.result.at_rest import (
     Direction,
     FrequencyRow,
     InternalResonanceRow,
+    PhysicsRow,
     StaticEquilibriumRow,
     StaticState,
 )
@@ -43,6 +44,7 @@ __all__ = [
     "LoopCompetitionRow",
     "ModelComparisonRow",
     "Orbit",
+    "PhysicsRow",
     "PlacedDeviceRow",
     "Result",
     "StaticEquilibriumRow",

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from engine.outcome import Outcome
 from engine.result.columns import Column
-from engine.spec import Model
+from engine.spec import AerodynamicModel, LongitudinalInertia, Model, Physics
 
 Direction = Literal["vertical", "horizontal", "torsional"]
 ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
@@ -40,6 +40,17 @@ class DenHartog:
 
     coefficient: Annotated[float, Column("dC_L/dalpha + C_D of one sub-conductor", -0.1667, unit="1/rad")]
     unstable: Annotated[bool, Column("Whether the coefficient is negative; null if unknown", True)]
+
+
+@dataclass(frozen=True, slots=True)
+class PhysicsRow:
+    """The physics that the analysis had: the set, and the options in force, which may have been said singly."""
+
+    physics: Annotated[Physics, Column("Set that the options belong to unless they were said singly", "full")]
+    aerodynamic_model: Annotated[AerodynamicModel, Column("Velocities that change the wind", "relative_wind")]
+    longitudinal_inertia: Annotated[
+        LongitudinalInertia, Column("Longitudinal inertia of the hybrid model", "condensed")
+    ]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from engine.result.at_rest import (
     DenHartog,
     FrequencyRow,
     InternalResonanceRow,
+    PhysicsRow,
     StaticEquilibriumRow,
     StaticState,
 )
@@ -29,6 +30,7 @@ from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 class Tables:
     """Every table of flat rows that a result holds, in the order of the result document."""
 
+    physics: Annotated[tuple[PhysicsRow, ...], Title("Physics of the analysis")] = ()
     frequencies: Annotated[tuple[FrequencyRow, ...], Title("Natural frequencies")] = ()
     internal_resonances: Annotated[tuple[InternalResonanceRow, ...], Title("Ratios of the natural frequencies")] = ()
     critical_wind_speeds: Annotated[

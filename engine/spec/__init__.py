@@ -15,6 +15,7 @@ from engine.spec.analysis import (
     LongitudinalInertia,
     LoopCompetition,
     Model,
+    Physics,
     StaticTwist,
     TorusSearch,
     check_compatible,
@@ -43,6 +44,7 @@ from engine.spec.environment import (
     Wind,
 )
 from engine.spec.line import Line, ice_properties
+from engine.spec.physics import PhysicsRequest, with_physics
 from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
 from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 
@@ -75,6 +77,8 @@ __all__ = [
     "Model",
     "Objective",
     "PendulumChoice",
+    "Physics",
+    "PhysicsRequest",
     "Placement",
     "PointDevice",
     "Spacer",
@@ -90,4 +94,5 @@ __all__ = [
     "check_compatible",
     "check_placement",
     "ice_properties",
+    "with_physics",
 ]

@@ -8,6 +8,10 @@ from engine.outcome import Fault, require
 from engine.spec.line import Line
 from engine.spec.rules import positive
 
+_REST_RULE = (
+    "must be given, or a measured table in the place of ice.aerodynamics, for the relative wind of full physics; "
+    '"physics": "source" does without'
+)
 MOST_LOOPS_TOGETHER = 6  # the search for the finite element model's critical speeds takes time as their sixth power
 
 
@@ -16,6 +20,13 @@ class Model(StrEnum):
 
     HYBRID = "hybrid"
     FINITE_ELEMENT = "finite_element"
+
+
+class Physics(StrEnum):
+    """The source's simplifications, or what theory sections 12 and 13 put in their place."""
+
+    SOURCE = "source"
+    FULL = "full"
 
 
 class Closure(StrEnum):
@@ -85,9 +96,11 @@ class Check(StrEnum):
 class Analysis:
     """The questions put to a line: loops per span, models, wind speeds [m/s], and modelling choices.
 
-    critical_wind_limit: highest wind speed searched for critical wind speeds [m/s]; harmonics: of the harmonic balance;
-    finite_element_loops: loops of the modes that the finite element model combines. If it is empty, that model gives
-    its natural frequencies only.
+    physics: names the set that aerodynamic_model and longitudinal_inertia belong to, which `with_physics` fills in;
+    lacks: the field of the line that kept an analysis for which no physics was asked from being full, None if there is
+    none; critical_wind_limit: highest wind speed searched for critical wind speeds [m/s]; harmonics: of the harmonic
+    balance; finite_element_loops: loops of the modes that the finite element model combines. If it is empty, that model
+    gives its natural frequencies only.
 
     Raises
     ------
@@ -99,6 +112,8 @@ class Analysis:
     models: tuple[Model, ...] = (Model.HYBRID, Model.FINITE_ELEMENT)
     wind_speeds: tuple[float, ...] = (4.0, 5.0, 6.0)
     closure: Closure = Closure.EXACT
+    physics: Physics = Physics.SOURCE
+    lacks: str | None = None
     aerodynamic_model: AerodynamicModel = AerodynamicModel.PUBLISHED
     longitudinal_inertia: LongitudinalInertia = LongitudinalInertia.NEGLECTED
     critical_wind_limit: float = 30.0
@@ -159,7 +174,7 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
         Fault("closure", analysis.closure.value, "must be exact for a wind profile")
         if published and line.wind.profile
         else None,
-        Fault("ice.aerodynamics_at_rest", None, "must be given for the relative-wind model")
+        Fault("ice.aerodynamics_at_rest", None, _REST_RULE)
         if relative and line.ice.aerodynamics.at_rest is None
         else None,
     )

@@ -173,6 +173,7 @@ ANALYSES = st.fixed_dictionaries(
     },
     optional={
         "closure": st.sampled_from(["exact", "published"]),
+        "physics": st.sampled_from(["source", "full", None]),
         "aerodynamic_model": st.sampled_from(["published", "relative_wind"]),
         "longitudinal_inertia": st.sampled_from(["neglected", "condensed"]),
         "critical_wind_limit_m_per_s": st.floats(1.0, 60.0),

@@ -22,7 +22,10 @@ from engine.spec import (
     Ice,
     IceSegment,
     Line,
+    LongitudinalInertia,
     Model,
+    Physics,
+    PhysicsRequest,
     Spacer,
     Span,
     Support,
@@ -30,6 +33,7 @@ from engine.spec import (
     Wind,
     check_compatible,
     ice_properties,
+    with_physics,
 )
 from tests.builders import ICE_AT_40, source_line
 
@@ -195,6 +199,41 @@ def test_line_and_analysis_must_fit() -> None:
     partly = Ice(replace(ICE_AT_40, at_rest=(0.0, 1.0, 0.0)), segments=(IceSegment(0.0, 1.0, ICE_AT_40),))
     check_compatible(replace(LINE, ice=partly, devices=(AirflowSpoiler(2.0, 3.0, ICE_AT_40),)), relative)
     check_compatible(LINE, Analysis())
+
+
+KNOWN = replace(LINE, ice=Ice(replace(ICE_AT_40, at_rest=(0.0, 1.0, 0.0))))
+SOURCE = (AerodynamicModel.PUBLISHED, LongitudinalInertia.NEGLECTED)
+FULL = (AerodynamicModel.RELATIVE_WIND, LongitudinalInertia.CONDENSED)
+
+
+@pytest.mark.parametrize(
+    ("line", "asked", "physics", "options"),
+    [
+        (KNOWN, PhysicsRequest(), Physics.FULL, FULL),
+        (LINE, PhysicsRequest(), Physics.SOURCE, SOURCE),
+        (KNOWN, PhysicsRequest(Physics.SOURCE), Physics.SOURCE, SOURCE),
+        (LINE, PhysicsRequest(Physics.FULL), Physics.FULL, FULL),
+        (KNOWN, PhysicsRequest(Physics.SOURCE, FULL[0]), Physics.SOURCE, (FULL[0], SOURCE[1])),
+        (LINE, PhysicsRequest(None, None, FULL[1]), Physics.SOURCE, (SOURCE[0], FULL[1])),
+    ],
+)
+def test_physics_is_that_asked_for_or_that_of_the_data(
+    line: Line, asked: PhysicsRequest, physics: Physics, options: tuple[object, ...]
+) -> None:
+    found = with_physics(line, Analysis(loops=(2,)), asked)
+    assert found.physics is physics
+    assert (found.aerodynamic_model, found.longitudinal_inertia) == options
+    assert found.loops == (2,)
+    unasked = asked.physics is None and line is LINE
+    assert found.lacks == ("ice.aerodynamics_at_rest" if unasked else None)
+
+
+def test_published_closure_belongs_to_the_source() -> None:
+    published = Analysis(closure=Closure.PUBLISHED)
+    found = with_physics(LINE, published, PhysicsRequest())
+    assert (found.physics, found.lacks) == (Physics.SOURCE, None)
+    with pytest.raises(InvalidSpec, match="closure must be exact"):
+        with_physics(KNOWN, published, PhysicsRequest(Physics.FULL))
 
 
 def test_regular_bundle_follows_eq_3() -> None:

@@ -86,8 +86,25 @@ def test_every_choice_of_an_analysis_arrives_in_the_engine() -> None:
     assert len(choices) >= 9
     for name, members in choices.items():
         for member in members:
-            asked = schemas.Analysis.model_validate({name: member.value})
-            assert getattr(parts.analysis(asked), name) is member, (name, member)
+            _, analysis = built(changed("wind", {}), {name: member.value})
+            assert getattr(analysis, name) is member, (name, member)
+
+
+@pytest.mark.parametrize(
+    ("analysis", "expected"),
+    [
+        ({}, ("source", "published", "neglected")),
+        ({"physics": "source"}, ("source", "published", "neglected")),
+        ({"physics": "full"}, ("full", "relative_wind", "condensed")),
+        ({"physics": "full", "longitudinal_inertia": "neglected"}, ("full", "relative_wind", "neglected")),
+        ({"physics": None}, ("full", "relative_wind", "condensed")),
+        ({"physics": None, "aerodynamic_model": "published"}, ("full", "published", "condensed")),
+    ],
+)
+def test_physics_sets_what_is_not_said_singly(analysis: dict[str, Any], expected: tuple[str, ...]) -> None:
+    _, asked = built(FULL_LINE, analysis)
+    assert (asked.physics, asked.aerodynamic_model, asked.longitudinal_inertia) == expected
+    assert asked.lacks is None
 
 
 def test_every_device_of_the_schema_has_its_class_in_the_engine() -> None:

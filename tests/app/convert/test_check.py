@@ -244,11 +244,26 @@ def test_choices_that_exclude_each_other_are_both_held_against_the_line() -> Non
     found = faults({"line": line, "analysis": {"closure": "published", "aerodynamic_model": "relative_wind"}})
     assert [fault.pointer for fault in found] == [
         "/analysis/closure",
-        "/analysis/closure",
         "/line/ice/aerodynamics_at_rest",
+        "/analysis/closure",
     ]
-    assert "relative wind" in found[0].detail
-    assert "wind profile" in found[1].detail
+    assert "wind profile" in found[0].detail
+    assert "relative wind" in found[2].detail
+
+
+def test_full_physics_without_coefficients_at_rest_is_refused_and_the_way_out_is_named() -> None:
+    line = changed("ice.aerodynamics_at_rest", None)
+    (found,) = faults({"line": line, "analysis": {"physics": "full"}})
+    assert found.pointer == "/line/ice/aerodynamics_at_rest"
+    assert '"physics": "source" does without' in found.detail
+    for physics in ("source", None):
+        assert pointers({"line": line, "analysis": {"physics": physics}}) == []
+
+
+def test_full_physics_excludes_the_published_closure() -> None:
+    line = changed("wind", {})
+    assert pointers({"line": line, "analysis": {"physics": "full", "closure": "published"}}) == ["/analysis/closure"]
+    assert pointers({"line": line, "analysis": {"physics": None, "closure": "published"}}) == []
 
 
 def test_loops_at_fault_are_no_excuse_for_others() -> None:

@@ -48,6 +48,26 @@ def test_every_line_has_the_numbers_that_it_has_alone() -> None:
     assert found[20].tables["limit_cycles"]
 
 
+def test_lines_of_other_physics_are_not_computed_together() -> None:
+    """A line without coefficients at rest has the source's physics among lines of full physics, as it has alone."""
+    known = changed("ice.aerodynamics_at_rest", {"vertical": 0.0, "horizontal": 1.0, "torsional": 0.0}, TWIN)
+    lines = {1: TWIN, 2: known, 3: changed("span.length_m", 120.0, TWIN)}
+    asked = {**SHORT, "physics": None}
+    found = results([NumberedLine(n, line) for n, line in lines.items()], asked)
+    for number, line in lines.items():
+        expected = alone(line, asked)
+        assert found[number].warnings == expected.warnings
+        assert found[number].tables["physics"] == expected.tables["physics"]
+        cycles = zip(found[number].tables["limit_cycles"], expected.tables["limit_cycles"], strict=True)
+        assert all(close(*pair) for pair in cycles)
+    assert [found[n].tables["physics"][0]["physics"] for n in (1, 2, 3)] == ["source", "full", "source"]
+    assert [any("ice.aerodynamics_at_rest is not given" in text for text in found[n].warnings) for n in (1, 2, 3)] == [
+        True,
+        False,
+        True,
+    ]
+
+
 def test_a_line_that_is_at_fault_fails_alone() -> None:
     slack = changed("span.horizontal_tension_n", 11.0, TWIN)
     found = results([NumberedLine(1, TWIN), NumberedLine(2, slack), NumberedLine(3, {}), NumberedLine(4, TWIN)])

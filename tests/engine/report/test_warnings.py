@@ -10,9 +10,13 @@ from engine.spec import (
     DetuningPendulum,
     IceSegment,
     Line,
+    LongitudinalInertia,
     Model,
+    Physics,
+    PhysicsRequest,
     Spacer,
     StaticTwist,
+    with_physics,
 )
 from tests.builders import ICE_AT_40, run, source_line
 
@@ -88,3 +92,19 @@ def test_a_line_that_ice_would_turn_over_is_told_how_to_find_its_state() -> None
     (sentence,) = twist_sentences(line)
     assert "exceeds the torsional stiffness" in sentence
     assert twist_sentences(line, StaticTwist.SOLVED) == []
+
+
+def test_physics_that_the_data_kept_from_being_full_is_named() -> None:
+    line, asked = source_line(2), Analysis(wind_speeds=(), models=(Model.HYBRID,))
+    (said,) = run(line, with_physics(line, asked, PhysicsRequest())).warnings
+    for part in (
+        "ice.aerodynamics_at_rest is not given",
+        "horizontal velocity",
+        "longitudinal inertia",
+        "measured table",
+    ):
+        assert part in said
+    single = PhysicsRequest(longitudinal_inertia=LongitudinalInertia.CONDENSED)
+    (said,) = run(line, with_physics(line, asked, single)).warnings
+    assert "longitudinal inertia" not in said
+    assert run(line, with_physics(line, asked, PhysicsRequest(Physics.SOURCE))).warnings == ()

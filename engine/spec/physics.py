@@ -1,0 +1,57 @@
+"""Which physics an analysis has: that of the source, or the full one; each option may be said by itself, too."""
+
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from typing import Any
+
+from engine.spec.analysis import AerodynamicModel, Analysis, Closure, LongitudinalInertia, Physics
+from engine.spec.line import Line
+
+AT_REST = "ice.aerodynamics_at_rest"
+
+_DEFAULTS: dict[Physics, dict[str, Any]] = {
+    Physics.SOURCE: {
+        "aerodynamic_model": AerodynamicModel.PUBLISHED,
+        "longitudinal_inertia": LongitudinalInertia.NEGLECTED,
+    },
+    Physics.FULL: {
+        "aerodynamic_model": AerodynamicModel.RELATIVE_WIND,
+        "longitudinal_inertia": LongitudinalInertia.CONDENSED,
+    },
+}
+
+
+@dataclass(frozen=True, slots=True)
+class PhysicsRequest:
+    """What was asked for: physics, None if the data of the line decide, and options, None as physics has them."""
+
+    physics: Physics | None = None
+    aerodynamic_model: AerodynamicModel | None = None
+    longitudinal_inertia: LongitudinalInertia | None = None
+
+
+def with_physics(line: Line, analysis: Analysis, asked: PhysicsRequest) -> Analysis:
+    """Return an analysis with the physics asked for.
+
+    If none was asked for, it is full where the line's coefficients at rest are known, as full physics needs them, and
+    that of the source elsewhere. The published closure belongs to the source.
+
+    Raises
+    ------
+    InvalidSpec
+        If options exclude each other.
+    """
+    lacks = AT_REST if line.ice.aerodynamics.at_rest is None else None
+    return _with_physics(analysis, asked, lacks)
+
+
+@lru_cache  # all lines of a batch have the same analysis
+def _with_physics(analysis: Analysis, asked: PhysicsRequest, lacks: str | None) -> Analysis:
+    physics, unasked = asked.physics, None
+    if physics is None:
+        published = analysis.closure is Closure.PUBLISHED
+        physics = Physics.SOURCE if published or lacks else Physics.FULL
+        unasked = None if published else lacks
+    options = {field.name: getattr(asked, field.name) for field in fields(asked) if field.name != "physics"}
+    said = {name: choice for name, choice in options.items() if choice is not None}
+    return replace(analysis, **{**_DEFAULTS[physics], **said}, physics=physics, lacks=unasked)
