@@ -63,7 +63,6 @@ WITHOUT_A_TEST_FILE = {
     "engine.arrays": "It names array types and reshapes; every numerical test goes through it.",
     "engine.report.bifurcations": "tests/app/routes/test_further_tables.py holds its rows.",
     "engine.report.cells": "Two helpers that every table uses; tests/engine/test_analysis.py compares their rows.",
-    "engine.report.critical_wind_speeds": "tests/validation/test_critical_wind_speeds.py holds its rows.",
     "engine.report.findings": "tests/engine/test_outcome.py and tests/engine/report/test_limit_cycles.py use it.",
     "engine.report.frequencies": "tests/validation/test_table_2.py holds its rows.",
     "engine.result": "It declares dataclasses; tests/app/convert/test_run.py holds their columns.",

@@ -68,6 +68,20 @@ def directional_shapes(system: Matrices, arc_length: FloatArray, loops: tuple[in
     return DirectionalShapes(loops, nodal, frequency)
 
 
+def longitudinal_share(system: Matrices, shapes: DirectionalShapes) -> FloatArray:
+    """Return the share of U in the kinetic energy of the vertical shapes: (lines, loops).
+
+    Where a longitudinal and a vertical frequency come close, both modes hold both motions.
+    """
+    nodes = shapes.nodal.shape[-1]
+    energy = []
+    for field in (U, V):
+        freedoms = field + FIELDS * np.arange(nodes)
+        mass = system.mass[:, freedoms[:, None], freedoms]
+        energy.append(((shapes.nodal[:, :, field] @ mass) * shapes.nodal[:, :, field]).sum(axis=-1))
+    return np.asarray(energy[0] / (energy[0] + energy[1]))
+
+
 def full_modes(system: Matrices, loops: tuple[int, ...]) -> FullModes:
     """Compute the modes of all freedoms together, labelled by direction and number of loops.
 

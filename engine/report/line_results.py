@@ -4,7 +4,7 @@ import numpy as np
 
 from engine import ENGINE_VERSION
 from engine.arrays import BoolArray
-from engine.mechanics.modes import DirectionalShapes
+from engine.mechanics.modes import DirectionalShapes, longitudinal_share
 from engine.models.discretization import Discretization
 from engine.outcome import Outcome
 from engine.report.amplitude_curves import amplitude_curve_rows
@@ -20,6 +20,7 @@ from engine.report.warnings import (
     dropped_warnings,
     fit_warnings,
     line_warnings,
+    longitudinal_warnings,
     motion_warnings,
     neglected_twist_warnings,
     physics_warnings,
@@ -59,7 +60,8 @@ def line_results(
     """
     lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
     frequencies = [frequency_rows(table, analysis.loops) for table in natural_frequencies]
-    critical = [critical_wind_speed_rows(model_findings) for model_findings in findings]
+    longitudinal = longitudinal_share(discretization.matrices, shapes)
+    critical = [critical_wind_speed_rows(model_findings, shapes.loops, longitudinal) for model_findings in findings]
     bifurcations = [bifurcation_rows(model_findings) for model_findings in findings]
     motions = [limit_cycle_rows(discretization, model_findings, analysis, lowest) for model_findings in findings]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
@@ -72,6 +74,7 @@ def line_results(
     for i, line in enumerate(discretization.lines):
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
         about_line = line_warnings(line) + physics_warnings(line, analysis) + twist_warnings(discretization, i)
+        about_line += longitudinal_warnings(shapes.loops, longitudinal[i], analysis)
         about_line += neglected[i] + wind_twist_warnings(discretization, i)
         own_frequencies = tuple(row for table in frequencies for row in table[i])
         results.append(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine.arrays import BoolArray
+from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.static_profile import mean_mass
 from engine.mechanics.static_twist import linear_twist
 from engine.models.discretization import Discretization
@@ -22,6 +22,7 @@ from engine.spec import (
     IceSegment,
     Line,
     LongitudinalInertia,
+    Model,
     StretchDevice,
     ice_properties,
 )
@@ -36,6 +37,7 @@ MOTION_WARNINGS = {
     Outcome.NO_BOUNDED_MOTION: "At {} combinations of model, loops and wind speed no motion is bounded: every motion "
     "that was integrated grew past an angle of attack of 180 degrees.",
 }
+MUCH_LONGITUDINAL = 0.1  # share of a vertical shape's energy above which a warning names it
 LEAST_INERTIA = 1e-6  # least ratio of the inertias about mass centre and reference curve: M is nearly singular below it
 
 
@@ -82,6 +84,22 @@ def physics_warnings(line: Line, analysis: Analysis) -> list[str]:
         names = ", ".join(without)
         result.append(f"The line's coefficients at rest are used where {names} give no aerodynamics_at_rest.")
     return result
+
+
+def longitudinal_warnings(loops: Sequence[int], shares: FloatArray, analysis: Analysis) -> list[str]:
+    """Return a sentence if vertical shapes hold much longitudinal motion, whose share is shares (loops,)."""
+    asked = [(k, share) for k, share in zip(loops, shares.tolist(), strict=True) if k in analysis.loops]
+    mixed = [f"{k} ({share:.0%})" for k, share in asked if share > MUCH_LONGITUDINAL]
+    if not mixed:
+        return []
+    known = f"Vertical motion is partly longitudinal for these numbers of loops (share of energy): {', '.join(mixed)}."
+    if analysis.longitudinal_inertia is LongitudinalInertia.NEGLECTED and Model.HYBRID in analysis.models:
+        excess = 1.0 / math.sqrt(1.0 - max(share for _, share in asked)) - 1.0
+        known += (
+            f" The hybrid model neglects that inertia, which overstates a vertical frequency by about {excess:.0%}; "
+            '"longitudinal_inertia": "condensed" keeps it.'
+        )
+    return [known]
 
 
 def _neglected(analysis: Analysis) -> str:

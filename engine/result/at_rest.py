@@ -7,7 +7,7 @@ from engine.outcome import Outcome
 from engine.result.columns import Column
 from engine.spec import AerodynamicModel, LongitudinalInertia, Model, Physics
 
-Direction = Literal["vertical", "horizontal", "torsional"]
+Direction = Literal["vertical", "horizontal", "torsional", "longitudinal"]
 ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
 LoopsColumn = Annotated[int, Column("Loops per span", 1, unit="1")]
 OutcomeColumn = Annotated[Outcome, Column("How the computation ended", "converged")]

@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
-from engine.mechanics.modes import assign, at_points, directional_shapes, full_modes, solve_symmetric
+from engine.mechanics.modes import (
+    assign,
+    at_points,
+    directional_shapes,
+    full_modes,
+    longitudinal_share,
+    solve_symmetric,
+)
 from engine.spec import Line, Span, Support, Supports
 from tests.builders import discretized, random_line, source_line
 
@@ -119,3 +126,16 @@ def test_longitudinal_mode_is_never_taken() -> None:
 def test_assignment_takes_the_surest_label_first() -> None:
     score = np.array([[[0.6, 0.5, 0.0], [0.9, 0.0, 0.1], [0.2, 0.3, 0.1]]])
     assert assign(score).tolist() == [[1, 0, 2]]
+
+
+def test_longitudinal_share_is_that_of_the_energy() -> None:
+    """By quadrature over the span, and what it does to the frequency if the inertia is dropped: 1/sqrt(1 - share)."""
+    line = replace(source_line(1), span=Span(126.0, sag=10.08), supports=Supports(2e3))
+    discretization = discretized(line)
+    system = discretization.matrices
+    shapes = directional_shapes(system, discretization.profile.arc_length, (1, 2))
+    (share,) = longitudinal_share(system, shapes)
+    along, upward = ((at_points(system, shapes.nodal[:, :, i]) ** 2 * system.weight[:, None])[0] for i in (U, V))
+    squares = [part.sum(axis=(-1, -2)) for part in (along, upward)]
+    assert share == pytest.approx(squares[0] / (squares[0] + squares[1]), rel=1e-9)
+    assert share[1] == pytest.approx(0.165, abs=0.002)

@@ -15,7 +15,9 @@ from engine.spec import (
     Physics,
     PhysicsRequest,
     Spacer,
+    Span,
     StaticTwist,
+    Supports,
     with_physics,
 )
 from tests.builders import ICE_AT_40, run, source_line
@@ -108,3 +110,14 @@ def test_physics_that_the_data_kept_from_being_full_is_named() -> None:
     (said,) = run(line, with_physics(line, asked, single)).warnings
     assert "longitudinal inertia" not in said
     assert run(line, with_physics(line, asked, PhysicsRequest(Physics.SOURCE))).warnings == ()
+
+
+def test_vertical_motion_that_is_partly_longitudinal_is_named() -> None:
+    line = replace(source_line(2), span=Span(126.0, sag=0.04 * 126.0), supports=Supports(2e3))
+    asked = Analysis(loops=(1, 2), wind_speeds=(), models=(Model.HYBRID,))
+    (said,) = run(line, asked).warnings
+    assert "loops (share of energy): 2 (17%)." in said
+    assert "by about 10%" in said
+    (said,) = run(line, replace(asked, longitudinal_inertia=LongitudinalInertia.CONDENSED)).warnings
+    assert "overstates" not in said
+    assert run(line, replace(asked, loops=(1,))).warnings == ()
