@@ -127,7 +127,7 @@ def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, N
 
 def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
     discretization = discretize(lines, analysis.static_twist)
-    if analysis.static_twist is StaticTwist.SOLVED and any(line.has_table for line in lines):
+    if analysis.static_twist is not StaticTwist.NEGLECTED and any(line.has_table for line in lines):
         discretization = with_wind_twist(discretization, _winds(analysis))
     system, arc_length = discretization.matrices, discretization.profile.arc_length
     finite_element = Model.FINITE_ELEMENT in analysis.models

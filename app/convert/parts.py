@@ -158,6 +158,7 @@ def physics(part: schemas.Analysis) -> spec.PhysicsRequest:
         physics=_choice_of(spec.Physics, part.physics),
         aerodynamic_model=_choice_of(spec.AerodynamicModel, part.aerodynamic_model),
         longitudinal_inertia=_choice_of(spec.LongitudinalInertia, part.longitudinal_inertia),
+        static_twist=_choice_of(spec.StaticTwist, part.static_twist),
     )
 
 
@@ -175,7 +176,6 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         critical_wind_limit=part.critical_wind_limit,
         harmonics=part.harmonics,
         finite_element_loops=tuple(part.finite_element_loops),
-        static_twist=spec.StaticTwist(part.static_twist),
         loop_competition=spec.LoopCompetition(part.loop_competition),
         quasi_periodic=spec.TorusSearch(part.quasi_periodic),
         device_effect=spec.DeviceEffect(part.device_effect),

@@ -90,7 +90,7 @@ def seconds_a_line(analysis: schemas.Analysis) -> float:
         cost += _FULL_MODES_SECONDS
         if analysis.finite_element_loops:
             cost += motions(_FINITE_ELEMENT_SECONDS, _FINITE_ELEMENT_DIRECT_SECONDS)
-    if analysis.static_twist == "solved":
+    if analysis.static_twist in ("solved", "where_large"):
         cost += _STATIC_TWIST_SECONDS
     if analysis.loop_competition == "checked":
         cost += _COMPETITION_SECONDS * len(analysis.loops) * winds

@@ -79,7 +79,7 @@ class Analysis(Document):
     physics: Literal["full", "source"] | None = Field(
         default="source",
         description="Full physics, or the source's simplifications; null: full if the line's coefficients at rest are "
-        "known. Sets aerodynamic_model and longitudinal_inertia where they are null",
+        "known. Sets aerodynamic_model, longitudinal_inertia and static_twist where they are null",
         examples=["full"],
     )
     aerodynamic_model: Literal["published", "relative_wind"] | None = Field(
@@ -118,9 +118,11 @@ class Analysis(Document):
         json_schema_extra={"unit": "1"},
     )
 
-    static_twist: Literal["neglected", "solved"] = Field(
-        default="neglected",
-        description="Whether eccentric ice twists the span at rest; solved: mass, weight and tables turn with it",
+    static_twist: Literal["neglected", "where_large", "solved"] | None = Field(
+        default=None,
+        description="Whether eccentric ice twists the span at rest: neglected (source), solved, so that mass, weight "
+        "and tables turn with it, or where_large, solved for lines that turn by more than 5 degrees (full); null: as "
+        "physics has it",
         examples=["neglected"],
     )
     loop_competition: Literal["neglected", "checked"] = Field(

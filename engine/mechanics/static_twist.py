@@ -11,13 +11,14 @@ g = (U', V', W', Theta'). The weight at the bare centres does no net work: the t
 derivative is K of section 3 with its gravity term -n m g e_y; as there, the strain is the linear part of (7).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled
 from engine.mechanics.cross_sections import Sections, turned, turned_moments
 from engine.mechanics.finite_elements import (
     FIELDS,
@@ -38,6 +39,7 @@ from engine.numerics.newton import NewtonOptions, newton, solve_systems
 from engine.spec import GRAVITY, Line
 
 FIRST_GUESS = 0.1  # rad at mid-span
+LARGE_TWIST = math.radians(5.0)  # a smaller one may be neglected
 OPTIONS = NewtonOptions(tolerance=1e-9, largest_step=0.25, iterations=100)
 
 
@@ -46,7 +48,7 @@ class TwistedState:
     """Static state of a stack of lines under eccentric weight: a minimum of the energy Pi.
 
     displacement: (lines, freedoms), U, V, W [m] and Theta [rad] of each node, NaN where none was found; outcome:
-    (lines,) of Outcome.
+    (lines,) of Outcome, or None where the twist of a line is neglected.
     """
 
     displacement: FloatArray
@@ -120,17 +122,36 @@ def linear_twist(
 ) -> FloatArray:
     """Return the largest twist that eccentric weight would cause at the untwisted line's stiffness: (lines,) [rad].
 
-    It is infinite where the weight turns the line against that stiffness. Beyond some ten degrees it is too large,
-    because the weight pulls less and less sideways.
+    It is infinite where that stiffness is not positive definite. Beyond some ten degrees it is too large, because the
+    weight pulls less and less sideways.
     """
     nodes = matrices.stiffness.shape[-1] // FIELDS
     gradient, _ = _ice_energy(lines, profile, section_points, np.zeros((len(lines), nodes)))
     for line, here, values, device in mounted(lines, profile):
         gradient[line, here] -= np.kron(values, device.load())
     moment = -gradient[:, THETA::FIELDS][:, 1:-1]
-    turn = solve_systems(matrices.stiffness[:, THETA::FIELDS, THETA::FIELDS][:, 1:-1, 1:-1], moment)
-    against = (turn * moment).sum(axis=-1) < 0.0
-    return np.where(against, np.inf, np.abs(turn).max(axis=-1))
+    stiffness = matrices.stiffness[:, THETA::FIELDS, THETA::FIELDS][:, 1:-1, 1:-1]
+    unstable = np.linalg.eigvalsh(stiffness)[:, 0] <= 0.0
+    return np.where(unstable, np.inf, np.abs(solve_systems(stiffness, moment)).max(axis=-1))
+
+
+def twisted_where_large(
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, matrices: Matrices
+) -> TwistedState | None:
+    """Find the twisted static state of the lines that eccentric weight turns by more than `LARGE_TWIST`.
+
+    Returns
+    -------
+    TwistedState or None
+        With no displacement and None as outcome for all other lines; None if there are only such lines.
+    """
+    large = np.flatnonzero(linear_twist(lines, profile, section_points, matrices) > LARGE_TWIST)
+    if not large.size:
+        return None
+    found = twisted_state([lines[i] for i in large.tolist()], _select(profile, large), _select(section_points, large))
+    displacement, outcome = np.zeros(matrices.stiffness.shape[:2]), filled(len(lines), None)
+    displacement[large], outcome[large] = found.displacement, found.outcome
+    return TwistedState(displacement, outcome)
 
 
 def energy_derivatives(

@@ -9,7 +9,7 @@ from engine.arrays import FloatArray, IntArray
 from engine.mechanics.cross_sections import Sections, sections, wind_factor
 from engine.mechanics.finite_elements import Matrices, matrices, shape_functions
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
-from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state
+from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state, twisted_where_large
 from engine.mechanics.torsional_elements import torsional_elements
 from engine.mechanics.wind_twist import WindTwist, wind_twist
 from engine.models.relative_wind import NodalMotion, local_motion_forms, turned_arms
@@ -31,6 +31,11 @@ class Discretization:
     twist: TwistedState | None = None
     wind_twist: WindTwist | None = None
 
+    @property
+    def parts(self) -> tuple[tuple[Line, ...], StaticProfile, Sections, Matrices]:
+        """Lines, profile, sections and matrices."""
+        return self.lines, self.profile, self.sections, self.matrices
+
 
 def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NEGLECTED) -> Discretization:
     """Discretize lines with equal numbers of elements, about the twisted static state if that is to be solved.
@@ -42,23 +47,22 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
     """
     profile = static_profile(lines)
     sections_of_lines = sections(lines, profile)
-    if static_twist is StaticTwist.NEGLECTED:
-        return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
-    state = twisted_state(lines, profile, sections_of_lines)
+    if static_twist is StaticTwist.SOLVED:
+        state = twisted_state(lines, profile, sections_of_lines)
+    else:
+        plain = Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
+        large = None if static_twist is StaticTwist.NEGLECTED else twisted_where_large(*plain.parts)
+        if large is None:
+            return plain
+        state = large
     return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, sections_of_lines, state), state)
 
 
 def with_wind_twist(discretization: Discretization, wind_speeds: FloatArray) -> Discretization:
     """Add the static twist at rising wind speeds (winds,) [m/s] of lines whose tables are curves. Theory section 14."""
-    system, twist = discretization.matrices, discretization.twist
+    twist = discretization.twist
     still = np.zeros((len(discretization.lines), 2 * discretization.lines[0].span.elements + 1))
-    elements = torsional_elements(
-        discretization.lines,
-        discretization.profile,
-        discretization.sections,
-        system,
-        still if twist is None else np.nan_to_num(twist.angle),
-    )
+    elements = torsional_elements(*discretization.parts, still if twist is None else np.nan_to_num(twist.angle))
     asked = np.array([line.has_table and not any(line.curve_faults()) for line in discretization.lines])
     return replace(discretization, wind_twist=wind_twist(elements, wind_speeds, asked))
 

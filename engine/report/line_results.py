@@ -66,7 +66,9 @@ def line_results(
     motions = [limit_cycle_rows(discretization, model_findings, analysis, lowest) for model_findings in findings]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     curves = [amplitude_curve_rows(discretization, model_findings) for model_findings in reported]
-    physics = PhysicsRow(analysis.physics, analysis.aerodynamic_model, analysis.longitudinal_inertia)
+    physics = PhysicsRow(
+        analysis.physics, analysis.aerodynamic_model, analysis.longitudinal_inertia, analysis.static_twist
+    )
     dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
     neglected = neglected_twist_warnings(discretization, _statically_unstable(findings, len(discretization.lines)))
     equilibria = static_equilibrium_rows(discretization, np.unique(analysis.wind_speeds))

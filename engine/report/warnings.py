@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.static_profile import mean_mass
-from engine.mechanics.static_twist import linear_twist
+from engine.mechanics.static_twist import LARGE_TWIST, linear_twist
 from engine.models.discretization import Discretization
 from engine.models.relative_wind import FASTEST
 from engine.outcome import Outcome, Stability
@@ -28,7 +28,6 @@ from engine.spec import (
 )
 
 HEAVY_DEVICES = 0.1  # share of the span's weight above which a warning names the devices' weight
-LARGE_TWIST = math.radians(5.0)  # static twist above which a warning names its neglect
 LINEAR_TWIST = math.radians(15.0)  # up to which the linear estimate of the static twist holds within some per cent
 MOTION_WARNINGS = {
     Outcome.BEYOND_DATA: "{} motions reach beyond what the input can vouch for: an angle of attack over 30 degrees "
@@ -127,7 +126,7 @@ def _inertia_share(line: Line, piece: Ice | IceSegment) -> float:
 
 def twist_warnings(discretization: Discretization, line: int) -> list[str]:
     """Return a sentence if the static twist of a line was asked for but could not be computed."""
-    if discretization.twist is None or discretization.twist.outcome[line] is Outcome.CONVERGED:
+    if discretization.twist is None or discretization.twist.outcome[line] in (None, Outcome.CONVERGED):
         return []
     return ["The static twist could not be computed; all results refer to the untwisted state."]
 

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from engine.outcome import Outcome
 from engine.result.columns import Column
-from engine.spec import AerodynamicModel, LongitudinalInertia, Model, Physics
+from engine.spec import AerodynamicModel, LongitudinalInertia, Model, Physics, StaticTwist
 
 Direction = Literal["vertical", "horizontal", "torsional", "longitudinal"]
 ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
@@ -50,6 +50,9 @@ class PhysicsRow:
     aerodynamic_model: Annotated[AerodynamicModel, Column("Velocities that change the wind", "relative_wind")]
     longitudinal_inertia: Annotated[
         LongitudinalInertia, Column("Longitudinal inertia of the hybrid model", "condensed")
+    ]
+    static_twist: Annotated[
+        StaticTwist, Column("Whether eccentric weight twists the line at rest, or only where that is large", "solved")
     ]
 
 

@@ -51,9 +51,10 @@ class LongitudinalInertia(StrEnum):
 
 
 class StaticTwist(StrEnum):
-    """Whether the static twist by ice and pendulums is neglected, as in the source, or solved for."""
+    """Whether the static twist by ice and pendulums is neglected, as in the source, or solved where large or always."""
 
     NEGLECTED = "neglected"
+    WHERE_LARGE = "where_large"
     SOLVED = "solved"
 
 
@@ -96,7 +97,8 @@ class Check(StrEnum):
 class Analysis:
     """The questions put to a line: loops per span, models, wind speeds [m/s], and modelling choices.
 
-    physics: names the set that aerodynamic_model and longitudinal_inertia belong to, which `with_physics` fills in;
+    physics: names the set that aerodynamic_model, longitudinal_inertia and static_twist belong to, which
+    `with_physics` fills in;
     lacks: the field of the line that kept an analysis for which no physics was asked from being full, None if there is
     none; critical_wind_limit: highest wind speed searched for critical wind speeds [m/s]; harmonics: of the harmonic
     balance; finite_element_loops: loops of the modes that the finite element model combines. If it is empty, that model

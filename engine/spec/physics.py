@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
-from engine.spec.analysis import AerodynamicModel, Analysis, Closure, LongitudinalInertia, Physics
+from engine.spec.analysis import AerodynamicModel, Analysis, Closure, LongitudinalInertia, Physics, StaticTwist
 from engine.spec.line import Line
 
 AT_REST = "ice.aerodynamics_at_rest"
@@ -13,10 +13,12 @@ _DEFAULTS: dict[Physics, dict[str, Any]] = {
     Physics.SOURCE: {
         "aerodynamic_model": AerodynamicModel.PUBLISHED,
         "longitudinal_inertia": LongitudinalInertia.NEGLECTED,
+        "static_twist": StaticTwist.NEGLECTED,
     },
     Physics.FULL: {
         "aerodynamic_model": AerodynamicModel.RELATIVE_WIND,
         "longitudinal_inertia": LongitudinalInertia.CONDENSED,
+        "static_twist": StaticTwist.WHERE_LARGE,
     },
 }
 
@@ -28,6 +30,7 @@ class PhysicsRequest:
     physics: Physics | None = None
     aerodynamic_model: AerodynamicModel | None = None
     longitudinal_inertia: LongitudinalInertia | None = None
+    static_twist: StaticTwist | None = None
 
 
 def with_physics(line: Line, analysis: Analysis, asked: PhysicsRequest) -> Analysis:

@@ -178,7 +178,7 @@ ANALYSES = st.fixed_dictionaries(
         "longitudinal_inertia": st.sampled_from(["neglected", "condensed"]),
         "critical_wind_limit_m_per_s": st.floats(1.0, 60.0),
         "harmonics": st.integers(1, 6),
-        "static_twist": st.sampled_from(["neglected", "solved"]),
+        "static_twist": st.sampled_from([None, "neglected", "where_large", "solved"]),
         "device_effect": st.sampled_from(["neglected", "reported"]),
     },
 )

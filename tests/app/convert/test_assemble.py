@@ -93,17 +93,23 @@ def test_every_choice_of_an_analysis_arrives_in_the_engine() -> None:
 @pytest.mark.parametrize(
     ("analysis", "expected"),
     [
-        ({}, ("source", "published", "neglected")),
-        ({"physics": "source"}, ("source", "published", "neglected")),
-        ({"physics": "full"}, ("full", "relative_wind", "condensed")),
-        ({"physics": "full", "longitudinal_inertia": "neglected"}, ("full", "relative_wind", "neglected")),
-        ({"physics": None}, ("full", "relative_wind", "condensed")),
-        ({"physics": None, "aerodynamic_model": "published"}, ("full", "published", "condensed")),
+        ({}, ("source", "published", "neglected", "neglected")),
+        ({"physics": "source"}, ("source", "published", "neglected", "neglected")),
+        ({"physics": "source", "static_twist": "solved"}, ("source", "published", "neglected", "solved")),
+        ({"physics": "full"}, ("full", "relative_wind", "condensed", "where_large")),
+        (
+            {"physics": "full", "longitudinal_inertia": "neglected"},
+            ("full", "relative_wind", "neglected", "where_large"),
+        ),
+        ({"physics": "full", "static_twist": "neglected"}, ("full", "relative_wind", "condensed", "neglected")),
+        ({"physics": None}, ("full", "relative_wind", "condensed", "where_large")),
+        ({"physics": None, "aerodynamic_model": "published"}, ("full", "published", "condensed", "where_large")),
     ],
 )
 def test_physics_sets_what_is_not_said_singly(analysis: dict[str, Any], expected: tuple[str, ...]) -> None:
     _, asked = built(FULL_LINE, analysis)
-    assert (asked.physics, asked.aerodynamic_model, asked.longitudinal_inertia) == expected
+    found = (asked.physics, asked.aerodynamic_model, asked.longitudinal_inertia, asked.static_twist)
+    assert found == expected
     assert asked.lacks is None
 
 

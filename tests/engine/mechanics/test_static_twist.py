@@ -26,7 +26,10 @@ from engine.spec import (
     IceSegment,
     Line,
     MeasuredCoefficients,
+    Model,
+    PhysicsRequest,
     StaticTwist,
+    with_physics,
 )
 from tests.builders import ICE_AT_40, discretized, random_line, run, source_line
 
@@ -289,3 +292,28 @@ def test_a_table_that_does_not_reach_the_local_angle_is_refused_with_that_angle(
     line = replace(single(200.0, 2.05e-3, -0.63e-3), ice=Ice(fit_measured(measured), 2.05e-3, -0.63e-3))
     with pytest.raises(InvalidSpec, match=r"static angle \(1\d\.\d deg\)"):
         discretize((line,), StaticTwist.SOLVED)
+
+
+def test_only_lines_that_turn_far_are_twisted_where_that_is_asked_for() -> None:
+    lines = (single(300.0, 2.05e-3, -0.63e-3), source_line(2), single(300.0, 2.05e-3, 0.0), single(100.0, 0.0, 0.0))
+    found, solved = discretize(lines, StaticTwist.WHERE_LARGE), discretize(lines, StaticTwist.SOLVED)
+    plain = discretize(lines)
+    assert found.twist is not None
+    assert solved.twist is not None
+    assert list(found.twist.outcome) == [Outcome.CONVERGED, None, Outcome.CONVERGED, None]
+    for i, expected in enumerate((solved, plain, solved, plain)):
+        for name in ("stiffness", "mass"):
+            here, there = getattr(found.matrices, name)[i], getattr(expected.matrices, name)[i]
+            assert here == pytest.approx(there, rel=1e-9, abs=1e-9 * np.abs(there).max())
+    assert discretize(lines[1:2], StaticTwist.WHERE_LARGE).twist is None
+
+
+def test_a_span_that_ice_turns_over_has_motions_under_full_physics() -> None:
+    """The example that was statically unstable in every row: 300 m of a single conductor."""
+    known = replace(ICE_AT_40, at_rest=(0.0, 1.0, 0.0))
+    line = replace(single(300.0, 2.05e-3, -0.63e-3), ice=Ice(known, 2.05e-3, -0.63e-3))
+    asked = with_physics(line, Analysis(loops=(1,), models=(Model.HYBRID,), wind_speeds=(4.0,)), PhysicsRequest())
+    result = run(line, asked)
+    assert Outcome.STATICALLY_UNSTABLE not in {row.outcome for row in result.limit_cycles}
+    assert result.static.twist_rad == pytest.approx(twist_of(line)[1].min(), rel=1e-9)
+    assert not any("static_twist" in text for text in result.warnings)

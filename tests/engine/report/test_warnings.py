@@ -94,6 +94,7 @@ def test_a_line_that_ice_would_turn_over_is_told_how_to_find_its_state() -> None
     (sentence,) = twist_sentences(line)
     assert "exceeds the torsional stiffness" in sentence
     assert twist_sentences(line, StaticTwist.SOLVED) == []
+    assert twist_sentences(line, StaticTwist.WHERE_LARGE) == []
 
 
 def test_physics_that_the_data_kept_from_being_full_is_named() -> None:
