@@ -17,11 +17,15 @@ _DIRECTIONS = ("longitudinal", "vertical", "horizontal")
 
 @dataclass(frozen=True, slots=True)
 class Conductor:
-    """One iced sub-conductor: axial rigidity EA [N], mass per length [kg/m] and horizontal tension [N]."""
+    """One iced sub-conductor: axial rigidity EA [N], mass per length [kg/m], horizontal tension in still air [N].
+
+    drag: mean drag per length [N/m].
+    """
 
     axial_rigidity: float
     mass: float
     horizontal_tension: float
+    drag: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +99,13 @@ def natural_modes(conductor: Conductor, section: Section, count: int, bars: int 
         for value, shape in zip(eigenvalues, shapes, strict=True)
     ]
     return np.array([node.x for node in nodes]), modes
+
+
+def tension_in_wind(conductor: Conductor, section: Section, bars: int = 160) -> float:
+    """Return the horizontal tension along the line under weight and mean drag [N]."""
+    with _model():
+        _equilibrium(conductor, section, _chain(conductor, section, bars))
+        return abs(float(ops.eleForce(1)[0]))
 
 
 def vertical_frequency(conductor: Conductor, section: Section, loops: int, count: int = 12) -> float:
@@ -173,7 +184,7 @@ def _equilibrium(conductor: Conductor, section: Section, nodes: Sequence[_Node])
     ops.pattern("Plain", 1, 1)
     for node, share in zip(nodes, shares.tolist(), strict=True):
         ops.mass(node.tag, *[conductor.mass * share + hung[node.tag]] * 3)
-        ops.load(node.tag, push[node.tag], -conductor.mass * GRAVITY * share, 0.0)
+        ops.load(node.tag, push[node.tag], -conductor.mass * GRAVITY * share, conductor.drag * share)
     _solve()
 
 

@@ -17,7 +17,7 @@ from engine.cycles.search import Cycles, DirectIntegration, explicit_starts, fin
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
-from engine.models.discretization import Discretization, discretize, with_wind_twist
+from engine.models.discretization import Discretization, discretize, fields_in_space, with_wind_twist
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, with_published_load
 from engine.models.reduced_model import ReducedModel, take
@@ -220,11 +220,9 @@ def _cycles_in_full_modes(
     member = cycles.member[usable]
     line = hybrid.line[member]
     vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
-    momentum = (vectors @ discretization.matrices.mass)[line]
-    shapes = hybrid.model.shapes[member]
-    fields: FloatArray = np.zeros((*shapes.shape[:2], shapes.shape[-1], FIELDS))
-    fields[..., 1:] = shapes.swapaxes(-1, -2)
-    projection = momentum @ merge_axes(fields, -2).swapaxes(-1, -2)
+    momentum = (vectors @ discretization.matrices.mass).reshape(*vectors.shape[:2], -1, FIELDS).swapaxes(-1, -2)
+    transverse = fields_in_space(discretization.profile, momentum)[:, :, 1:]
+    projection = merge_axes(transverse, -2)[line] @ merge_axes(hybrid.model.shapes[member], -2).swapaxes(-1, -2)
     orbits = Orbits(
         projection @ cycles.orbits.coefficients[usable],
         cycles.orbits.angular_frequency[usable],

@@ -8,12 +8,9 @@ import numpy as np
 
 from engine.analysis import analyse
 from engine.arrays import FloatArray
-from engine.mechanics.cross_sections import sections
-from engine.mechanics.finite_elements import matrices
 from engine.mechanics.modes import directional_shapes, full_modes
-from engine.mechanics.static_profile import static_profile
 from engine.models.aerodynamic_load import polynomial_load
-from engine.models.discretization import Discretization
+from engine.models.discretization import Discretization, discretize
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, with_published_load
 from engine.models.reduced_model import ReducedModel, take
@@ -81,9 +78,7 @@ def tight_line(*, sag_ratio: float, rigidity_ratio: float, elements: int) -> Lin
 
 def discretized(*lines: Line) -> Discretization:
     """Make profile, sections and matrices of lines."""
-    profile = static_profile(lines)
-    sections_of_lines = sections(lines, profile)
-    return Discretization(lines, profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
+    return discretize(lines)
 
 
 def hybrid(line: Line, loops: int = 1, analysis: Analysis | None = None) -> ReducedModel:

@@ -113,7 +113,8 @@ def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Li
     values = _values(sound, gathered)
     line = gathered.attempt("", lambda: spec.Line(**values))
     if line is not None and not gathered.neutral:
-        gathered.faults.extend(_slack_faults(line))
+        slack = list(_slack_faults(line))
+        gathered.faults.extend(slack or _string_faults(line))
     analysis = gathered.make("analysis", options, parts.analysis, _NEUTRAL_ANALYSIS)
     comparable = line or _apart_from_positions(values)
     if comparable is not None and options is not None:
@@ -189,6 +190,13 @@ def _slack_faults(line: spec.Line) -> Iterator[Fault]:
         field_name, sag = "horizontal_tension", _sag(span.length, tension / (line.conductor.mass * spec.GRAVITY))
     if sag > span.length:
         yield Fault(f"span.{field_name}", getattr(span, field_name), "must give a sag smaller than the span's length")
+
+
+def _string_faults(line: spec.Line) -> Iterator[Fault]:
+    if line.span.level_difference != 0.0:
+        from engine.mechanics.static_profile import string_faults  # noqa: PLC0415 - level spans need no numerics
+
+        yield from string_faults(line)
 
 
 def _sag(length: float, catenary_parameter: float) -> float:

@@ -54,7 +54,14 @@ def bundle(part: schemas.Bundle) -> spec.Bundle:
 
 def span(part: schemas.Span) -> spec.Span:
     """Build the span."""
-    return spec.Span(part.length, part.horizontal_tension, part.catenary_parameter, part.sag, part.elements)
+    return spec.Span(
+        length=part.length,
+        horizontal_tension=part.horizontal_tension,
+        catenary_parameter=part.catenary_parameter,
+        sag=part.sag,
+        elements=part.elements,
+        level_difference=part.level_difference,
+    )
 
 
 def support(part: schemas.Support) -> spec.Support:
@@ -106,7 +113,8 @@ def wind(part: schemas.Wind) -> spec.Wind:
     """Build the wind, except its speed."""
     mean = part.blow_out
     blow_out = spec.BlowOut(mean.wind_speed, mean.drag_coefficient) if mean else None
-    return spec.Wind(part.air_density, tuple((point.position, point.factor) for point in part.profile), blow_out)
+    profile = tuple((point.position, point.factor) for point in part.profile)
+    return spec.Wind(part.air_density, profile, blow_out, math.radians(part.yaw))
 
 
 def damping(part: schemas.Damping) -> spec.Damping:

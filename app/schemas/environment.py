@@ -132,7 +132,9 @@ class BlowOut(Document):
     """The mean drag that swings the plane of the sag downwind."""
 
     wind_speed: float = quantity("wind_speed_m_per_s", "Reference wind speed", "m/s", (0.0, 100.0), 10.0)
-    drag_coefficient: float = quantity("drag_coefficient", "Mean drag coefficient", "1", (0.0, 10.0), 1.0)
+    drag_coefficient: float | None = quantity(
+        "drag_coefficient", "Mean drag coefficient; if null, the horizontal one at rest", "1", (0.0, 10.0), 1.0, None
+    )
 
 
 class Wind(Document):
@@ -143,6 +145,9 @@ class Wind(Document):
         default=None,
         description="Blow-out by the mean drag, if any",
         examples=[{"wind_speed_m_per_s": 10.0, "drag_coefficient": 1.0}],
+    )
+    yaw: float = quantity(
+        "yaw_deg", "Angle between the wind and the horizontal normal of the line", "deg", (-75.0, 75.0), 30.0, 0.0
     )
     profile: list[ProfilePoint] = Field(
         default=[],

@@ -112,7 +112,7 @@ class Bundle(Document):
 
 
 class Span(Document):
-    """A level span with exactly one measure of its tension."""
+    """A span with exactly one measure of its tension."""
 
     length: float = quantity("length_m", "Horizontal length", "m", (1.0, LENGTH_LIMIT_M), 125.88)
     horizontal_tension: float | None = quantity(
@@ -126,7 +126,17 @@ class Span(Document):
         1285.5,
         None,
     )
-    sag: float | None = quantity("sag_m", "Alternatively, sag at mid-span, iced", "m", (1e-3, 1000.0), 1.54, None)
+    sag: float | None = quantity(
+        "sag_m", "Alternatively, sag from the chord at mid-span, iced", "m", (1e-3, 1000.0), 1.54, None
+    )
+    level_difference: float = quantity(
+        "level_difference_m",
+        "Height of the right support above the left one",
+        "m",
+        (-LENGTH_LIMIT_M, LENGTH_LIMIT_M),
+        0.0,
+        0.0,
+    )
     elements: int = Field(
         default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"unit": "1"}
     )

@@ -15,6 +15,7 @@ from benchmarks.validation import (
     model_comparison,
     quasi_periodic,
     relative_wind,
+    static_state,
     static_twist,
     studies,
 )
@@ -41,6 +42,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "quasi_periodic": quasi_periodic.section,
     "studies": studies.section,
     "relative_wind": relative_wind.section,
+    "static_state": static_state.section,
     "static_twist": static_twist.section,
     "device_placement": device_placement.section,
 }

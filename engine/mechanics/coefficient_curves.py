@@ -11,7 +11,8 @@ from functools import lru_cache
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.mechanics.cross_sections import Sections, coefficients_along, positions
+from engine.mechanics.along_span import coefficients_along
+from engine.mechanics.cross_sections import Sections, positions
 from engine.mechanics.static_profile import StaticProfile
 from engine.spec import CLOSED, TURN, Aerodynamics, Line, MeasuredCoefficients
 

@@ -4,16 +4,17 @@ Ice, spoilers and the wind profile change at given positions. Every integral is 
 positions, so a boundary inside an element causes no quadrature error (theory section 3).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from engine.arrays import FloatArray
+from engine.mechanics.along_span import boundaries, coefficients_along, wind_factor
 from engine.mechanics.coefficients import fit_measured
 from engine.mechanics.static_profile import StaticProfile, arc_position, horizontal_position
-from engine.spec import Aerodynamics, IceSegment, Line, StretchDevice, ice_properties
+from engine.spec import Aerodynamics, Line, ice_properties
 
 PIECE_POINTS = 5  # exact to degree 9: cubic loads of quadratic shapes, times a shape
 
@@ -125,14 +126,6 @@ def gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
     return abscissae, weights
 
 
-def boundaries(line: Line) -> list[float]:
-    """Return the positions strictly inside the span where a property or the wind's slope jumps [m], ascending."""
-    parts: list[IceSegment | StretchDevice] = [*line.ice.segments, *line.stretches]
-    stretches = [(part.start, part.stop) for part in parts]
-    marks = {mark for stretch in stretches for mark in stretch} | {position for position, _ in line.wind.profile}
-    return sorted(mark for mark in marks if 0.0 < mark < line.span.length)
-
-
 def _piece_edges(lines: Sequence[Line], profile: StaticProfile, elements: int) -> FloatArray:
     """Return the element coordinates of piece boundaries, (lines, elements, pieces + 1), padded with empty pieces."""
     marks = [np.array(boundaries(line)) for line in lines]
@@ -170,33 +163,11 @@ def _aerodynamics(line: Line, position: FloatArray, twist: FloatArray) -> FloatA
     return result
 
 
-def coefficients_along(line: Line) -> Iterator[tuple[float, float, Aerodynamics]]:
-    """Yield the coefficients of the span, then of each stretch [m] that has its own; later ones override.
-
-    A stretch that does not say its coefficients at rest has those of the span (theory section 13).
-    """
-    yield -np.inf, np.inf, line.ice.aerodynamics
-    parts: list[IceSegment | StretchDevice] = [*line.ice.segments, *line.stretches]
-    for part in parts:
-        own = part.aerodynamics
-        if own is not None:
-            at_rest = line.ice.aerodynamics.at_rest if own.at_rest is None else own.at_rest
-            yield part.start, part.stop, replace(own, at_rest=at_rest)
-
-
 def _at_local_angle(aerodynamics: Aerodynamics, twist: FloatArray) -> FloatArray:
     """Return the coefficients at points with a twist [rad]; without a table the twist does not change them."""
     if aerodynamics.measured is None or not twist.any():
         return _table(aerodynamics)
     return np.stack([_table(fit_measured(aerodynamics.measured, turn)) for turn in twist.tolist()])
-
-
-def wind_factor(line: Line, position: FloatArray) -> FloatArray:
-    """Return the wind factor phi at horizontal positions (...) [m]: linear between the profile's points."""
-    if not line.wind.profile:
-        return np.ones(position.shape)
-    marks, factors = zip(*line.wind.profile, strict=True)
-    return np.asarray(np.interp(position, marks, factors))
 
 
 def _table(aerodynamics: Aerodynamics) -> FloatArray:

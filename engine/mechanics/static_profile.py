@@ -1,38 +1,49 @@
 """Static profile of iced spans: catenary, tension, and the springs that restrain U at the ends. Theory section 2."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from engine.arrays import FloatArray
-from engine.spec import GRAVITY, IceSegment, Line, Support
+from engine.mechanics.along_span import mean_drag, mean_mass
+from engine.mechanics.blow_out import StillSpans, plane_axes, plane_extent, tension_in_wind
+from engine.mechanics.catenary import arc_length, catenary_of_sag, chord_sag, low_point
+from engine.outcome import Fault, require
+from engine.spec import GRAVITY, Line, Support
 
 
 @dataclass(frozen=True, slots=True)
 class StaticProfile:
     """Static state of a stack of lines; every array has the leading axis (lines,).
 
-    span_length L_x [m]; arc_length L [m]; catenary_parameter c [m]; sag s_a [m]; horizontal_tension H per
-    sub-conductor under the resultant of weight and mean drag [N]; tilt of the plane of the sag [rad];
-    end_stiffness K_x per sub-conductor at the left and the right end (lines, 2) [N/m], infinite at a dead end.
+    The curve is a catenary in a plane that mean drag turns. span_length L_x [m], horizontal along X; plane_span: extent
+    of the curve in its plane, across the resultant load [m]; low_point: x_0 in the plane, from the left support [m];
+    arc_length L [m]; catenary_parameter c [m]; sag s_a from the chord, in the plane [m]; horizontal_tension: H along X
+    per sub-conductor [N]; tilt of the plane of the sag [rad]; axes (lines, 3, 3): the axes of the plane in (X, Y, Z),
+    along, up against the resultant load, and out of the plane; end_stiffness K_x per sub-conductor at the left and the
+    right end (lines, 2) [N/m], infinite at a dead end.
     """
 
     span_length: FloatArray
+    plane_span: FloatArray
+    low_point: FloatArray
     arc_length: FloatArray
     catenary_parameter: FloatArray
     sag: FloatArray
     horizontal_tension: FloatArray
     tilt: FloatArray
+    axes: FloatArray
     end_stiffness: FloatArray
 
 
 def static_profile(lines: Sequence[Line]) -> StaticProfile:
     """Return the static state of each line.
 
-    The given tension, catenary parameter or sag belongs to still air. A mean drag q rotates that catenary rigidly about
-    its chord by atan(q/p); equilibrium under the resultant load then requires the tension H sqrt(1 + (q/p)^2). Ice of
-    varying mass enters through its mean over the span.
+    The given tension, catenary parameter or sag belongs to still air. Mean drag q turns the plane of the sag by
+    atan(q/p); the tension then follows from the unstressed length that still air leaves, with end springs that keep
+    their stiffness. The curve spans the given length; only its tension takes the give of the springs into account. Ice
+    of varying mass enters through its mean over the span. Theory section 15.
 
     Parameters
     ----------
@@ -41,70 +52,67 @@ def static_profile(lines: Sequence[Line]) -> StaticProfile:
     Returns
     -------
     StaticProfile
+
+    Raises
+    ------
+    InvalidSpec
+        If the conductor pulls an insulator string up.
     """
+    require(*(fault for line in lines for fault in string_faults(line)))
     length = np.array([line.span.length for line in lines])
+    rise = np.array([line.span.level_difference for line in lines])
     weight = GRAVITY * np.array([mean_mass(line) for line in lines])
-    catenary = np.array([_catenary_parameter(line, p) for line, p in zip(lines, weight, strict=True)])
-    drag_ratio = np.array([_mean_drag(line) for line in lines]) / weight
-    arc = 2.0 * catenary * np.sinh(0.5 * length / catenary)
-    resultant = weight * np.hypot(1.0, drag_ratio)
-    ends = [_end_stiffness(*item) for item in zip(lines, resultant, catenary, strict=True)]
+    still = np.array([_catenary_parameter(line, p) for line, p in zip(lines, weight, strict=True)])
+    ends = np.array([_end_stiffness(*item) for item in zip(lines, weight, still, strict=True)]).reshape(len(lines), 2)
+    tilt = np.arctan(np.array([mean_drag(line) for line in lines]) / weight)
+    rigidity = np.array([line.conductor.axial_rigidity for line in lines])
+    hung = StillSpans(length, rise, weight, rigidity, still * weight, (1.0 / ends).sum(axis=1))
+    tension = tension_in_wind(hung, tilt)
+    plane_span, plane_rise = plane_extent(length, rise, tilt)
+    catenary = still * (tension / (still * weight)) * (plane_span / length) * np.cos(tilt)
     return StaticProfile(
         span_length=length,
-        arc_length=arc,
+        plane_span=plane_span,
+        low_point=low_point(catenary, plane_span, plane_rise),
+        arc_length=arc_length(catenary, plane_span, plane_rise),
         catenary_parameter=catenary,
-        sag=catenary * (np.cosh(0.5 * length / catenary) - 1.0),
-        horizontal_tension=catenary * resultant,
-        tilt=np.arctan(drag_ratio),
-        end_stiffness=np.array(ends).reshape(len(lines), 2),
+        sag=chord_sag(catenary, plane_span, plane_rise),
+        horizontal_tension=tension,
+        tilt=tilt,
+        axes=plane_axes(length, rise, tilt),
+        end_stiffness=ends,
     )
 
 
 def arc_position(profile: StaticProfile, position: FloatArray) -> FloatArray:
     """Return the arc length s [m] at horizontal distances from the left support [m], shapes (lines, ...)."""
-    c = _column(profile.catenary_parameter, position)
-    half = 0.5 * _column(profile.span_length, position)
-    return np.asarray(c * (np.sinh((position - half) / c) + np.sinh(half / c)))
+    c, low = (_column(values, position) for values in (profile.catenary_parameter, profile.low_point))
+    x = position * _column(profile.plane_span / profile.span_length, position)
+    return np.asarray(c * (np.sinh((x - low) / c) + np.sinh(low / c)))
 
 
 def horizontal_position(profile: StaticProfile, arc: FloatArray) -> FloatArray:
     """Return the horizontal distance from the left support [m] at arc lengths s [m], shapes (lines, ...)."""
-    c = _column(profile.catenary_parameter, arc)
-    half_arc = 0.5 * _column(profile.arc_length, arc)
-    return np.asarray(0.5 * _column(profile.span_length, arc) + c * np.arcsinh((arc - half_arc) / c))
+    return np.asarray(_plane_position(profile, arc) * _column(profile.span_length / profile.plane_span, arc))
 
 
 def coordinates(profile: StaticProfile, arc: FloatArray) -> FloatArray:
     """Return (x, y, z) [m] of the reference curve at arc lengths s [m]: shape (lines, ..., 3)."""
-    c = _column(profile.catenary_parameter, arc)
-    half = 0.5 * _column(profile.span_length, arc)
-    tilt = _column(profile.tilt, arc)
-    x = horizontal_position(profile, arc)
-    drop = c * (np.cosh((x - half) / c) - np.cosh(half / c))
-    return np.stack([x, drop * np.cos(tilt), -drop * np.sin(tilt)], axis=-1)
+    c, low = (_column(values, arc) for values in (profile.catenary_parameter, profile.low_point))
+    x = _plane_position(profile, arc)
+    height = 2.0 * c * np.sinh(0.5 * x / c) * np.sinh((0.5 * x - low) / c)
+    along, up, _ = (_column(axis, arc[..., None]) for axis in np.moveaxis(profile.axes, 1, 0))
+    return np.asarray(x[..., None] * along + height[..., None] * up)
 
 
-def mean_mass(line: Line) -> float:
-    """Return the iced mass per length of a sub-conductor, averaged over the span [kg/m]."""
-    base = line.conductor.mass
-    excess = sum((_segment_mass(s, base) - base) * (s.stop - s.start) for s in line.ice.segments)
-    return base + excess / line.span.length
-
-
-def _segment_mass(segment: IceSegment, base: float) -> float:
-    return base if segment.mass is None else segment.mass
+def _plane_position(profile: StaticProfile, arc: FloatArray) -> FloatArray:
+    c, low = (_column(values, arc) for values in (profile.catenary_parameter, profile.low_point))
+    return np.asarray(low + c * np.arcsinh(arc / c - np.sinh(low / c)))
 
 
 def _column(values: FloatArray, like: FloatArray) -> FloatArray:
-    return values.reshape(values.shape + (1,) * (like.ndim - values.ndim))
-
-
-def _mean_drag(line: Line) -> float:
-    blow_out = line.wind.blow_out
-    if blow_out is None:
-        return 0.0
-    pressure = 0.5 * line.wind.air_density * blow_out.wind_speed**2
-    return pressure * line.conductor.diameter * blow_out.drag_coefficient
+    """Insert axes after the first, so that values (lines, ...) broadcast against an array of as many axes as `like`."""
+    return values.reshape(values.shape[0], *(1,) * (like.ndim - values.ndim), *values.shape[1:])
 
 
 def _catenary_parameter(line: Line, weight: float) -> float:
@@ -114,21 +122,29 @@ def _catenary_parameter(line: Line, weight: float) -> float:
     if span.horizontal_tension is not None:
         return span.horizontal_tension / weight
     assert span.sag is not None, "the span checks on construction that one measure is given"
-    return _catenary_of_sag(span.length, span.sag)
+    return catenary_of_sag(span.sag, span.length, span.level_difference)
 
 
-def _catenary_of_sag(length: float, sag: float) -> float:
-    """Solve c (cosh(L_x/2c) - 1) = sag for c by Newton's method on u = L_x/2c, from the parabola's u = 4 sag/L_x."""
-    ratio = 2.0 * sag / length
-    u = np.arcsinh(2.0 * ratio)
-    for _ in range(60):
-        value = 2.0 * np.sinh(0.5 * u) ** 2 / u - ratio
-        slope = (np.sinh(u) - 2.0 * np.sinh(0.5 * u) ** 2 / u) / u
-        step = value / slope
-        u -= step
-        if abs(step) <= 1e-15 * u:
-            break
-    return float(0.5 * length / u)
+def string_faults(line: Line) -> Iterator[Fault]:
+    """Yield a fault for every insulator string that the span pulls up in still air, so that it cannot hang."""
+    if line.span.level_difference == 0.0 or line.supports.longitudinal_stiffness is not None:
+        return
+    weight = GRAVITY * mean_mass(line)
+    catenary = _catenary_parameter(line, weight)
+    for name, end, own in _ends(line, catenary):
+        if end.dead_end or end.insulator_length is None:
+            continue
+        carried = _carried(line, end, weight, catenary, own) + 0.5 * end.insulator_weight
+        if carried <= 0.0:
+            rule = f"must be absent: the string cannot hang where the conductor pulls it up by {-carried:.0f} N"
+            yield Fault(f"supports.{name}.insulator_length", end.insulator_length, rule)
+
+
+def _ends(line: Line, catenary: float) -> Iterator[tuple[str, Support, float]]:
+    """Yield both ends by name with their horizontal distance from the low point, negative beyond it [m]."""
+    low = float(low_point(np.array(catenary), np.array(line.span.length), np.array(line.span.level_difference)))
+    yield "left", line.supports.left, low
+    yield "right", line.supports.right, line.span.length - low
 
 
 def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, float]:
@@ -137,25 +153,29 @@ def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, f
     if given is not None:
         return given, given
     left, right = (
-        np.inf if end.dead_end else _adjacent_stiffness(line, end, weight, catenary)
-        for end in (line.supports.left, line.supports.right)
+        np.inf if end.dead_end else _adjacent_stiffness(line, end, weight, catenary, own)
+        for _, end, own in _ends(line, catenary)
     )
     return left, right
 
 
-def _adjacent_stiffness(line: Line, end: Support, weight: float, catenary: float) -> float:
-    """Return K_x of eq. (A10) [N/m]: static stiffness of the adjacent span, plus that of the insulator string.
-
-    weight is the resultant of weight and mean drag per length [N/m], assumed the same on the adjacent span. The string
-    carries half of the load of both spans.
-    """
+def _adjacent_stiffness(line: Line, end: Support, weight: float, catenary: float, own: float) -> float:
+    """Return K_x of eq. (A10) in still air [N/m]: static stiffness of the adjacent span, plus that of the string."""
     tension = catenary * weight
     rigidity = line.conductor.axial_rigidity
     adjacent = end.adjacent_span or line.span.length
     arc = 2.0 * catenary * np.sinh(0.5 * adjacent / catenary)
     stiffness = 12.0 * rigidity * tension**3 / (12.0 * arc * tension**3 + rigidity * weight**2 * adjacent**3)
     if end.insulator_length is not None:
-        own_arc = 2.0 * catenary * np.sinh(0.5 * line.span.length / catenary)
-        carried = 0.5 * weight * (own_arc + arc)
+        carried = _carried(line, end, weight, catenary, own)
         stiffness += (carried + 0.5 * end.insulator_weight) / end.insulator_length
     return float(stiffness)
+
+
+def _carried(line: Line, end: Support, weight: float, catenary: float, own: float) -> float:
+    """Return the vertical parts of the tensions of this and of the adjacent span, which is level, at a support [N].
+
+    own: horizontal distance of the support from the low point of this span [m].
+    """
+    adjacent = end.adjacent_span or line.span.length
+    return float(weight * catenary * (np.sinh(own / catenary) + np.sinh(0.5 * adjacent / catenary)))

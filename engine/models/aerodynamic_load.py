@@ -178,16 +178,16 @@ def published_load(
 ) -> PolynomialLoad:
     """Return the load of the published closure (A14)-(A17), with f_wtheta in C_z (theory section 5): one scalar alpha'.
 
-    Parameters are those of `span_load`; fields (lines, groups, 3, 3, elements, points) holds f_v, f_w, f_theta on its
-    diagonal and arc_length is L (lines,) [m]. A wind profile enters through means weighted with f_theta^2; the load is
-    then an approximation that only serves for starts.
+    Parameters are those of `span_load`, with shapes of the hybrid model: Theta is f_theta of the last coordinate, and
+    V and W of each other one take the place of f_v and f_w. arc_length is L (lines,) [m]. A wind profile enters through
+    means weighted with f_theta^2; the load is then an approximation that only serves for starts.
     """
     count = len(lines)
-    f_v, f_w, f_theta = (fields[..., i, i, :, :].reshape(count, fields.shape[1], -1) for i in range(3))
+    points = merge_axes(fields, -2)
+    f_theta = points[..., TORSIONAL, TORSIONAL, :]
     ds = weight.reshape(count, 1, -1)
     factor = sections_of_lines.wind_factor.reshape(count, 1, -1)
-    f_vtheta = 2.0 / arc_length[:, None] * (f_v * f_theta * ds).sum(axis=-1)  # (A15)
-    f_wtheta = 2.0 / arc_length[:, None] * (f_w * f_theta * ds).sum(axis=-1)
+    share = 2.0 / arc_length[:, None, None, None] * (points * (f_theta * ds)[:, :, None, None]).sum(axis=-1)  # (A15)
     speed = 2.0 / arc_length[:, None] * (f_theta**2 * factor * ds).sum(axis=-1)
     exponents = np.arange(2, 5)
     shape_powers = f_theta[..., None] ** exponents * (ds * factor**2)[..., None]
@@ -195,13 +195,12 @@ def published_load(
     integrals = np.einsum("lpij,lgpj->lgij", coefficients, shape_powers)  # (A17)
     diameter = np.array([line.conductor.diameter for line in lines])[:, None]
     density = np.array([line.wind.air_density * len(line.bundle.positions) for line in lines])[:, None]
-    projection = np.stack([f_vtheta, f_wtheta, np.broadcast_to(diameter, f_vtheta.shape)], axis=-1)
-    table = (0.5 * density * diameter)[..., None, None] * projection[..., None] * integrals
-    form = np.zeros((*f_vtheta.shape, 6))
+    arm = np.stack([np.ones_like(diameter), np.ones_like(diameter), diameter], axis=-1)
+    table = (0.5 * density * diameter)[..., None, None] * ((share * arm[:, :, None]) @ integrals)
+    form = np.zeros((*f_theta.shape[:2], 6))
     form[..., TORSIONAL] = 1.0
-    form[..., 3 + VERTICAL] = -f_vtheta / speed  # (A16)
-    form[..., 3 + TORSIONAL] = -0.5 * diameter / speed
-    points = merge_axes(fields, -2)
+    form[..., 3:] = -share[..., VERTICAL] / speed[..., None]  # (A16)
+    form[..., 3 + TORSIONAL] -= 0.5 * diameter / speed
     angle = angle_forms(points, diameter[..., None], factor)
     return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)
 

@@ -1,4 +1,8 @@
-"""From lines to finite element matrices, the basis of both reduced models. Theory sections 2 and 3."""
+"""From lines to finite element matrices, the basis of both reduced models. Theory sections 2, 3 and 15.
+
+Everything structural (matrices, eigenproblems, mode shapes) is in the axes of the plane of the sag: along, up and out
+of it, which are X, Y and Z without blow-out. Wind, devices and what is reported are in X, Y and Z.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,8 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.mechanics.cross_sections import Sections, sections, wind_factor
-from engine.mechanics.finite_elements import Matrices, matrices, shape_functions
+from engine.mechanics.along_span import wind_factor
+from engine.mechanics.cross_sections import Sections, sections
+from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, matrices, shape_functions
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
 from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state, twisted_where_large
 from engine.mechanics.torsional_elements import torsional_elements
@@ -20,8 +25,8 @@ from engine.spec import AerodynamicModel, Line, StaticTwist
 class Discretization:
     """Static profile, sections and matrices of a stack of lines.
 
-    twist: in still air, None if it is neglected; wind_twist: in the wind, from the state in still air on, None if it is
-    not followed.
+    matrices: in the axes of the plane of the sag; twist: in still air, None if it is neglected; wind_twist: in the
+    wind, from the state in still air on, None if it is not followed.
     """
 
     lines: tuple[Line, ...]
@@ -50,12 +55,57 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
     if static_twist is StaticTwist.SOLVED:
         state = twisted_state(lines, profile, sections_of_lines)
     else:
-        plain = Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
+        system = matrices(lines, profile, sections_of_lines)
+        plain = Discretization(tuple(lines), profile, sections_of_lines, _in_plane(profile, system))
         large = None if static_twist is StaticTwist.NEGLECTED else twisted_where_large(*plain.parts)
         if large is None:
             return plain
         state = large
-    return Discretization(tuple(lines), profile, *twisted_matrices(lines, profile, sections_of_lines, state), state)
+    turned, system = twisted_matrices(lines, profile, sections_of_lines, state)
+    return Discretization(tuple(lines), profile, turned, _in_plane(profile, system), state)
+
+
+def fields_in_space(profile: StaticProfile, fields: FloatArray) -> FloatArray:
+    """Turn fields from the axes of the plane of the sag to X, Y and Z.
+
+    Parameters
+    ----------
+    profile : StaticProfile
+    fields : (lines, ..., fields, nodes)
+        The last ones of U, V, W and Theta. Without U its part in V and W is left out; it is zero on level spans.
+
+    Returns
+    -------
+    (lines, ..., fields, nodes)
+    """
+    if not profile.tilt.any():
+        return fields
+    count = fields.shape[-2]
+    turn = _frames(profile)[:, -count:, -count:].swapaxes(-1, -2)
+    return np.asarray(turn.reshape(turn.shape[0], *(1,) * (fields.ndim - 3), count, count) @ fields)
+
+
+def _frames(profile: StaticProfile) -> FloatArray:
+    """Return the axes of the plane as rows for U, V and W, and Theta unchanged: (lines, 4, 4)."""
+    frames = np.zeros((profile.tilt.size, FIELDS, FIELDS))
+    frames[:, :THETA, :THETA] = profile.axes
+    frames[:, THETA, THETA] = 1.0
+    return frames
+
+
+def _in_plane(profile: StaticProfile, system: Matrices) -> Matrices:
+    """Turn the freedoms of each node from X, Y and Z to the axes of the plane of the sag."""
+    if not profile.tilt.any():
+        return system
+    back = _frames(profile).swapaxes(-1, -2)
+
+    def turned(matrix: FloatArray) -> FloatArray:
+        for _ in range(2):  # the columns, then the rows
+            by_node = matrix.reshape(matrix.shape[0], -1, FIELDS) @ back
+            matrix = by_node.reshape(matrix.shape).swapaxes(-1, -2)
+        return matrix
+
+    return replace(system, stiffness=turned(system.stiffness), mass=turned(system.mass))
 
 
 def with_wind_twist(discretization: Discretization, wind_speeds: FloatArray) -> Discretization:

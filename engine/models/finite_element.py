@@ -6,7 +6,7 @@ from engine.arrays import FloatArray
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W, device_damping
 from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
 from engine.models.aerodynamic_load import span_load, take_load
-from engine.models.discretization import Discretization
+from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
 from engine.spec import Analysis, DampingModel
 
@@ -24,7 +24,8 @@ def finite_element_model(
     vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
     values = modes.eigenvalues.reshape(vectors.shape[:2])
     nodes = vectors.shape[-1] // FIELDS
-    fields = vectors.reshape(*vectors.shape[:2], nodes, FIELDS).swapaxes(-1, -2)
+    in_plane = vectors.reshape(*vectors.shape[:2], nodes, FIELDS).swapaxes(-1, -2)
+    fields = fields_in_space(discretization.profile, in_plane)
     nodal = fields[:, :, list(TRANSVERSE)]
     at = at_points(discretization.matrices, nodal)
     load = span_load(

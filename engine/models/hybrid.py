@@ -18,7 +18,7 @@ from engine.models.aerodynamic_load import (
     span_load,
     take_load,
 )
-from engine.models.discretization import Discretization
+from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals
 from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, LongitudinalInertia
 
@@ -49,7 +49,7 @@ def hybrid_model(
     square = np.where(constant[:, None, None], squares[:, [shapes.loops.index(1)]], squares[:, selected])
     rate = 2.0 * damping_ratios(discretization.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
     unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
-    nodal = _diagonal_fields(shapes.nodal[:, selected, 1:])
+    nodal = fields_in_space(discretization.profile, _diagonal_fields(shapes.nodal[:, selected, 1:]))
     damping = diagonal_matrices(rate * diagonals(mass))  # (11)
     damping += device_damping(discretization.lines, discretization.profile, nodal)
     load = _hybrid_load(discretization, nodal, analysis)
@@ -144,9 +144,12 @@ def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: An
         analysis.aerodynamic_model,
     )
     q_theta, (v_rate, w_rate, theta_rate) = 2, range(nodal.shape[2], nodal.shape[2] + 3)
+    active = (q_theta, v_rate, w_rate, theta_rate)
+    if discretization.profile.tilt.any():  # both rates make each velocity
+        return integrate_along_span(load, active)
     if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
         return integrate_along_span(load, (q_theta, theta_rate, v_rate))
-    return integrate_each(load, (q_theta, v_rate, w_rate, theta_rate))
+    return integrate_each(load, active)
 
 
 def _diagonal_fields(shapes: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from engine.arrays import FloatArray
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DIRECTIONS, directional_shapes, full_modes
 from engine.mechanics.static_profile import horizontal_position
-from engine.models.discretization import discretize
+from engine.models.discretization import discretize, fields_in_space
 from engine.spec import Analysis, Line
 
 
@@ -18,8 +18,9 @@ class ModeShapes:
 
     position: (nodes,), horizontal distance from the left support [m]. hybrid, finite_element: (3, loops, 4, nodes),
     components U, V, W, Theta. In the hybrid shapes only the component of the direction itself moves, with f_u beside
-    f_v. Each finite element mode is scaled so that its own component fits the hybrid shape by least squares. In SI
-    units Theta is then per metre in the first two directions, and U, V, W are in metres in the third.
+    f_v; after blow-out the first two directions are in and out of the plane of the sag. Each finite element mode is
+    scaled so that its own component fits the hybrid shape by least squares. In SI units Theta is then per metre in the
+    first two directions, and U, V, W are in metres in the third.
     """
 
     position: FloatArray
@@ -52,4 +53,5 @@ def mode_shapes(line: Line, analysis: Analysis) -> ModeShapes:
     target, found = hybrid[range(3), :, own], full[range(3), :, own]
     scale = (target * found).sum(axis=-1) / (found**2).sum(axis=-1)
     arc = np.linspace(0.0, profile.arc_length, nodal.shape[-1], axis=-1)
-    return ModeShapes(horizontal_position(profile, arc)[0], hybrid, full * scale[..., None, None])
+    shapes = fields_in_space(profile, np.stack([hybrid, full * scale[..., None, None]])[None])[0]
+    return ModeShapes(horizontal_position(profile, arc)[0], shapes[0], shapes[1])

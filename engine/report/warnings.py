@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
-from engine.mechanics.static_profile import mean_mass
+from engine.mechanics.along_span import mean_mass
 from engine.mechanics.static_twist import LARGE_TWIST, linear_twist
 from engine.models.discretization import Discretization
 from engine.models.relative_wind import FASTEST

@@ -129,10 +129,13 @@ class Ice:
 
 @dataclass(frozen=True, slots=True)
 class BlowOut:
-    """Mean drag, of wind_speed [m/s] and drag_coefficient, that turns the plane of the sag. Theory section 2."""
+    """Mean drag at wind_speed [m/s] that turns the plane of the sag. Theory section 15.
+
+    drag_coefficient: None takes the coefficients C_z0 at rest.
+    """
 
     wind_speed: float
-    drag_coefficient: float
+    drag_coefficient: float | None = None
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
@@ -144,11 +147,15 @@ class BlowOut:
 
 @dataclass(frozen=True, slots=True)
 class Wind:
-    """Air density [kg/m3]; profile of (position [m], factor phi), linear between points and constant outside them."""
+    """Air density [kg/m3]; profile of (position [m], factor phi), linear between points and constant outside them.
+
+    yaw: angle between the wind and the horizontal normal of the line [rad].
+    """
 
     air_density: float = 1.2929
     profile: tuple[tuple[float, float], ...] = ()
     blow_out: BlowOut | None = None
+    yaw: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the rules of every field and that the positions of the profile ascend."""
@@ -159,6 +166,8 @@ class Wind:
             *(not_negative(f"wind.profile.{i}.position", x) for i, (x, _) in enumerate(self.profile)),
             *(positive(f"wind.profile.{i}.factor", phi) for i, (_, phi) in enumerate(self.profile)),
             None if rising else Fault("wind.profile", positions, "must have positions in rising order"),
+            finite("wind.yaw", self.yaw),
+            None if abs(self.yaw) < 0.5 * math.pi else Fault("wind.yaw", self.yaw, "must be below a right angle"),
         )
 
 

@@ -18,7 +18,8 @@ class Line:
     Raises
     ------
     InvalidSpec
-        If a position lies off the span, devices overlap, or the eccentricity is too large for the polar inertia.
+        If a position lies off the span, devices overlap, the eccentricity is too large for the polar inertia, or the
+        blow-out has no drag.
     """
 
     conductor: Conductor
@@ -31,11 +32,12 @@ class Line:
     devices: tuple[Device, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check positions on the span, overlaps of devices, and that eccentricity leaves a positive inertia."""
+        """Check positions on the span, overlaps of devices, that inertia is positive and that drag is known."""
         require(
             *self._position_faults(),
             *overlap_faults(self._stretches_by_field()),
             *self._inertia_faults(),
+            self._drag_fault(),
         )
 
     @property
@@ -84,6 +86,12 @@ class Line:
             if not self.conductor.polar_inertia > mass * (e_y**2 + e_z**2):
                 rule = "must leave the polar inertia about the mass centre positive: I > m (e_y^2 + e_z^2)"
                 yield Fault(f"{path}.eccentricity_y", math.hypot(e_y, e_z), rule)
+
+    def _drag_fault(self) -> Fault | None:
+        blow_out = self.wind.blow_out
+        if blow_out is None or blow_out.drag_coefficient is not None or self.ice.aerodynamics.at_rest is not None:
+            return None
+        return Fault("wind.blow_out.drag_coefficient", None, "must be given where ice.aerodynamics_at_rest is not")
 
 
 def ice_properties(line: Line, piece: Ice | IceSegment) -> tuple[float, float, float]:

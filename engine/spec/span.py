@@ -1,6 +1,7 @@
 """Conductor, bundle, span geometry and supports."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from engine.outcome import Fault, require
@@ -93,10 +94,11 @@ class Bundle:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Level span: horizontal length L_x [m], number of elements, and exactly one measure of its tightness.
+    """Span: horizontal length L_x [m], number of elements, and exactly one measure of its tightness.
 
-    horizontal_tension H per sub-conductor [N], catenary_parameter H/p [m] or mid-span sag s_a [m], each of the iced
-    conductor in still air. Theory section 2.
+    horizontal_tension H per sub-conductor [N], catenary_parameter H/p [m] or mid-span sag s_a from the chord [m], each
+    of the iced conductor in still air. level_difference: height of the right support above the left one [m]. Theory
+    sections 2 and 16.
     """
 
     length: float
@@ -104,6 +106,7 @@ class Span:
     catenary_parameter: float | None = None
     sag: float | None = None
     elements: int = 10
+    level_difference: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the rules of every field and that one measure of tightness is given."""
@@ -116,7 +119,14 @@ class Span:
             positive("span.sag", self.sag),
             None if len(given) == 1 else Fault("span", tuple(given), one_measure),
             None if self.elements >= 2 else Fault("span.elements", self.elements, "must be at least 2"),
+            *self._level_faults(),
         )
+
+    def _level_faults(self) -> Iterator[Fault | None]:
+        yield finite("span.level_difference", self.level_difference)
+        if abs(self.level_difference) > self.length > 0.0:
+            rule = f"must not exceed the span's length ({self.length}), up or down"
+            yield Fault("span.level_difference", self.level_difference, rule)
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,8 +117,9 @@ class _Study:
                 if row.model is not Model.HYBRID or row.kind != "periodic" or row.frequency_hz is None:
                     continue
                 column = self.analysis.loops.index(row.loops)
-                seen = np.diagonal(observation(discretization, grid.shapes[i, column], row.loops))
-                series = np.array([orbit.vertical, orbit.horizontal, orbit.torsional])[:, :size] / seen[:, None]
+                seen = observation(discretization, grid.shapes[i, column], row.loops)
+                observed = np.array([orbit.vertical, orbit.horizontal, orbit.torsional])[:, :size]
+                series = np.linalg.pinv(seen.T) @ observed
                 coefficients.append(np.pad(series, ((0, 0), (0, size - series.shape[1]))))
                 member.append(column * self.winds.size + int(np.searchsorted(self.winds, row.wind_speed_m_per_s)))
                 value.append(i)

@@ -22,7 +22,7 @@ FULL_LINE: dict[str, Any] = {
         "polar_inertia_kg_m": 3.334e-4,
     },
     "bundle": {"subconductors": 2, "radius_m": 0.2355, "orientation_deg": 90.0},
-    "span": {"length_m": 125.88, "horizontal_tension_n": 30000.0, "elements": 12},
+    "span": {"length_m": 125.88, "horizontal_tension_n": 30000.0, "elements": 12, "level_difference_m": 3.0},
     "supports": {
         "longitudinal_stiffness_n_per_m": None,
         "left": {"dead_end": True, "adjacent_span_m": None, "insulator_length_m": None, "insulator_weight_n": 0.0},
@@ -47,6 +47,7 @@ FULL_LINE: dict[str, Any] = {
     "wind": {
         "air_density_kg_per_m3": 1.2,
         "blow_out": {"wind_speed_m_per_s": 10.0, "drag_coefficient": 1.1},
+        "yaw_deg": 30.0,
         "profile": [{"position_m": 0.0, "factor": 0.7}, {"position_m": 125.88, "factor": 1.3}],
     },
     "damping": {

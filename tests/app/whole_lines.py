@@ -91,7 +91,10 @@ _TIGHTNESS = st.one_of(
 )
 _SPAN = st.builds(
     lambda given, tightness: given | tightness,
-    st.fixed_dictionaries({"length_m": near(130.0, 3.0), "elements": st.integers(4, 6)}),
+    st.fixed_dictionaries(
+        {"length_m": near(130.0, 3.0), "elements": st.integers(4, 6)},
+        optional={"level_difference_m": st.floats(-2.0, 2.0)},
+    ),
     _TIGHTNESS,
 )
 _END = st.fixed_dictionaries(
@@ -132,6 +135,7 @@ _WIND = st.fixed_dictionaries(
         "blow_out": st.none()
         | st.fixed_dictionaries({"wind_speed_m_per_s": st.floats(0.0, 20.0), "drag_coefficient": near(1.0)}),
         "profile": st.sampled_from([[], _PROFILE]),
+        "yaw_deg": st.floats(-40.0, 40.0),
     },
 )
 _DAMPING = st.fixed_dictionaries(

@@ -188,13 +188,13 @@ def everything() -> Line:
     return replace(
         line,
         conductor=replace(line.conductor, axial_torsional_coupling=500.0),
-        span=Span(140.0, sag=2.0, elements=12),
+        span=Span(140.0, sag=2.0, elements=12, level_difference=4.0),
         supports=Supports(
             left=Support(dead_end=True),
             right=Support(adjacent_span=220.0, insulator_length=1.5, insulator_weight=300.0),
         ),
         ice=Ice(at_rest, 1e-3, -1e-3, (IceSegment(5.0, 31.0, at_rest, 2e-3, 0.0, 2.6), IceSegment(31.0, 33.0))),
-        wind=Wind(1.2, ((0.0, 0.7), (140.0, 1.3)), BlowOut(10.0, 1.0)),
+        wind=Wind(1.2, ((0.0, 0.7), (140.0, 1.3)), BlowOut(10.0, 1.0), yaw=0.3),
         devices=(
             Spacer(35.0, 6.0, 0.4),
             DetuningPendulum(70.0, 8.0, 0.3, 0.1),
@@ -210,7 +210,7 @@ def test_line_with_every_part_gets_plausible_rows(model: AerodynamicModel) -> No
     analysis = Analysis(wind_speeds=(4.0, 8.0), aerodynamic_model=model)
     result = run(everything(), analysis)
     plausible(result, analysis)
-    assert result.static.sag_m == pytest.approx(2.0, rel=1e-12)
+    assert 2.0 < result.static.sag_m < 2.01  # given for still air; the wind stretches the span
     assert len(result.frequencies) == 4
 
 

@@ -30,9 +30,9 @@ def test_every_field_of_the_contract_arrives_in_the_engine_in_its_unit() -> None
     assert line == spec.Line(
         conductor=spec.Conductor(0.0286, 28418105.8, 101.0, 2.379, 3.334e-4, 0.5),
         bundle=spec.Bundle.regular(2, 0.2355, math.pi / 2),
-        span=spec.Span(125.88, horizontal_tension=30000.0, elements=12),
+        span=spec.Span(125.88, horizontal_tension=30000.0, elements=12, level_difference=3.0),
         ice=spec.Ice(own, 2.05e-3, -0.63e-3, (spec.IceSegment(0.0, 62.94, on_segment, 1e-3, None, 2.3),)),
-        wind=spec.Wind(1.2, ((0.0, 0.7), (125.88, 1.3)), spec.BlowOut(10.0, 1.1)),
+        wind=spec.Wind(1.2, ((0.0, 0.7), (125.88, 1.3)), spec.BlowOut(10.0, 1.1), math.pi / 6),
         damping=spec.Damping(0.000515, 0.0006, 0.308, spec.DampingModel.CONSTANT_RATIO),
         supports=spec.Supports(None, spec.Support(dead_end=True), spec.Support(False, 99.0, 2.0, 300.0)),
         devices=(

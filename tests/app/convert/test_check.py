@@ -31,6 +31,10 @@ BAD_LINES = [
     ("span.horizontal_tension_n", 500.0, "/line/span/horizontal_tension_n"),
     ("span", {"length_m": 126.0, "sag_m": 127.0}, "/line/span/sag_m"),
     ("span", {"length_m": 126.0, "catenary_parameter_m": 1.0}, "/line/span/catenary_parameter_m"),
+    ("span.level_difference_m", 126.0, "/line/span/level_difference_m"),
+    ("span.level_difference_m", -20.0, "/line/supports/right/insulator_length_m"),
+    ("wind.yaw_deg", 80.0, "/line/wind/yaw_deg"),
+    ("wind.blow_out.drag_coefficient", -1.0, "/line/wind/blow_out/drag_coefficient"),
     ("conductor.area_m2", 4e-4, "/line/conductor"),
     ("conductor.colour", "red", "/line/conductor/colour"),
     ("conductor.axial_torsional_coupling_n_m", 1e6, "/line/conductor/axial_torsional_coupling_n_m"),
@@ -237,6 +241,13 @@ def test_a_fault_of_the_analysis_hides_none_that_it_has_with_the_line(analysis: 
     found = pointers({"line": line, "analysis": analysis})
     assert {"/line/ice/aerodynamics_at_rest"} < set(found)
     assert len(found) == len(set(found))
+
+
+def test_blow_out_needs_a_drag_or_coefficients_at_rest() -> None:
+    line = changed("wind.blow_out.drag_coefficient", None)
+    assert pointers({"line": line}) == []
+    unknown = changed("ice.aerodynamics_at_rest", None, line)
+    assert pointers({"line": unknown}) == ["/line/wind/blow_out/drag_coefficient"]
 
 
 def test_choices_that_exclude_each_other_are_both_held_against_the_line() -> None:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine.mechanics.cross_sections import boundaries
 from engine.mechanics.finite_elements import FIELDS, THETA, V, W
 from engine.result import Result
 from engine.spec import Aerodynamics, AirflowSpoiler, Analysis, Ice, IceSegment, Line, Wind
@@ -53,10 +52,6 @@ def segmented() -> Line:
     spoiler = AirflowSpoiler(60.0, 70.0, OTHER, 0.4)
     wind = Wind(1.2, profile=((30.0, 0.8), (62.94, 1.2)))
     return replace(line, ice=replace(line.ice, segments=segments), devices=(spoiler,), wind=wind)
-
-
-def test_boundaries_are_listed_once_in_rising_order() -> None:
-    assert boundaries(segmented()) == [5.0, 20.0, 23.0, 30.0, 60.0, 62.94, 70.0, 100.1, 101.3]
 
 
 def test_mass_and_moment_of_pieces_are_exact() -> None:

@@ -253,7 +253,7 @@ def test_place_of_a_single_conductor_beside_the_reference_curve_does_not_matter(
     assert eigenvalues(moved) == pytest.approx(eigenvalues(line), rel=1e-7)
 
 
-def test_blow_out_turns_the_motion_and_tightens_the_cable() -> None:
+def test_blown_out_cable_is_a_heavier_one_that_is_turned() -> None:
     # Without offset of the ice the tilted cable is the still one in a gravity of sqrt(1 + r^2): the same eigenvalues as
     # a mass larger by that factor has at the same catenary parameter, times the factor.
     line = source_line(1)
@@ -265,5 +265,12 @@ def test_blow_out_turns_the_motion_and_tightens_the_cable() -> None:
     )
     blown = replace(base, wind=replace(line.wind, blow_out=BlowOut(25.0, 1.2)))
     ratio = math.hypot(1.0, 0.5 * 1.2929 * 25.0**2 * 0.0286 * 1.2 / (2.379 * 9.81))
-    heavy = replace(base, conductor=replace(base.conductor, mass=2.379 * ratio, polar_inertia=3.334e-4 * ratio))
+    catenary = float(discretized(blown).profile.catenary_parameter[0])
+    heavy = replace(
+        base,
+        conductor=replace(base.conductor, mass=2.379 * ratio, polar_inertia=3.334e-4 * ratio),
+        span=Span(125.88, catenary_parameter=catenary),
+    )
     assert eigenvalues(blown) == pytest.approx(ratio * eigenvalues(heavy), rel=1e-7)
+    turned, plain = discretized(blown).matrices, discretized(heavy).matrices
+    assert turned.stiffness == pytest.approx(plain.stiffness, abs=1e-9 * np.abs(plain.stiffness).max())

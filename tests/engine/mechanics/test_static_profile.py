@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine.mechanics.static_profile import arc_position, coordinates, horizontal_position, mean_mass, static_profile
-from engine.spec import BlowOut, IceSegment, Span, Support, Supports, Wind
+from engine.mechanics.static_profile import arc_position, coordinates, horizontal_position, static_profile
+from engine.outcome import InvalidSpec
+from engine.spec import BlowOut, Span, Support, Supports, Wind
 from tests.builders import source_line
 
 WEIGHT = 2.379 * 9.81
@@ -22,14 +23,6 @@ def test_catenary_parameter_sag_and_tension_are_one_another() -> None:
         other = static_profile((replace(source_line(2), span=span),))
         assert other.horizontal_tension[0] == pytest.approx(30_000.0, rel=1e-12)
         assert other.arc_length[0] == pytest.approx(by_tension.arc_length[0], rel=1e-13)
-
-
-@pytest.mark.parametrize("ratio", [1e-5, 0.02, 0.3, 2.0])
-def test_sag_is_met_from_taut_wires_to_deep_chains(ratio: float) -> None:
-    profile = static_profile((replace(source_line(1), span=Span(80.0, sag=80.0 * ratio)),))
-    c = profile.catenary_parameter[0]
-    # 2 c sinh^2 instead of c (cosh - 1): the difference cancels in taut wires.
-    assert 2.0 * c * math.sinh(20.0 / c) ** 2 == pytest.approx(80.0 * ratio, rel=1e-12)
 
 
 def test_arc_and_position_are_inverse_and_measure_the_curve() -> None:
@@ -56,28 +49,18 @@ def test_coordinates_satisfy_the_equilibrium_of_the_cable() -> None:
     assert -y.min() == pytest.approx(profile.sag[0], rel=1e-12)
 
 
-def test_blow_out_turns_the_catenary_about_the_chord() -> None:
-    still = static_profile((source_line(2),))
+def test_blow_out_turns_the_plane_of_the_sag_downwind() -> None:
     blown = replace(source_line(2), wind=Wind(1.25, blow_out=BlowOut(20.0, 1.1)))
     profile = static_profile((blown,))
     drag = 0.5 * 1.25 * 20.0**2 * 0.0286 * 1.1
     assert profile.tilt[0] == pytest.approx(math.atan(drag / WEIGHT), rel=1e-14)
-    assert profile.horizontal_tension[0] == pytest.approx(30_000.0 * math.hypot(1.0, drag / WEIGHT), rel=1e-14)
-    arc = np.linspace(0.0, still.arc_length[0], 5)[None]
-    x, y, z = coordinates(profile, arc)[0].T
-    plain = coordinates(still, arc)[0]
-    assert x == pytest.approx(plain[:, 0], abs=1e-12)
-    assert y == pytest.approx(plain[:, 1] * math.cos(profile.tilt[0]), abs=1e-12)
-    assert z == pytest.approx(-plain[:, 1] * math.sin(profile.tilt[0]), abs=1e-12)  # downwind is positive
-    assert z[2] > 0.0
-
-
-def test_mean_mass_takes_segments_by_their_length() -> None:
-    line = source_line(1)
-    ice = replace(line.ice, segments=(IceSegment(0.0, 31.47, mass=3.379), IceSegment(94.41, 125.88, mass=1.379)))
-    assert mean_mass(replace(line, ice=ice)) == pytest.approx(2.379, rel=1e-14)
-    one = replace(line.ice, segments=(IceSegment(10.0, 72.94, mass=3.379),))
-    assert mean_mass(replace(line, ice=one)) == pytest.approx(2.879, rel=1e-14)
+    resultant = math.hypot(WEIGHT, drag)
+    assert profile.catenary_parameter[0] == pytest.approx(profile.horizontal_tension[0] / resultant, rel=1e-13)
+    arc = np.array([[0.5 * profile.arc_length[0]]])
+    x, y, z = coordinates(profile, arc)[0, 0]
+    assert x == pytest.approx(62.94, abs=1e-9)
+    assert y == pytest.approx(-profile.sag[0] * WEIGHT / resultant, rel=1e-12)
+    assert z == pytest.approx(profile.sag[0] * drag / resultant, rel=1e-12)
 
 
 def by_hand(adjacent: float) -> float:
@@ -114,13 +97,53 @@ def test_given_stiffness_wins_at_both_ends_and_a_dead_end_over_its_neighbour() -
     assert right < math.inf
 
 
-def test_adjacent_span_blown_out_too_holds_by_its_own_plane() -> None:
-    # (A10) is the stiffness of a cable in the plane of its sag: the blown-out adjacent span
-    # carries p_r = p sqrt(1 + (q/p)^2) as well as H_r, and so must the string.
-    line = replace(source_line(1), span=Span(300.0, sag=9.0), wind=Wind(1.25, blow_out=BlowOut(30.0, 1.2)))
+def test_end_springs_keep_the_stiffness_of_still_air() -> None:
+    line = replace(source_line(1), span=Span(300.0, sag=9.0))
+    blown = replace(line, wind=Wind(1.25, blow_out=BlowOut(30.0, 1.2)))
+    still, profile = static_profile((line,)), static_profile((blown,))
+    assert profile.end_stiffness.tolist() == still.end_stiffness.tolist()
+
+
+def test_level_difference_is_measured_from_left_to_right() -> None:
+    span = Span(300.0, horizontal_tension=30_000.0, level_difference=60.0)
+    line = replace(source_line(1), span=span)
     profile = static_profile((line,))
-    tension, arc = profile.horizontal_tension[0], profile.arc_length[0]
-    weight = 2.379 * 9.81 * math.hypot(1.0, math.tan(profile.tilt[0]))
-    rigidity = line.conductor.axial_rigidity
-    expected = 12.0 * rigidity * tension**3 / (12.0 * arc * tension**3 + rigidity * weight**2 * 300.0**3)
-    assert profile.end_stiffness[0] == pytest.approx([expected, expected], rel=1e-10)
+    ends = np.array([[0.0, profile.arc_length[0]]])
+    assert coordinates(profile, ends)[0] == pytest.approx(np.array([[0.0, 0.0, 0.0], [300.0, 60.0, 0.0]]), abs=1e-9)
+    assert profile.horizontal_tension[0] == pytest.approx(30_000.0, rel=1e-14)
+    by_sag = replace(span, horizontal_tension=None, sag=float(profile.sag[0]))
+    assert static_profile((replace(line, span=by_sag),)).horizontal_tension[0] == pytest.approx(30_000.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("rise", [-60.0, 0.0, 120.0])
+def test_blown_out_curve_hangs_between_the_supports_in_the_plane_of_its_load(rise: float) -> None:
+    span = Span(300.0, horizontal_tension=30_000.0, level_difference=rise)
+    line = replace(source_line(1), span=span, wind=Wind(1.25, blow_out=BlowOut(25.0, 1.1)))
+    profile = static_profile((line,))
+    arc = np.linspace(0.0, profile.arc_length, 4001, axis=-1)
+    place = coordinates(profile, arc)[0]
+    assert place[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+    assert place[-1] == pytest.approx([300.0, rise, 0.0], abs=1e-9)
+    assert horizontal_position(profile, arc)[0] == pytest.approx(place[:, 0], abs=1e-9)
+    # Equilibrium: d(T r')/ds balances weight and drag, with H along X the same everywhere.
+    step = arc[0, 1]
+    tangent = np.diff(place, axis=0) / step
+    force = profile.horizontal_tension[0] * tangent / tangent[:, :1]
+    load = np.diff(force, axis=0) / step
+    drag = 0.5 * 1.25 * 25.0**2 * 0.0286 * 1.1
+    assert load == pytest.approx(np.broadcast_to([0.0, WEIGHT, -drag], load.shape), abs=2e-5 * WEIGHT)
+
+
+def test_uplift_of_an_insulator_string_is_a_fault() -> None:
+    supports = Supports(left=Support(insulator_length=2.0), right=Support(insulator_length=2.0))
+    steep = Span(300.0, horizontal_tension=30_000.0, level_difference=120.0)
+    line = replace(source_line(1), span=steep, supports=supports)
+    with pytest.raises(InvalidSpec) as refused:
+        static_profile((line,))
+    assert [fault.field for fault in refused.value.faults] == ["supports.left.insulator_length"]
+    heavy = replace(supports, left=Support(insulator_length=2.0, insulator_weight=30_000.0))
+    held = static_profile((replace(line, supports=heavy),)).end_stiffness[0]
+    c = 30_000.0 / WEIGHT
+    low = 150.0 - c * math.asinh(120.0 / (2.0 * c * math.sinh(150.0 / c)))
+    own, other = (30_000.0 * math.sinh(x / c) for x in (low, 150.0))
+    assert held[0] == pytest.approx(by_hand(300.0) + (own + other + 15_000.0) / 2.0, rel=1e-12)

@@ -8,9 +8,20 @@ import pytest
 from engine.arrays import FloatArray
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
 from engine.mechanics.modes import directional_shapes
+from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.hybrid import hybrid_model
-from engine.spec import Analysis, DampingModel, DetuningPendulum, Line, LongitudinalInertia, Spacer
-from tests.builders import discretized, hybrid, source_line
+from engine.spec import (
+    Analysis,
+    BlowOut,
+    Closure,
+    DampingModel,
+    DetuningPendulum,
+    Line,
+    LongitudinalInertia,
+    Spacer,
+    Wind,
+)
+from tests.builders import discretized, finite_element, hybrid, source_line
 
 RATIOS = np.array([0.000515, 0.000515, 0.308])
 
@@ -74,3 +85,22 @@ def test_stacks_hold_what_each_line_has_alone() -> None:
                 expected = getattr(alone, name)[0]
                 assert getattr(stack, name)[i, j] == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
             assert stack.load.table[i, j] == pytest.approx(alone.load.table[0], rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("closure", list(Closure))
+def test_blown_out_hybrid_model_gallops_where_the_finite_elements_do(closure: Closure) -> None:
+    # The full modes are the same in any axes, so they hold the load that the hybrid model turns.
+    line = replace(source_line(1), wind=Wind(1.2929, blow_out=BlowOut(25.0, 1.2)))
+    models = (hybrid(line, 1, Analysis(closure=closure)), finite_element(line, (1,)))
+    found, expected = (critical_wind_speeds(model, 12.0) for model in models)
+    assert len(expected.wind_speed) > 0
+    assert found.wind_speed == pytest.approx(expected.wind_speed, rel=0.003)
+    assert found.oscillation.tolist() == expected.oscillation.tolist()
+
+
+def test_in_plane_motion_after_blow_out_rises_as_it_swings_upwind() -> None:
+    line = replace(source_line(1), wind=Wind(1.2929, blow_out=BlowOut(25.0, 1.2)))
+    tilt = discretized(line).profile.tilt[0]
+    vertical, horizontal, _ = hybrid(line).shapes[0, 0, :, 10]
+    assert vertical > 0.0
+    assert horizontal / vertical == pytest.approx(-np.tan(tilt), rel=1e-12)

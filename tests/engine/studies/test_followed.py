@@ -9,7 +9,7 @@ import pytest
 from engine.models.critical_wind_speeds import at_wind, critical_wind_speeds, state_matrices
 from engine.outcome import InvalidSpec
 from engine.result import FollowedBifurcationRow, FollowedCycleRow, LimitCycleRow, Result
-from engine.spec import Analysis, Line, Model, Span
+from engine.spec import Analysis, BlowOut, Line, Model, Span, Wind
 from engine.studies.followed import followed
 from tests.builders import hybrid, only, run, source_line
 
@@ -126,3 +126,17 @@ def test_a_field_without_a_line_in_between_ends_the_branch() -> None:
     alone = points(line_at, values, asked)
     found = followed(line_at, values, [*alone[:1], *(without_cycles(result) for result in alone[1:])], asked)
     assert [len(result.followed_cycles) for result in found] == [1, 1, 0]
+
+
+def test_cycles_of_a_blown_out_span_are_read_back_from_vertical_and_horizontal() -> None:
+    def blown(value: float) -> Line:
+        return replace(source_line(1, torsional_ratio=value), wind=Wind(1.2929, blow_out=BlowOut(25.0, 1.2)))
+
+    asked = only(Model.HYBRID, loops=(1,), wind_speeds=(4.0,))
+    values = [0.2, 0.308]
+    results = points(blown, values, asked)
+    for result, alone in zip(followed(blown, values, results, asked), results, strict=True):
+        cycles = [row for row in alone.limit_cycles if row.kind == "periodic"]
+        assert len(cycles) > 0
+        for own, other in zip(cycles_of(result.followed_cycles), cycles_of(cycles), strict=True):
+            assert own[:-1] == pytest.approx(other[:-1], rel=5e-4)  # four harmonics more
