@@ -42,7 +42,7 @@ LONGEST = 6000  # most cycles of direct integration
 def found_cycles(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Cycles:
     """Find all cycles and their stability, as an analysis does."""
     crossings = critical_wind_speeds(model, HIGHEST_WIND)
-    return find_cycles(model, crossings, winds, explicit_starts(published, winds, HARMONICS), HARMONICS)
+    return find_cycles(model, crossings, winds, explicit_starts(published, model, winds, HARMONICS), HARMONICS)
 
 
 def settled_amplitude(model: ReducedModel, wind: float) -> tuple[FloatArray, int]:
@@ -105,7 +105,7 @@ def one_cycle() -> Iterator[tuple[str, float]]:
 
 def _bare(model: ReducedModel, published: ReducedModel, winds: FloatArray) -> Floquet:
     """Balance the explicit starts and compute their multipliers, without any other search."""
-    starts = explicit_starts(published, winds, HARMONICS)
+    starts = explicit_starts(published, model, winds, HARMONICS)
     orbits, _ = balance(model, starts.member, starts.orbits)
     return floquet(model, starts.member, orbits)
 

@@ -218,3 +218,69 @@ def _solve() -> None:
     ops.analysis("Static")
     if ops.analyze(1) != 0:
         raise RuntimeError("OpenSees found no equilibrium of the chain")
+
+
+def swinging_frequency(
+    conductor: Conductor, section: Section, loops: int, amplitude: float, periods: int = 24
+) -> float:
+    """Return the mean frequency [Hz] of a single span released from a horizontal sine of some loops.
+
+    It is released evenly strained: else longitudinal waves would run along the chain for ever.
+
+    Parameters
+    ----------
+    conductor : Conductor
+    section : Section
+        Of one span.
+    loops : int
+    amplitude : float
+        Of the displacement from which it is released [m].
+    periods : int
+        Number of periods that are counted, by the zero crossings of the first loop's middle.
+
+    Raises
+    ------
+    RuntimeError
+        If OpenSees finds no equilibrium at some instant.
+    """
+    bars, steps = 24 * loops, 240
+    length = section.spans[0]
+    natural = 0.5 * loops / length * math.sqrt(conductor.horizontal_tension / conductor.mass)
+    with _model():
+        nodes = _chain(conductor, section, bars)
+        _equilibrium(conductor, section, nodes)
+        ops.loadConst("-time", 0.0)
+        for node in nodes:
+            ops.setNodeDisp(node.tag, 3, amplitude * math.sin(loops * math.pi * node.x / length), "-commit")
+            along = _even_strain(conductor, section, loops * math.pi / length, amplitude, node.x)
+            ops.setNodeDisp(node.tag, 1, ops.nodeDisp(node.tag, 1) + along, "-commit")
+        ops.wipeAnalysis()
+        ops.system("BandGeneral")
+        ops.numberer("RCM")
+        ops.constraints("Plain")
+        ops.test("NormDispIncr", 1e-9, 50)
+        ops.algorithm("Newton")
+        ops.integrator("Newmark", 0.5, 0.25)
+        ops.analysis("Transient")
+        watched, series = nodes[bars // (2 * loops)].tag, [amplitude]
+        for _ in range(periods * steps + steps):
+            if ops.analyze(1, 1.0 / (natural * steps)) != 0:
+                raise RuntimeError("OpenSees lost the chain's equilibrium while it swings")
+            series.append(ops.nodeDisp(watched, 3))
+    return _mean_frequency(np.array(series), natural * steps)
+
+
+def _even_strain(conductor: Conductor, section: Section, wave: float, amplitude: float, x: float) -> float:
+    """Return U at x that strains a taut span evenly under W = amplitude sin(wave x), between its end springs [m]."""
+    length, (left, right) = section.spans[0], section.end_stiffness
+    square = (0.5 * wave * amplitude) ** 2
+    tension = square * length / (length / conductor.axial_rigidity + 1.0 / left + 1.0 / right)
+    own = square * (x + math.sin(2.0 * wave * x) / (2.0 * wave))
+    return tension / left + tension / conductor.axial_rigidity * x - own
+
+
+def _mean_frequency(series: FloatArray, rate: float) -> float:
+    """Return the mean frequency between the first and the last upward zero crossing of samples at a rate [Hz]."""
+    upward = np.flatnonzero((series[:-1] < 0.0) & (series[1:] >= 0.0))
+    crossing = upward + series[upward] / (series[upward] - series[upward + 1])
+    return float((upward.size - 1) / (crossing[-1] - crossing[0]) * rate)

@@ -3,6 +3,7 @@
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -12,14 +13,14 @@ from engine.checks.confidence import confidence
 from engine.checks.direct_starts import direct_starts
 from engine.cycles.bifurcations import bifurcations
 from engine.cycles.harmonic_balance import Orbits, resized
-from engine.cycles.known_cycles import Starts
+from engine.cycles.known_cycles import Starts, stacked
 from engine.cycles.search import Cycles, DirectIntegration, explicit_starts, find_cycles
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
 from engine.models.discretization import Discretization, discretize, fields_in_space, with_wind_twist
 from engine.models.finite_element import finite_element_model
-from engine.models.hybrid import hybrid_model, joint_model, with_published_load
+from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_published_load
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Fault, InvalidSpec
 from engine.progress import Progress
@@ -104,14 +105,11 @@ def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, N
     yield Progress(0.0, "static state and modes")
     prepared = _discretized(lines, analysis)
     yield Progress(0.1, "critical wind speeds and limit cycles of the hybrid model")
-    hybrid = _analyse_hybrid(prepared, analysis)
-    hybrid_asked = Model.HYBRID in analysis.models
-    findings = [hybrid] if hybrid_asked else []
-    frequencies = (
-        [NaturalFrequencies(Model.HYBRID, hybrid.line, hybrid.loops, coupled_frequencies(hybrid.model))]
-        if hybrid_asked
-        else []
-    )
+    hybrid = [_analyse_hybrid(prepared, group, analysis) for group in loop_groups(analysis.loops, analysis)]
+    findings, frequencies = [], []
+    if Model.HYBRID in analysis.models:
+        findings += hybrid
+        frequencies += [_coupled_frequencies(part) for part in hybrid]
     if prepared.modes is not None:
         frequencies.append(_full_frequencies(prepared.modes))
         if analysis.finite_element_loops:
@@ -142,35 +140,37 @@ def _winds(analysis: Analysis) -> FloatArray:
     return np.array(sorted(set(analysis.wind_speeds)), dtype=np.float64)
 
 
-def _analyse_hybrid(prepared: _Discretized, analysis: Analysis) -> ModelFindings:
-    """Analyse the hybrid model of every line and number of loops as one stack, line-major."""
-    loops = analysis.loops
+def _analyse_hybrid(prepared: _Discretized, loops: tuple[int, ...], analysis: Analysis) -> ModelFindings:
+    """Analyse the hybrid model of every line and a group of numbers of loops as one stack, line-major."""
     grid = hybrid_model(prepared.discretization, prepared.shapes, loops, analysis)
     line = np.repeat(np.arange(len(prepared.discretization.lines)), len(loops))
     column = np.tile(np.arange(len(loops)), len(prepared.discretization.lines))
     model = take(grid, (line, column))
     published = take(with_published_load(prepared.discretization, grid), (line, column))
     winds = _winds(analysis)
-    starts = explicit_starts(published, winds, analysis.harmonics)
+    starts = explicit_starts(published, model, winds, analysis.harmonics)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
-    directions = np.array(loops)[column][:, None] * np.ones(3, dtype=np.intp)
-    return _findings(_ModelStack(Model.HYBRID, model, line, directions, crossings), winds, starts, analysis)
+    loops_of = np.array(loops)[column][:, None] * np.ones(model.mass.shape[-1], dtype=np.intp)
+    return _findings(_ModelStack(Model.HYBRID, model, line, loops_of, crossings), winds, starts, analysis)
 
 
 def _analyse_finite_element(
-    prepared: _Discretized, modes: FullModes, hybrid: ModelFindings, analysis: Analysis
+    prepared: _Discretized, modes: FullModes, hybrid: Sequence[ModelFindings], analysis: Analysis
 ) -> Generator[Progress, None, ModelFindings]:
-    """Analyse the finite element model of every line, also starting from the cycles of the hybrid model."""
+    """Analyse the finite element model of every line, also starting from the cycles of the hybrid models."""
     yield Progress(0.4, "critical wind speeds of the finite element model")
     model = finite_element_model(prepared.discretization, modes, prepared.shapes, analysis)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
     yield Progress(0.5, "limit cycles of the finite element model")
-    starts = _cycles_in_full_modes(prepared.discretization, modes, hybrid, model, analysis.harmonics)
+    starts = stacked(
+        [_cycles_in_full_modes(prepared.discretization, modes, part, model, analysis.harmonics) for part in hybrid]
+    )
     line, loops = (
         np.arange(len(prepared.discretization.lines)),
         np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
     )
-    return _findings(_ModelStack(Model.FINITE_ELEMENT, model, line, loops, crossings), hybrid.winds, starts, analysis)
+    stack = _ModelStack(Model.FINITE_ELEMENT, model, line, loops, crossings)
+    return _findings(stack, _winds(analysis), starts, analysis)
 
 
 def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: Analysis) -> ModelFindings:
@@ -197,12 +197,19 @@ def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: A
     )
 
 
-def _competitions(prepared: _Discretized, hybrid: ModelFindings, analysis: Analysis) -> list[list[LoopCompetitionRow]]:
-    """Check whether the stable cycles of the hybrid model survive motions of other loops, if asked for."""
+def _competitions(
+    prepared: _Discretized, hybrid: Sequence[ModelFindings], analysis: Analysis
+) -> list[list[LoopCompetitionRow]]:
+    """Check whether the stable cycles of the hybrid models survive motions of other loops, if asked for."""
     if analysis.loop_competition is LoopCompetition.NEGLECTED:
         return [[] for _ in prepared.discretization.lines]
     joint = joint_model(prepared.discretization, prepared.shapes, analysis.loops, analysis)
-    return loop_competitions(prepared.discretization, joint, hybrid, analysis.loops)
+    tables = [loop_competitions(prepared.discretization, joint, part, analysis.loops) for part in hybrid]
+    return [list(chain.from_iterable(rows)) for rows in zip(*tables, strict=True)]
+
+
+def _coupled_frequencies(hybrid: ModelFindings) -> NaturalFrequencies:
+    return NaturalFrequencies(Model.HYBRID, hybrid.line, hybrid.loops, coupled_frequencies(hybrid.model))
 
 
 def _full_frequencies(modes: FullModes) -> NaturalFrequencies:

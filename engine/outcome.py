@@ -28,6 +28,7 @@ class Outcome(StrEnum):
         "No stable motion was found, and every motion integrated from small and large starts passed an angle of attack "
         "of 180 degrees: nothing in the equations bounds the motion.",
     )
+    SLACK = ("slack", "The conductor goes slack during the motion, which the model does not describe.")
     LIMIT_REACHED = ("limit_reached", "The computation reached a set limit before it was complete.")
 
     sentence: str

@@ -42,6 +42,7 @@ def conductor(part: schemas.Conductor) -> spec.Conductor:
         mass=part.mass,
         polar_inertia=part.polar_inertia,
         axial_torsional_coupling=part.axial_torsional_coupling,
+        rated_strength=part.rated_strength,
     )
 
 
@@ -166,6 +167,7 @@ def physics(part: schemas.Analysis) -> spec.PhysicsRequest:
         physics=_choice_of(spec.Physics, part.physics),
         aerodynamic_model=_choice_of(spec.AerodynamicModel, part.aerodynamic_model),
         longitudinal_inertia=_choice_of(spec.LongitudinalInertia, part.longitudinal_inertia),
+        stretching=_choice_of(spec.Stretching, part.stretching),
         static_twist=_choice_of(spec.StaticTwist, part.static_twist),
     )
 

@@ -79,7 +79,7 @@ class Analysis(Document):
     physics: Literal["full", "source"] | None = Field(
         default="source",
         description="Full physics, or the source's simplifications; null: full if the line's coefficients at rest are "
-        "known. Sets aerodynamic_model, longitudinal_inertia and static_twist where they are null",
+        "known. Sets aerodynamic_model, longitudinal_inertia, stretching and static_twist where they are null",
         examples=["full"],
     )
     aerodynamic_model: Literal["published", "relative_wind"] | None = Field(
@@ -93,6 +93,12 @@ class Analysis(Document):
         description="Longitudinal inertia in the hybrid model: neglected (source), condensed (full); null: as physics "
         "has it",
         examples=["neglected"],
+    )
+    stretching: Literal["neglected", "included"] | None = Field(
+        default=None,
+        description="Whether large motions stretch the conductors, which stiffens them: neglected (source), included "
+        "(full), which also gives tensions; null: as physics has it",
+        examples=["included"],
     )
     critical_wind_limit: float = quantity(
         "critical_wind_limit_m_per_s",

@@ -58,6 +58,14 @@ class Conductor(Document):
         (1e-7, 10.0),
         3.334e-4,
     )
+    rated_strength: float | None = quantity(
+        "rated_strength_n",
+        "Rated strength; tensions are then reported as shares of it, too",
+        "N",
+        (1e2, 1e7),
+        140000.0,
+        None,
+    )
 
     @model_validator(mode="after")
     def _one_rigidity(self) -> Self:

@@ -17,6 +17,7 @@ from benchmarks.validation import (
     relative_wind,
     static_state,
     static_twist,
+    stretching,
     studies,
 )
 from benchmarks.validation.common import ROOT
@@ -44,6 +45,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "relative_wind": relative_wind.section,
     "static_state": static_state.section,
     "static_twist": static_twist.section,
+    "stretching": stretching.section,
     "device_placement": device_placement.section,
 }
 

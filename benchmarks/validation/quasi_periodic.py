@@ -112,7 +112,7 @@ def _analysed(line: Line) -> Iterator[tuple[int, ReducedModel, QuasiPeriodicMoti
         model, other = take(models, [i]), take(published, [i])
         if not model.statically_unstable[0]:
             crossings = critical_wind_speeds(model, HIGHEST_WIND)
-            cycles = find_cycles(model, crossings, WINDS, explicit_starts(other, WINDS, HARMONICS), HARMONICS)
+            cycles = find_cycles(model, crossings, WINDS, explicit_starts(other, model, WINDS, HARMONICS), HARMONICS)
             found = bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
             known = quasi_periodic_motions(model, cycles, found, WINDS, TorusSearch.LASTING)
             yield loops, model, known, any(kind is Kind.TORUS for kind in found.kind)

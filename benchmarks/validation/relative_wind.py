@@ -120,7 +120,7 @@ def unexpanded_rows(subconductors: int, cycles: int = CYCLES) -> Iterator[list[o
     model, published = take(grid, 0), take(with_published_load(discretization, grid), 0)
     winds = np.array(WINDS)
     crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
-    starts = explicit_starts(published, winds, analysis.harmonics)
+    starts = explicit_starts(published, model, winds, analysis.harmonics)
     found = find_cycles(model, crossings, winds, starts, analysis.harmonics)
     stable = np.flatnonzero(found.floquet.stability == "stable")
     orbits, member = select(found.orbits, stable), found.member[stable]

@@ -71,8 +71,11 @@ def _largest_amplitudes(model: ReducedModel, member: IntArray, wind_speed: Float
     form = np.abs(model.load.angle[member]).max(axis=1)
     vertical, horizontal, torsional = (np.flatnonzero(model.direction == d) for d in range(3))
     largest = np.empty_like(rate)
-    largest[:, vertical] = wind_speed[:, None] / (rate[:, vertical] * form[:, rate.shape[1] + vertical])
-    largest[:, horizontal] = HORIZONTAL * largest[:, vertical]
+    windward = vertical[: horizontal.size]
+    largest[:, windward] = wind_speed[:, None] / (rate[:, windward] * form[:, rate.shape[1] + windward])
+    # The wind does not act on a relief coordinate, which follows the others: it starts with the first one's size.
+    largest[:, vertical[horizontal.size :]] = largest[:, windward[:1]]
+    largest[:, horizontal] = HORIZONTAL * largest[:, windward]
     largest[:, torsional] = 1.0 / form[:, torsional]
     return largest, rate
 

@@ -46,14 +46,16 @@ class LawsonEquations:
     """The equations of motion of a stack of starts in the form that Lawson's method steps; starts on the last axis.
 
     half_step: (2 m, 2 m, starts), matrix exponential of the linear part over half a step; nonlinear: (points, m,
-    monomials of degree 2 and 3, starts), coefficients of the nonlinear part of q''; forms: (points, local variables,
-    2 m, starts), the linear forms in (q, q') that these monomials are taken of; step: (starts,) [s]; angle:
-    (2 m, starts), largest coefficients of the angle of attack along the span.
+    monomials of degree 2 and 3, starts), coefficients of the wind's nonlinear part of q''; forms: (points, local
+    variables, 2 m, starts), the linear forms in (q, q') that these monomials are taken of; restoring: (m, monomials of
+    degree 2 and 3 of q, starts), coefficients of the part of stretching, no monomials where it is neglected; step:
+    (starts,) [s]; angle: (2 m, starts), largest coefficients of the angle of attack along the span.
     """
 
     half_step: FloatArray
     nonlinear: FloatArray
     forms: FloatArray
+    restoring: FloatArray
     step: FloatArray
     angle: FloatArray
 
@@ -64,7 +66,7 @@ class LawsonEquations:
     @property
     def parts(self) -> tuple[FloatArray, ...]:
         """The fields in their order."""
-        return self.half_step, self.nonlinear, self.forms, self.step, self.angle
+        return self.half_step, self.nonlinear, self.forms, self.restoring, self.step, self.angle
 
 
 def natural_frequency_range(model: ReducedModel, member: IntArray) -> FloatArray:
@@ -84,7 +86,7 @@ def lawson_equations(
     from scipy.linalg import expm  # noqa: PLC0415 - import scipy only when integration is asked for
 
     m, load = model.mass.shape[-1], model.load
-    inverse = np.linalg.inv(model.mass)[member]
+    inverse = np.asarray(np.linalg.inv(model.mass)[member], dtype=np.float64)
     speed = wind_speed[:, None, None]
     slope = force_gradient(load, np.zeros((model.mass.shape[0], 1, 2 * m)))[member, 0]
     by_q = inverse @ (speed**2 * slope[..., :m] - model.stiffness[member])
@@ -99,8 +101,20 @@ def lawson_equations(
     angle = np.abs(load.angle[member]).max(axis=1).T / by_wind
     half_step = expm(0.5 * step[:, None, None] * linear)
     return LawsonEquations(
-        np.moveaxis(half_step, 0, -1).copy(), np.moveaxis(nonlinear, 0, -1).copy(), forms.copy(), step, angle.copy()
+        np.moveaxis(half_step, 0, -1).copy(),
+        np.moveaxis(nonlinear, 0, -1).copy(),
+        forms.copy(),
+        np.moveaxis(_restoring_coefficients(model, inverse, member), 0, -1).copy(),
+        step,
+        angle.copy(),
     )
+
+
+def _restoring_coefficients(model: ReducedModel, inverse: FloatArray, member: IntArray) -> FloatArray:
+    """Return the coefficients of -M^-1 g over the monomials of degree 2 and 3: (starts, m, monomials)."""
+    if model.stretching is None:
+        return np.zeros((*inverse.shape[:2], 0))
+    return np.asarray(-inverse @ model.stretching.table[member][..., inverse.shape[-1] :])
 
 
 def lawson_step(equations: LawsonEquations, state: FloatArray) -> FloatArray:
@@ -125,12 +139,20 @@ def lawson_step(equations: LawsonEquations, state: FloatArray) -> FloatArray:
 
 def _nonlinear_acceleration(equations: LawsonEquations, state: FloatArray) -> FloatArray:
     """Return the quadratic and cubic part of q'' at states (2 m, starts): (m, starts)."""
-    x = np.einsum("plks,ks->lps", equations.forms, state)
+    terms = _higher_monomials(np.einsum("plks,ks->lps", equations.forms, state))
+    by_wind = np.einsum("pots,tps->os", equations.nonlinear, terms)
+    m, count, _ = equations.restoring.shape
+    if not count:
+        return np.asarray(by_wind)
+    return np.asarray(by_wind + np.einsum("ots,ts->os", equations.restoring, _higher_monomials(state[:m])))
+
+
+def _higher_monomials(x: FloatArray) -> FloatArray:
+    """Return the monomials of degree 2 and 3 of variables (variables, ...): (monomials, ...)."""
     numbers = range(x.shape[0])
     square = {pair: x[pair[0]] * x[pair[1]] for pair in itertools.combinations_with_replacement(numbers, 2)}
     cubes = itertools.combinations_with_replacement(numbers, 3)
-    terms = np.stack([*square.values(), *(square[i, j] * x[k] for i, j, k in cubes)])
-    return np.asarray(np.einsum("pots,tps->os", equations.nonlinear, terms))
+    return np.stack([*square.values(), *(square[i, j] * x[k] for i, j, k in cubes)])
 
 
 def integrate_until_settled(

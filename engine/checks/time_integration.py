@@ -7,8 +7,7 @@ from scipy.integrate import solve_ivp
 
 from engine.arrays import FloatArray
 from engine.cycles.harmonic_balance import Orbits, states
-from engine.models.aerodynamic_load import force
-from engine.models.reduced_model import ReducedModel
+from engine.models.reduced_model import ReducedModel, resultant
 from engine.outcome import Outcome
 
 SAMPLES = 64  # a cycle
@@ -120,7 +119,7 @@ def _advance(model: ReducedModel, wind_speed: float, state: FloatArray, times: F
 
     def rate(_: float, y: FloatArray) -> FloatArray:
         q, velocity = y[:m], y[m:]
-        load = force(model.load, np.concatenate([q, velocity / wind_speed])[None])[0]
+        load = resultant(model, np.concatenate([q, velocity / wind_speed])[None], np.array(wind_speed))[0]
         acceleration = wind_speed**2 * (inverse @ load) - stiffness @ q - damping @ velocity
         return np.concatenate([velocity, acceleration])
 

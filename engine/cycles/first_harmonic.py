@@ -16,6 +16,7 @@ from engine.kernels import compiled
 from engine.models.aerodynamic_load import force
 from engine.models.critical_wind_speeds import at_wind, state_matrices
 from engine.models.reduced_model import ReducedModel, diagonals, take
+from engine.models.stretching import restoring_force
 
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 GRID = 40  # amplitudes at which the scalar equation is evaluated
@@ -206,7 +207,8 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     """Estimate a cycle along every unstable mode of any model by the balance of energy over one period.
 
     Along q = R Re(v exp(i w t)) the work of the wind minus that of the damping is p_1 R^2 + p_3 R^4 for a cubic load;
-    the quadratic terms do no work. The estimate is the R at which it vanishes.
+    the quadratic terms do no work, nor does stretching, which raises the frequency. The estimate is the R at which the
+    work vanishes.
 
     Parameters
     ----------
@@ -235,7 +237,26 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     growing = np.flatnonzero(grows)
     amplitude = _complex(size[growing, None] * shape[growing])
     none = np.full(growing.size, np.nan)
-    return FirstHarmonic(member[growing], frequency[growing], none, np.zeros((growing.size, m)), amplitude)
+    stiffened = stiffened_frequencies(model, member[growing], frequency[growing], amplitude)
+    return FirstHarmonic(member[growing], stiffened, none, np.zeros((growing.size, m)), amplitude)
+
+
+def stiffened_frequencies(
+    model: ReducedModel, member: IntArray, frequency: FloatArray, amplitude: ComplexArray
+) -> FloatArray:
+    """Return the frequencies (cycles,) of motions Re(amplitude exp(i w t)) with stretching [rad/s].
+
+    w^2 grows by <g . q> / <q . M q>, Rayleigh's quotient over one period; ten samples resolve the fourth harmonic.
+    amplitude: (cycles, m).
+    """
+    if model.stretching is None:
+        return frequency
+    here = take(model, member)
+    assert here.stretching is not None
+    q = (amplitude[:, None] * np.exp(2j * np.pi * np.arange(10) / 10.0)[:, None]).real
+    work = (restoring_force(here.stretching, q) * q).sum(axis=(-1, -2))
+    inertia = ((q @ here.mass) * q).sum(axis=(-1, -2))
+    return np.asarray(np.sqrt(frequency**2 + np.maximum(work / inertia, 0.0)))
 
 
 def _unstable_modes(matrices: FloatArray, values: ComplexArray) -> ComplexArray:

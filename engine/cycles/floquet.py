@@ -8,8 +8,7 @@ import numpy as np
 from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
 from engine.cycles.harmonic_balance import Orbits, basis, fourier, select, states
 from engine.kernels import compiled
-from engine.models.aerodynamic_load import force_gradient
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.reduced_model import ReducedModel, resultant_gradient, take
 from engine.outcome import Stability
 
 PHASE_PER_STEP = 0.9  # rad of sqrt(trace(M^-1 K)) t, which bounds the fastest mode: the series is exact to 1e-6
@@ -152,7 +151,7 @@ def state_matrix(
     They are linearized about states (q, q'/U) of shape (cycles, samples, 2 m).
     """
     m = model.mass.shape[-1]
-    gradient = force_gradient(model.load, state)
+    gradient = resultant_gradient(model, state, wind_speed)
     omega, speed = angular_frequency[:, None, None, None], wind_speed[:, None, None, None]
     stiffness = (model.stiffness[:, None] - speed**2 * gradient[..., :m]) / omega**2
     damping = (model.damping[:, None] - speed * gradient[..., m:]) / omega

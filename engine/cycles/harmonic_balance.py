@@ -1,7 +1,8 @@
 """Harmonic balance of the reduced models: periodic solutions with H harmonics. Theory section 7.2.
 
-The coefficients of each coordinate are ordered mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The load is a cubic
-polynomial of (q, q'/U), so 4 H + 2 samples in time yield its first H harmonics without aliasing.
+The coefficients of each coordinate are ordered mean, cos 1, sin 1, ..., cos H, sin H of tau = w t. The forces of wind
+and stretching are cubic polynomials of (q, q'/U), so 4 H + 2 samples in time yield their first H harmonics without
+aliasing.
 """
 
 from dataclasses import dataclass
@@ -11,8 +12,8 @@ import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merge_axes
 from engine.kernels import compiled
-from engine.models.aerodynamic_load import force, force_gradient
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.aerodynamic_load import force
+from engine.models.reduced_model import ReducedModel, resultant, resultant_gradient, take
 from engine.numerics.newton import NewtonOptions, Solution, newton
 
 
@@ -77,9 +78,9 @@ def states(orbits: Orbits, tau: FloatArray) -> FloatArray:
 
 
 def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
-    """Return the residual, the harmonics of M q'' + C q' + K q - U^2 f: (cycles, m, 2 H + 1) [N or N m]."""
+    """Return the residual, the harmonics of M q'' + C q' + K q - U^2 f + g: (cycles, m, 2 H + 1) [N or N m]."""
     fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
-    load = force(model.load, _sampled(orbits, fourier_basis))
+    load = resultant(model, _sampled(orbits, fourier_basis), orbits.wind_speed)
     square = orbits.wind_speed[:, None, None] ** 2
     return _linear_part(model, orbits, fourier_basis) - square * (fourier_basis.projection @ load).swapaxes(-1, -2)
 
@@ -92,7 +93,7 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     """
     fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
     cycles, m, size = orbits.coefficients.shape
-    gradient = force_gradient(model.load, _sampled(orbits, fourier_basis))
+    gradient = resultant_gradient(model, _sampled(orbits, fourier_basis), orbits.wind_speed)
     omega = orbits.angular_frequency[:, None, None]
     speed = orbits.wind_speed[:, None, None]
     samples = np.moveaxis(gradient, 1, -1)
@@ -114,7 +115,7 @@ def wind_slopes(model: ReducedModel, orbits: Orbits) -> FloatArray:
     m = model.mass.shape[-1]
     state = _sampled(orbits, fourier_basis)
     speed = orbits.wind_speed[:, None, None]
-    by_rate = (force_gradient(model.load, state)[..., m:] @ state[..., m:, None])[..., 0]
+    by_rate = (resultant_gradient(model, state, orbits.wind_speed)[..., m:] @ state[..., m:, None])[..., 0]
     return np.asarray(
         (fourier_basis.projection @ (speed * by_rate - 2.0 * speed * force(model.load, state))).swapaxes(-1, -2)
     )

@@ -1,5 +1,6 @@
 """The distinct limit cycles found so far at the wind speeds asked for, and the branches that connect them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,14 @@ class Starts:
     member: IntArray
     wind: IntArray
     orbits: Orbits
+
+
+def stacked(parts: Sequence[Starts]) -> Starts:
+    """Concatenate starts of the same models and numbers of harmonics."""
+    names = ("coefficients", "angular_frequency", "wind_speed")
+    orbits = Orbits(*(np.concatenate([getattr(part.orbits, name) for part in parts]) for name in names))
+    member, wind = (np.concatenate([getattr(part, name) for part in parts]) for name in ("member", "wind"))
+    return Starts(member, wind, orbits)
 
 
 class KnownCycles:

@@ -18,7 +18,12 @@ from engine.cycles.branches import (
     follow_from_hopf_points,
     guessed_cycles,
 )
-from engine.cycles.first_harmonic import FirstHarmonic, energy_balance_cycles, explicit_cycles
+from engine.cycles.first_harmonic import (
+    FirstHarmonic,
+    energy_balance_cycles,
+    explicit_cycles,
+    stiffened_frequencies,
+)
 from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.cycles.known_cycles import KnownCycles, Starts
@@ -85,10 +90,20 @@ def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
-def explicit_starts(published: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Return the explicit cycles of the published closure as starts, for members that are statically stable."""
+def explicit_starts(published: ReducedModel, model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
+    """Return the explicit cycles of the published closure as starts, for members that are statically stable.
+
+    published: the models with the load of that closure, three coordinates each; model: the same models as they are,
+    whose further coordinates start at rest and whose stretching raises the frequency.
+    """
     member, wind = _grid_points(published, wind_speeds)
     guess = explicit_cycles(take(published, member), wind_speeds[wind])
+    further = model.mass.shape[-1] - published.mass.shape[-1]
+    amplitude = np.pad(guess.amplitude, ((0, 0), (0, further)))
+    frequency = stiffened_frequencies(model, member[guess.member], guess.angular_frequency, amplitude)
+    guess = replace(
+        guess, mean=np.pad(guess.mean, ((0, 0), (0, further))), amplitude=amplitude, angular_frequency=frequency
+    )
     return _starts(guess, member, wind, wind_speeds, harmonics)
 
 

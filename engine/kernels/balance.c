@@ -37,7 +37,7 @@ static void fill_waves(System *w)
 
 int prepare_system(System *w, const Model *model, int harmonics, int besides)
 {
-    *w = (System){.m = model->m, .harmonics = harmonics, .size = 2 * harmonics + 1};
+    *w = (System){.m = model->m, .stretches = model->stretches, .harmonics = harmonics, .size = 2 * harmonics + 1};
     w->samples = 4 * harmonics + 2;
     w->groups = (w->samples + LANES - 1) / LANES;
     w->waves_kept = (2 * harmonics + LANES) / LANES * LANES;
@@ -62,7 +62,7 @@ int prepare_system(System *w, const Model *model, int harmonics, int besides)
     w->x = calloc(n, sizeof *w->x);
     w->values = calloc((size_t)(w->size * w->groups), sizeof *w->values);
     w->loads = calloc(rows * (size_t)w->groups, sizeof *w->loads);
-    w->state = calloc(4 * m + 2 * m * m, sizeof *w->state);
+    w->state = calloc(5 * m + 2 * m * m, sizeof *w->state);
     w->scratch = calloc(load_scratch(model), sizeof *w->scratch);
     if (!(w->place && w->active && w->waves && w->folded && w->spectra && w->order && w->known
           && w->matrix && w->rows && w->sizes && w->solution && w->slope && w->x && w->values
@@ -79,6 +79,8 @@ void arrange_system(System *w, const Model *model)
     for (int row = 0; row < model->points * model->local; row++)
         for (int v = 0; v < 2 * m; v++)
             w->active[v] |= model->forms[(ptrdiff_t)row * 2 * m + v] != 0.0;
+    for (int j = 0; j < m; j++)
+        w->active[j] |= w->stretches;
     int next = 0;
     for (int active = 0; active < 2; active++)
         for (int j = 0; j < m; j++)
@@ -111,17 +113,18 @@ WITHIN Lanes series(const System *w, const double *coefficients, int group)
 }
 
 /* Evaluate the load, its gradient and its derivative by w / U at every sample. */
-WIDE static void sample(System *w, const Model *model, const double *coefficients, double rate)
+WIDE static void sample(System *w, const Model *model, const double *coefficients, double rate, double speed)
 {
     const int m = w->m;
-    Lanes *state = w->state, *motion = state + 2 * m, *force = motion + m, *gradient = force + m;
+    Lanes *state = w->state, *motion = state + 2 * m, *force = motion + m, *restoring = force + m;
+    Lanes *gradient = restoring + m;
     for (int group = 0; group < w->groups; group++) {
         for (int j = 0; j < m; j++) {
             state[j] = series(w, coefficients + j * w->size, group);
             motion[j] = series(w, w->slope + j * w->size, group);
             state[m + j] = rate * motion[j];
         }
-        load_at(model, state, force, gradient, w->scratch);
+        load_at(model, speed, state, force, gradient, restoring, w->scratch);
         for (int i = 0; i < m; i++) {
             Lanes by_rate = {0};
             for (int v = 0; v < 2 * m; v++)
@@ -130,6 +133,7 @@ WIDE static void sample(System *w, const Model *model, const double *coefficient
                 by_rate += gradient[i * 2 * m + m + j] * motion[j];
             w->loads[force_row(i) * w->groups + group] = force[i];
             w->loads[rate_row(w, i) * w->groups + group] = by_rate;
+            w->loads[restoring_row(w, i) * w->groups + group] = restoring[i];
         }
     }
 }
@@ -177,6 +181,8 @@ static void transform_all(System *w)
     for (int i = 0; i < w->m; i++) {
         transform(w, force_row(i), w->harmonics);
         transform(w, rate_row(w, i), w->harmonics);
+        if (w->stretches)
+            transform(w, restoring_row(w, i), w->harmonics);
         for (int v = 0; v < 2 * w->m; v++)
             if (w->active[v])
                 transform(w, gradient_row(w, i, v), 2 * w->harmonics);
@@ -259,18 +265,19 @@ static void add_motion(System *w, const Model *model, int i, int j, const double
     }
 }
 
-/* Subtract the load's harmonics from the residual of equation i and from its slopes by w and U: with f(q, w q'/U),
- * d(U^2 P f)/dU = 2 U P f - w P df/d(w/U). */
+/* Subtract the load's harmonics from the residual of equation i and from its slopes by w and U: with f(q, w q'/U) and
+ * g(q), d(U^2 P (f - g/U^2))/dU = 2 U P f - w P df/d(w/U). */
 static void subtract_load(System *w, int i, double omega, double speed)
 {
     const double *forces = spectrum(w, force_row(i)), *by_rate = spectrum(w, rate_row(w, i));
+    const double *restoring = spectrum(w, restoring_row(w, i));
     double *row = w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride;
     for (int c = 0; c < w->size; c++, row += w->stride) {
         const int at = (c + 1) / 2 + (c % 2 == 0 && c ? w->orders : 0);
         const double weight = c ? 2.0 : 1.0;
         row[w->balances] -= weight * speed * by_rate[at];
         if (w->unknowns > w->balances + 1)
-            row[w->balances + 1] -= weight * (2.0 * speed * forces[at] - omega * by_rate[at]);
+            row[w->balances + 1] -= weight * (2.0 * speed * (forces[at] + restoring[at]) - omega * by_rate[at]);
         row[w->unknowns] -= weight * speed * speed * forces[at];
     }
 }
@@ -281,7 +288,7 @@ void assemble_system(System *w, const Model *model, const double *x, double spee
     const double omega = x[w->balances];
     memset(w->matrix, 0, (size_t)w->unknowns * (size_t)w->stride * sizeof *w->matrix);
     differentiate(w, x);
-    sample(w, model, x, omega / speed);
+    sample(w, model, x, omega / speed, speed);
     transform_all(w);
     for (int i = 0; i < m; i++) {
         subtract_load(w, i, omega, speed);

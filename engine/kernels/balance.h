@@ -5,7 +5,7 @@
 #include "kernels.h"
 
 typedef struct {
-    int m, harmonics, size, balances, unknowns, stride, samples, groups;  /* balances = m (2 H + 1) */
+    int m, stretches, harmonics, size, balances, unknowns, stride, samples, groups;  /* balances = m (2 H + 1) */
     int waves_kept;      /* number of cos k tau, k = 0 ... 2 H, padded to whole Lanes; sin k tau likewise */
     int orders;          /* entries of half a spectrum, cosines or sines: k = -H ... 2 H, padded */
     int *place;          /* (unknowns), row and column of each in the system: inactive coordinates first */
@@ -21,15 +21,16 @@ typedef struct {
     double *slope;       /* (m, 2 H + 1), coefficients of dq/dtau */
     double *x;           /* (unknowns), the point, where the caller gives only its parts */
     Lanes *values;       /* (2 H + 1, groups), the basis at groups of samples, 0 beyond the last */
-    Lanes *loads;        /* (rows, groups): f, its gradient, and its derivative by w / U */
+    Lanes *loads;        /* (rows, groups): f - g/U^2, its gradient, its derivative by w / U, and g/U^2 */
     Lanes *state, *scratch;
 } System;
 
-/* The rows of the load: f_i, df_i/d(component v of (q, q'/U)), df_i/d(w/U). */
+/* The rows of the load f - g/U^2: component i, its derivatives by component v of (q, q'/U) and by w/U, and g_i/U^2. */
 static inline int force_row(int i) { return i; }
 static inline int gradient_row(const System *w, int i, int v) { return w->m + i * 2 * w->m + v; }
 static inline int rate_row(const System *w, int i) { return w->m + w->m * 2 * w->m + i; }
-static inline int row_count(const System *w) { return 2 * w->m * (1 + w->m); }
+static inline int restoring_row(const System *w, int i) { return 2 * w->m * (1 + w->m) + i; }
+static inline int row_count(const System *w) { return w->m * (3 + 2 * w->m); }
 
 static inline const double *spectrum(const System *w, int row) { return w->spectra + row * 2 * w->orders + w->harmonics; }
 

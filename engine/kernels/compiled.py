@@ -194,24 +194,25 @@ def integrated_block(
     (2 m, starts), (2 m, starts), (starts,)
         The states at the end, the weighted sums of squares over the steps, and the largest angle of attack [rad].
     """
-    _, nonlinear, forms, *_ = equations
+    _, nonlinear, forms, restoring, *_ = equations
     points, m, _, starts = nonlinear.shape
     end = np.array(state, order="C")
     square, largest = np.empty(end.shape), np.empty(starts)
-    size = (starts, window.size, m, points, forms.shape[1])
+    size = (starts, window.size, m, points, forms.shape[1], restoring.size > 0)
     flows(size, _contiguous(*equations, window), (end, square, largest))
     return end, square, np.sqrt(largest)
 
 
-def _shape(model: ReducedModel) -> tuple[int, int, int, int]:
-    """Return members, coordinates, points and local variables."""
+def _shape(model: ReducedModel) -> tuple[int, int, int, int, bool]:
+    """Return members, coordinates, points, local variables and whether the model stretches."""
     members, points, local, twice = model.load.forms.shape
-    return members, twice // 2, points, local
+    return members, twice // 2, points, local, model.stretching is not None
 
 
 def _parts(model: ReducedModel) -> tuple[AnyArray, ...]:
-    load = model.load
-    return _contiguous(model.mass, model.damping, model.stiffness, load.forms, load.table, load.slopes)
+    load, stretching, none = model.load, model.stretching, np.empty(0)
+    own = (none, none) if stretching is None else (stretching.table, stretching.slopes)
+    return _contiguous(model.mass, model.damping, model.stiffness, load.forms, load.table, load.slopes, *own)
 
 
 def _contiguous(*arrays: AnyArray) -> tuple[AnyArray, ...]:

@@ -15,12 +15,13 @@ typedef struct {
     ptrdiff_t count;       /* n n */
     Lanes *matrices;       /* (MATRICES, n, n) */
     Lanes *blocks;         /* (2, n, m): rows of -M^-1 K(tau) / w^2 and -M^-1 C(tau) / w at the two Gauss points */
-    Lanes *state, *force, *gradient, *scratch;
+    Lanes *state, *force, *restoring, *gradient, *scratch;
 } Workspace;
 
 static void release(Workspace *w)
 {
-    free(w->matrices), free(w->blocks), free(w->state), free(w->force), free(w->gradient), free(w->scratch);
+    free(w->matrices), free(w->blocks), free(w->state), free(w->force), free(w->restoring), free(w->gradient);
+    free(w->scratch);
 }
 
 static int prepare(Workspace *w, const Model *model, int harmonics)
@@ -32,9 +33,10 @@ static int prepare(Workspace *w, const Model *model, int harmonics)
     w->blocks = calloc(4 * m * m, sizeof(Lanes));
     w->state = calloc(2 * m, sizeof(Lanes));
     w->force = calloc(m, sizeof(Lanes));
+    w->restoring = calloc(m, sizeof(Lanes));
     w->gradient = calloc(4 * m * m, sizeof(Lanes));
     w->scratch = calloc(load_scratch(model), sizeof(Lanes));
-    return w->matrices && w->blocks && w->state && w->force && w->gradient && w->scratch;
+    return w->matrices && w->blocks && w->state && w->force && w->restoring && w->gradient && w->scratch;
 }
 
 static inline Lanes *matrix_of(const Workspace *w, int which) { return w->matrices + which * w->count; }
@@ -54,6 +56,8 @@ WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restri
 {
     if (n == 6) /* the hybrid model: the compiler unrolls loops of known length */
         product_of(6, left, right, product);
+    else if (n == 8) /* with a relief coordinate */
+        product_of(8, left, right, product);
     else
         product_of(n, left, right, product);
 }
@@ -80,7 +84,7 @@ WIDE static void generate(Workspace *w, const Model *model, const Monodromies *w
             w->state[m + j][lane] = omega / speed * motion;
         }
     }
-    load_at(model, w->state, w->force, w->gradient, w->scratch);
+    load_at(model, speed, w->state, w->force, w->gradient, w->restoring, w->scratch);
     for (int i = 0; i < m; i++)
         for (int j = 0; j < m; j++) {
             Lanes elastic = {0}, viscous = {0};

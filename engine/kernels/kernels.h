@@ -23,12 +23,20 @@ typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned
 #define WITHIN static inline
 #endif
 
-/* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U), laid out as engine.models.reduced_model.ReducedModel:
- * mass, damping, stiffness (m, m); forms (points, local, 2 m); table (points, m, monomials);
- * slopes (points, m, local, lower monomials). */
+/* The numbers of monomials of `variables` variables of degree 1 to 3, and of degree 0 to 2. */
+static inline int lower_of(int variables) { return 1 + variables + variables * (variables + 1) / 2; }
+static inline int monomials_of(int variables)
+{
+    return lower_of(variables) - 1 + variables * (variables + 1) * (variables + 2) / 6;
+}
+
+/* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U) - g(q), laid out as engine.models.reduced_model.ReducedModel:
+ * mass, damping, stiffness (m, m); f: forms (points, local, 2 m), table (points, m, monomials), slopes (points, m, local,
+ * lower monomials); g, if it `stretches`: restoring (m, monomials of m variables) and restoring_slopes (m, m, lower
+ * monomials). */
 typedef struct {
-    int m, points, local, monomials, lower;
-    const double *mass, *damping, *stiffness, *forms, *table, *slopes;
+    int m, points, local, stretches;
+    const double *mass, *damping, *stiffness, *forms, *table, *slopes, *restoring, *restoring_slopes;
 } Model;
 
 /* Return one member of a stack of models. */
@@ -37,9 +45,10 @@ Model model_of(const Model *stack, ptrdiff_t member);
 /* Return the number of Lanes of scratch that load_at needs. */
 size_t load_scratch(const Model *model);
 
-/* Evaluate f (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m): force and force_gradient of
- * engine/models/aerodynamic_load.py. Theory section 5. */
-void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch);
+/* Evaluate f - g/U^2 (m), its gradient by (q, q'/U), (m, 2 m), and g/U^2 (m) at LANES states (2 m) and a wind speed U:
+ * resultant and resultant_gradient of engine/models/reduced_model.py. Theory sections 5 and 12.1. */
+void load_at(const Model *model, double speed, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *restoring,
+             Lanes *scratch);
 
 /* Solve a linear system for several right sides by elimination with partial pivoting. Row i holds n coefficients, then its
  * right sides, then at least LANES zeros, which are overwritten. x (sides, n) receives the solutions; sizes (n + LANES) is
@@ -100,13 +109,14 @@ typedef struct {
 int integrate_monodromies(const Model *stack, const Monodromies *wanted);
 
 /* Arguments and results of integrate_flows, laid out as engine.checks.settled_motion.LawsonEquations with the starts on the
- * last axis: half_step (2 m, 2 m), nonlinear (points, m, monomials of degree 2 and 3), forms (points, local, 2 m), step and
- * angle (2 m). One step is taken for every entry of window (steps). state (2 m) is advanced in place; square (2 m) receives
- * the sum of the squares after each step, weighted by the window, and largest the largest square of the angle of attack. */
+ * last axis: half_step (2 m, 2 m), nonlinear (points, m, monomials of degree 2 and 3), forms (points, local, 2 m),
+ * restoring (m, monomials of degree 2 and 3 of q) if it `stretches`, step and angle (2 m). One step is taken for every
+ * entry of window (steps). state (2 m) is advanced in place; square (2 m) receives the sum of the squares after each step,
+ * weighted by the window, and largest the largest square of the angle of attack. */
 typedef struct {
     ptrdiff_t starts, steps;
-    int m, points, local;
-    const double *half_step, *nonlinear, *forms, *step, *angle, *window;
+    int m, points, local, stretches;
+    const double *half_step, *nonlinear, *forms, *restoring, *step, *angle, *window;
     double *state, *square, *largest;
 } Flows;
 

@@ -1,5 +1,5 @@
-/* The load: cubic polynomials in linear forms of (q, q'/U), summed over points. force and force_gradient of
- * engine/models/aerodynamic_load.py, theory section 5. */
+/* The forces of wind and stretching: cubic polynomials in linear forms of (q, q'/U), summed over points, and in q.
+ * resultant and resultant_gradient of engine/models/reduced_model.py, theory sections 5 and 12.1. */
 #include "monomials.h"
 
 #include <string.h>
@@ -8,18 +8,24 @@ Model model_of(const Model *stack, ptrdiff_t member)
 {
     Model one = *stack;
     const ptrdiff_t m = one.m, points = one.points, local = one.local;
+    const ptrdiff_t table = points * m * monomials_of(one.local), slopes = points * m * local * lower_of(one.local);
     one.mass += member * m * m;
     one.damping += member * m * m;
     one.stiffness += member * m * m;
     one.forms += member * points * local * 2 * m;
-    one.table += member * points * m * one.monomials;
-    one.slopes += member * points * m * local * one.lower;
+    one.table += member * table;
+    one.slopes += member * slopes;
+    if (one.stretches) {
+        one.restoring += member * m * monomials_of(one.m);
+        one.restoring_slopes += member * m * m * lower_of(one.m);
+    }
     return one;
 }
 
 size_t load_scratch(const Model *model)
 {
-    return (size_t)model->local + 1 + (size_t)model->monomials;
+    const int most = model->stretches && model->m > model->local ? model->m : model->local;
+    return (size_t)model->local + 1 + (size_t)monomials_of(most);
 }
 
 WITHIN Lanes polynomial(int count, const double *coefficients, const Lanes *terms)
@@ -30,14 +36,11 @@ WITHIN Lanes polynomial(int count, const double *coefficients, const Lanes *term
     return sum;
 }
 
-WITHIN void evaluate(const Model *model, int m, int local, const Lanes *state, Lanes *force, Lanes *gradient,
+WITHIN void add_wind(const Model *model, int m, int local, const Lanes *state, Lanes *force, Lanes *gradient,
                      Lanes *scratch)
 {
-    const int lower = 1 + local + local * (local + 1) / 2;
-    const int monomials = lower - 1 + local * (local + 1) * (local + 2) / 6;
+    const int lower = lower_of(local), monomials = monomials_of(local);
     Lanes *x = scratch, *terms = scratch + local;
-    memset(force, 0, (size_t)m * sizeof *force);
-    memset(gradient, 0, (size_t)m * 2 * (size_t)m * sizeof *gradient);
     for (int p = 0; p < model->points; p++) {
         const double *forms = model->forms + (ptrdiff_t)p * local * 2 * m;
         for (int l = 0; l < local; l++)
@@ -56,10 +59,41 @@ WITHIN void evaluate(const Model *model, int m, int local, const Lanes *state, L
     }
 }
 
-WIDE void load_at(const Model *model, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *scratch)
+WITHIN void subtract_stretching(const Model *model, int m, double share, const Lanes *state, Lanes *force,
+                                Lanes *gradient, Lanes *restoring, Lanes *scratch)
 {
-    if (model->m == 3 && model->local == 3) /* the hybrid model: the compiler unrolls loops of known length */
-        evaluate(model, 3, 3, state, force, gradient, scratch);
+    const int lower = lower_of(m), monomials = monomials_of(m);
+    Lanes *terms = scratch;
+    powers(m, state, terms);
+    for (int i = 0; i < m; i++) {
+        restoring[i] = share * polynomial(monomials - m, model->restoring + i * monomials + m, terms + 1 + m);
+        force[i] -= restoring[i];
+        for (int j = 0; j < m; j++)
+            gradient[i * 2 * m + j] -=
+                share * polynomial(lower - 1, model->restoring_slopes + (i * m + j) * lower + 1, terms + 1);
+    }
+}
+
+WIDE void load_at(const Model *model, double speed, const Lanes *state, Lanes *force, Lanes *gradient, Lanes *restoring,
+                  Lanes *scratch)
+{
+    const int m = model->m;
+    memset(force, 0, (size_t)m * sizeof *force);
+    memset(gradient, 0, (size_t)m * 2 * (size_t)m * sizeof *gradient);
+    if (m == 3 && model->local == 3) /* the hybrid model: the compiler unrolls loops of known length */
+        add_wind(model, 3, 3, state, force, gradient, scratch);
+    else if (m == 3 && model->local == 4)
+        add_wind(model, 3, 4, state, force, gradient, scratch);
+    else if (m == 4 && model->local == 4)
+        add_wind(model, 4, 4, state, force, gradient, scratch);
     else
-        evaluate(model, model->m, model->local, state, force, gradient, scratch);
+        add_wind(model, m, model->local, state, force, gradient, scratch);
+    if (!model->stretches)
+        memset(restoring, 0, (size_t)m * sizeof *restoring);
+    else if (m == 3)
+        subtract_stretching(model, 3, 1.0 / (speed * speed), state, force, gradient, restoring, scratch);
+    else if (m == 4)
+        subtract_stretching(model, 4, 1.0 / (speed * speed), state, force, gradient, restoring, scratch);
+    else
+        subtract_stretching(model, m, 1.0 / (speed * speed), state, force, gradient, restoring, scratch);
 }

@@ -7,7 +7,7 @@
 
 /* Buffers of one call, released together. */
 typedef struct {
-    Py_buffer held[24];
+    Py_buffer held[28];
     int count;
 } Buffers;
 
@@ -35,20 +35,20 @@ static void *items(Buffers *buffers, PyObject *array, Py_ssize_t expected, const
 #define RESULT(array, expected) items(&buffers, array, expected, "d", PyBUF_WRITABLE)
 #define INDICES(array, expected) items(&buffers, array, expected, "lq", 0)
 
-/* Read a stack of models from the tuple (mass, damping, stiffness, forms, table, slopes). */
+/* Read a stack of models from the tuple (mass, damping, stiffness, forms, table, slopes, restoring, restoring_slopes), the
+ * last two empty where stretching is neglected. */
 static int read_model(Buffers *held, PyObject *parts, const int *shape, Model *model, Py_ssize_t members)
 {
-    const Py_ssize_t m = shape[0], points = shape[1], local = shape[2];
-    const Py_ssize_t lower = 1 + local + local * (local + 1) / 2;
-    const Py_ssize_t monomials = lower - 1 + local * (local + 1) * (local + 2) / 6;
-    const Py_ssize_t sizes[] = {m * m, m * m, m * m, points * local * 2 * m, points * m * monomials,
-                                points * m * local * lower};
-    const double *read[6];
-    for (int i = 0; i < 6; i++)
+    const Py_ssize_t m = shape[0], points = shape[1], local = shape[2], stretches = shape[3];
+    const Py_ssize_t sizes[] = {m * m, m * m, m * m, points * local * 2 * m, points * m * monomials_of(shape[2]),
+                                points * m * local * lower_of(shape[2]), stretches * m * monomials_of(shape[0]),
+                                stretches * m * m * lower_of(shape[0])};
+    const double *read[8];
+    for (int i = 0; i < 8; i++)
         if (!(read[i] = items(held, PyTuple_GET_ITEM(parts, i), members * sizes[i], "d", 0)))
             return 0;
-    *model = (Model){(int)m, (int)points, (int)local, (int)monomials, (int)lower,
-                     read[0], read[1], read[2], read[3], read[4], read[5]};
+    *model = (Model){shape[0], shape[1], shape[2], shape[3], read[0], read[1],
+                     read[2], read[3], read[4], read[5], read[6], read[7]};
     return 1;
 }
 
@@ -78,11 +78,11 @@ static PyObject *newton(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
     PyObject *parts, *member, *speed, *reference, *anchor, *scale, *row, *target, *x, *step, *iterations, *tangent;
-    int shape[3], harmonics, follows, done = 1;
+    int shape[4], harmonics, follows, done = 1;
     Py_ssize_t members, cycles;
     Options options;
-    if (!PyArg_ParseTuple(arguments, "O!(niii)(nip)(OOOOOOO)(ddi)(OOOO)", &PyTuple_Type, &parts, &members, shape,
-                          shape + 1, shape + 2, &cycles, &harmonics, &follows, &member, &speed, &reference, &anchor,
+    if (!PyArg_ParseTuple(arguments, "O!(niiip)(nip)(OOOOOOO)(ddi)(OOOO)", &PyTuple_Type, &parts, &members, shape,
+                          shape + 1, shape + 2, shape + 3, &cycles, &harmonics, &follows, &member, &speed, &reference, &anchor,
                           &scale, &row, &target, &options.tolerance, &options.largest_step, &options.iterations, &x,
                           &step, &iterations, &tangent))
         return NULL;
@@ -108,10 +108,10 @@ static PyObject *linearization(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
     PyObject *parts, *member, *coefficients, *frequency, *speed, *residuals, *slopes;
-    int shape[3], harmonics;
+    int shape[4], harmonics;
     Py_ssize_t members, cycles;
-    if (!PyArg_ParseTuple(arguments, "O!(niii)(ni)(OOOO)(OO)", &PyTuple_Type, &parts, &members, shape, shape + 1,
-                          shape + 2, &cycles, &harmonics, &member, &coefficients, &frequency, &speed, &residuals, &slopes))
+    if (!PyArg_ParseTuple(arguments, "O!(niiip)(ni)(OOOO)(OO)", &PyTuple_Type, &parts, &members, shape, shape + 1,
+                          shape + 2, shape + 3, &cycles, &harmonics, &member, &coefficients, &frequency, &speed, &residuals, &slopes))
         return NULL;
     const Py_ssize_t n = shape[0] * (2 * (Py_ssize_t)harmonics + 1);
     Model model;
@@ -144,10 +144,10 @@ static PyObject *monodromies(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
     PyObject *parts, *member, *inverse, *coefficients, *frequency, *speed, *values, *slopes, *steps, *first, *matrices;
-    int shape[3], harmonics;
+    int shape[4], harmonics;
     Py_ssize_t members, cycles, rows;
-    if (!PyArg_ParseTuple(arguments, "O!(niii)(nni)(OOOOOOOOO)O", &PyTuple_Type, &parts, &members, shape, shape + 1,
-                          shape + 2, &cycles, &rows, &harmonics, &member, &inverse, &coefficients, &frequency, &speed,
+    if (!PyArg_ParseTuple(arguments, "O!(niiip)(nni)(OOOOOOOOO)O", &PyTuple_Type, &parts, &members, shape, shape + 1,
+                          shape + 2, shape + 3, &cycles, &rows, &harmonics, &member, &inverse, &coefficients, &frequency, &speed,
                           &values, &slopes, &steps, &first, &matrices))
         return NULL;
     const Py_ssize_t m = shape[0], size = 2 * (Py_ssize_t)harmonics + 1;
@@ -188,18 +188,20 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
 static PyObject *flows(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *half_step, *nonlinear, *forms, *step, *angle, *window, *state, *square, *largest;
+    PyObject *half_step, *nonlinear, *forms, *restoring, *step, *angle, *window, *state, *square, *largest;
     Flows wanted;
     int done = 1;
-    if (!PyArg_ParseTuple(arguments, "(nniii)(OOOOOO)(OOO)", &wanted.starts, &wanted.steps, &wanted.m, &wanted.points,
-                          &wanted.local, &half_step, &nonlinear, &forms, &step, &angle, &window, &state, &square,
-                          &largest))
+    if (!PyArg_ParseTuple(arguments, "(nniiip)(OOOOOOO)(OOO)", &wanted.starts, &wanted.steps, &wanted.m, &wanted.points,
+                          &wanted.local, &wanted.stretches, &half_step, &nonlinear, &forms, &restoring, &step, &angle,
+                          &window, &state, &square, &largest))
         return NULL;
     const Py_ssize_t starts = wanted.starts, m = wanted.m, points = wanted.points, local = wanted.local;
-    const Py_ssize_t terms = local * (local + 1) / 2 + local * (local + 1) * (local + 2) / 6;
+    const Py_ssize_t terms = monomials_of(wanted.local) - local;
+    const Py_ssize_t own = wanted.stretches ? monomials_of(wanted.m) - m : 0;
     if ((wanted.half_step = REALS(half_step, 4 * m * m * starts))
         && (wanted.nonlinear = REALS(nonlinear, points * m * terms * starts))
-        && (wanted.forms = REALS(forms, points * local * 2 * m * starts)) && (wanted.step = REALS(step, starts))
+        && (wanted.forms = REALS(forms, points * local * 2 * m * starts))
+        && (wanted.restoring = REALS(restoring, m * own * starts)) && (wanted.step = REALS(step, starts))
         && (wanted.angle = REALS(angle, 2 * m * starts)) && (wanted.window = REALS(window, wanted.steps))
         && (wanted.state = RESULT(state, 2 * m * starts)) && (wanted.square = RESULT(square, 2 * m * starts))
         && (wanted.largest = RESULT(largest, starts))) {

@@ -7,15 +7,13 @@
 
 /* The equations of LANES starts, and the memory that a step needs. */
 typedef struct {
-    int m, points, local, terms;
-    Lanes *half_step, *nonlinear, *forms, *angle, *step, *state, *square, *largest;
+    int m, points, local, terms, stretches;
+    Lanes *half_step, *nonlinear, *forms, *restoring, *angle, *step, *state, *square, *largest;
     Lanes *x, *monomials, *shifted, *here, *middle, *k[4];
 } Group;
 
-static int terms_of(int variables)
-{
-    return variables * (variables + 1) / 2 + variables * (variables + 1) * (variables + 2) / 6;
-}
+/* The number of monomials of degree 2 and 3. */
+static int terms_of(int variables) { return monomials_of(variables) - variables; }
 
 /* Copy one column of numbers per start into its lane; lanes beyond the last start repeat it. */
 static void gather(const double *from, ptrdiff_t rows, ptrdiff_t starts, ptrdiff_t first, Lanes *to)
@@ -55,6 +53,13 @@ WITHIN void nonlinear_acceleration(const Group *group, const Lanes *state, Lanes
             result[i] = sum;
         }
     }
+    if (!group->stretches)
+        return;
+    powers(m, state, group->monomials);
+    coefficient = group->restoring;
+    for (int i = 0; i < m; i++)
+        for (int t = 0; t < terms_of(m); t++)
+            result[i] += *coefficient++ * group->monomials[1 + m + t];
 }
 
 /* Advance the linear part by half a step: multiply by its matrix exponential. */
@@ -125,14 +130,16 @@ WIDE static void integrate_block(const Group *group, ptrdiff_t steps, const doub
 static size_t lay_out(Group *group, Lanes *memory)
 {
     const size_t m = (size_t)group->m, points = (size_t)group->points, local = (size_t)group->local;
-    const size_t terms = (size_t)group->terms;
+    const size_t terms = (size_t)group->terms, own = group->stretches ? (size_t)terms_of(group->m) : 0;
+    const size_t monomials = 1 + (local + terms > m + own ? local + terms : m + own);
     struct {
         Lanes **part;
         size_t size;
     } parts[] = {{&group->half_step, 4 * m * m}, {&group->nonlinear, points * m * terms},
-                 {&group->forms, points * local * 2 * m}, {&group->angle, 2 * m}, {&group->step, 1},
+                 {&group->forms, points * local * 2 * m}, {&group->restoring, m * own}, {&group->angle, 2 * m},
+                 {&group->step, 1},
                  {&group->state, 2 * m}, {&group->square, 2 * m}, {&group->largest, 1}, {&group->x, local},
-                 {&group->monomials, 1 + local + terms}, {&group->shifted, 2 * m}, {&group->here, 2 * m},
+                 {&group->monomials, monomials}, {&group->shifted, 2 * m}, {&group->here, 2 * m},
                  {&group->middle, 2 * m}, {group->k, m}, {group->k + 1, m}, {group->k + 2, m}, {group->k + 3, m}};
     size_t used = 0;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
@@ -146,7 +153,8 @@ static size_t lay_out(Group *group, Lanes *memory)
 int integrate_flows(const Flows *flows)
 {
     const ptrdiff_t m = flows->m, points = flows->points, local = flows->local, starts = flows->starts;
-    Group group = {.m = flows->m, .points = flows->points, .local = flows->local, .terms = terms_of(flows->local)};
+    Group group = {.m = flows->m, .points = flows->points, .local = flows->local, .terms = terms_of(flows->local),
+                   .stretches = flows->stretches};
     Lanes *memory = malloc(lay_out(&group, NULL) * sizeof *memory);
     if (!memory)
         return 0;
@@ -156,6 +164,7 @@ int integrate_flows(const Flows *flows)
         gather(flows->nonlinear, points * m * group.terms, starts, first, group.nonlinear);
         gather(flows->forms, points * local * 2 * m, starts, first, group.forms);
         gather(flows->angle, 2 * m, starts, first, group.angle);
+        gather(flows->restoring, group.stretches ? m * terms_of(group.m) : 0, starts, first, group.restoring);
         gather(flows->step, 1, starts, first, group.step);
         gather(flows->state, 2 * m, starts, first, group.state);
         integrate_block(&group, flows->steps, flows->window);

@@ -84,6 +84,14 @@ def static_profile(lines: Sequence[Line]) -> StaticProfile:
     )
 
 
+def end_steepness(profile: StaticProfile) -> FloatArray:
+    """Return ds/dx at the steeper end, the ratio of the tension there to its horizontal component: (lines,)."""
+    ends = np.stack([np.zeros_like(profile.low_point), profile.plane_span], axis=-1) - profile.low_point[:, None]
+    slope = ends / profile.catenary_parameter[:, None]
+    along, up = profile.axes[:, 0, :1], profile.axes[:, 1, :1]
+    return np.asarray((np.cosh(slope) / (along + up * np.sinh(slope))).max(axis=-1))
+
+
 def arc_position(profile: StaticProfile, position: FloatArray) -> FloatArray:
     """Return the arc length s [m] at horizontal distances from the left support [m], shapes (lines, ...)."""
     c, low = (_column(values, position) for values in (profile.catenary_parameter, profile.low_point))

@@ -8,7 +8,8 @@ from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
 from engine.models.aerodynamic_load import span_load, take_load
 from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
-from engine.spec import Analysis, DampingModel
+from engine.models.stretching import stretching_of, take_stretching
+from engine.spec import Analysis, DampingModel, Stretching
 
 TRANSVERSE = (V, W, THETA)
 
@@ -17,6 +18,8 @@ def finite_element_model(
     discretization: Discretization, modes: FullModes, shapes: DirectionalShapes, analysis: Analysis
 ) -> ReducedModel:
     """Return the model reduced to the full modes of several loops per direction, with the exact load: (lines,).
+
+    Where the analysis includes it, with stretching, whose tension the symmetric vertical modes relieve.
 
     Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
     2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi, and that of devices. Section 7.4.
@@ -35,6 +38,8 @@ def finite_element_model(
         at[:, None],
         analysis.aerodynamic_model,
     )
+    included = analysis.stretching is Stretching.INCLUDED
+    geometry = (discretization.lines, discretization.profile, discretization.sections)
     unstable = np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
     return ReducedModel(
         mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
@@ -45,6 +50,7 @@ def finite_element_model(
         shapes=nodal,
         direction=np.repeat(np.arange(3), len(modes.loops)),
         statically_unstable=unstable,
+        stretching=take_stretching(stretching_of(*geometry, nodal[:, None]), (slice(None), 0)) if included else None,
     )
 
 

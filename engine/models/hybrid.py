@@ -19,8 +19,22 @@ from engine.models.aerodynamic_load import (
     take_load,
 )
 from engine.models.discretization import Discretization, fields_in_space
-from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals
-from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, LongitudinalInertia
+from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals, take
+from engine.models.relief import DAMPING_RATIO, relief_displacement
+from engine.models.stretching import StretchingForce, stretching_of, take_stretching
+from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, LongitudinalInertia, Stretching
+
+
+def loop_groups(loops: tuple[int, ...], analysis: Analysis) -> list[tuple[int, ...]]:
+    """Divide numbers of loops into groups whose hybrid models have equally many coordinates.
+
+    With stretching, one loop stands alone: its own vertical motion relieves the tension, all others need a coordinate
+    for that.
+    """
+    if analysis.stretching is Stretching.NEGLECTED:
+        return [loops]
+    parts = tuple(k for k in loops if k == 1), tuple(k for k in loops if k != 1)
+    return [part for part in parts if part]
 
 
 def hybrid_model(
@@ -28,32 +42,43 @@ def hybrid_model(
 ) -> ReducedModel:
     """Return the model reduced to one mode per direction, with leading axes (lines, loops).
 
+    With stretching, a relief coordinate follows as the fourth, but for one loop. Theory section 12.1.
+
     Parameters
     ----------
     discretization : Discretization
     shapes : DirectionalShapes
         Of these loops and of one loop at least.
     loops : tuple of int
+        One of the groups of `loop_groups`.
     analysis : Analysis
-        Its closure, aerodynamic model and longitudinal inertia are used.
+        Its closure, aerodynamic model, longitudinal inertia and stretching are used.
 
     Returns
     -------
     ReducedModel
     """
-    mass, stiffness = _condensed(discretization.matrices, shapes.nodal[:, :, :, None], analysis.longitudinal_inertia)
+    relief = _relief(discretization, loops, analysis)
+    basis = _basis(shapes.nodal[:, :, :, None], relief)
+    mass, stiffness = _condensed(discretization.matrices, basis, 1, analysis.longitudinal_inertia)
     squares = diagonals(stiffness) / diagonals(mass)
     selected = [shapes.loops.index(k) for k in loops]
     mass, stiffness = mass[:, selected], stiffness[:, selected]
     constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in discretization.lines])
     square = np.where(constant[:, None, None], squares[:, [shapes.loops.index(1)]], squares[:, selected])
-    rate = 2.0 * damping_ratios(discretization.lines)[:, None] * np.sqrt(np.maximum(square, 0.0))
+    ratios = damping_ratios(discretization.lines)
+    if relief is not None:
+        ratios = np.append(ratios, np.full((len(ratios), 1), DAMPING_RATIO), axis=-1)
+    rate = 2.0 * ratios[:, None] * np.sqrt(np.maximum(square, 0.0))
     unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
     nodal = fields_in_space(discretization.profile, _diagonal_fields(shapes.nodal[:, selected, 1:]))
+    fields = _with_relief(discretization, nodal, None if relief is None else np.zeros_like(relief))
     damping = diagonal_matrices(rate * diagonals(mass))  # (11)
-    damping += device_damping(discretization.lines, discretization.profile, nodal)
-    load = _hybrid_load(discretization, nodal, analysis)
-    return ReducedModel(mass, damping, stiffness, load, nodal, np.arange(3), unstable)
+    damping += device_damping(discretization.lines, discretization.profile, fields)
+    load = _hybrid_load(discretization, fields, analysis)
+    stretching = _stretching(discretization, _with_relief(discretization, nodal, relief), analysis)
+    direction = np.arange(fields.shape[2]) % 3
+    return ReducedModel(mass, damping, stiffness, load, fields, direction, unstable, stretching)
 
 
 def joint_model(
@@ -61,19 +86,28 @@ def joint_model(
 ) -> ReducedModel:
     """Return the model in which the hybrid shapes of several loops move together, with the exact load.
 
-    Parameters are those of `hybrid_model`; leading axis (lines,). The coordinates are f_v of each number of loops,
-    then f_w, then f_theta; each has the structural damping of its own hybrid model.
+    Parameters are those of `hybrid_model`; leading axis (lines,). The coordinates are f_v of each number of loops, then
+    f_w, then f_theta, each with the structural damping of its own hybrid model; then, with stretching and without one
+    loop among them, the relief coordinate.
     """
-    alone = hybrid_model(discretization, shapes, loops, analysis)
+    groups = {k: group for group in loop_groups(loops, analysis) for k in group}
+    models = {group: hybrid_model(discretization, shapes, group, analysis) for group in set(groups.values())}
+    alone = [take(models[groups[k]], (slice(None), groups[k].index(k))) for k in loops]
+    relief = _relief(discretization, loops, analysis)
     selected = [shapes.loops.index(k) for k in loops]
-    together = np.moveaxis(shapes.nodal[:, selected], 1, 2)[:, None]
+    basis = _basis(np.moveaxis(shapes.nodal[:, selected], 1, 2)[:, None], relief)
     mass, stiffness = (
-        matrix[:, 0] for matrix in _condensed(discretization.matrices, together, analysis.longitudinal_inertia)
+        matrix[:, 0] for matrix in _condensed(discretization.matrices, basis, len(loops), analysis.longitudinal_inertia)
     )
-    nodal = np.moveaxis(alone.shapes, 1, 2).reshape(len(discretization.lines), -1, *alone.shapes.shape[-2:])
-    own = diagonals(alone.damping).swapaxes(-1, -2).reshape(len(discretization.lines), -1)  # with that of devices
-    coupled = device_damping(discretization.lines, discretization.profile, nodal)
-    values = at_points(discretization.matrices, nodal)
+    nodal = np.stack([model.shapes[:, :3] for model in alone], axis=2).reshape(
+        len(mass), -1, *alone[0].shapes.shape[-2:]
+    )
+    fields = _with_relief(discretization, nodal, None if relief is None else np.zeros_like(relief))
+    own = np.stack([diagonals(model.damping)[:, :3] for model in alone], axis=2).reshape(len(mass), -1)
+    if relief is not None:
+        own = np.append(own, diagonals(alone[0].damping)[:, 3:], axis=-1)
+    coupled = device_damping(discretization.lines, discretization.profile, fields)  # in `own` as well
+    values = at_points(discretization.matrices, fields)
     load = span_load(
         discretization.lines,
         discretization.sections,
@@ -81,21 +115,37 @@ def joint_model(
         values[:, None],
         analysis.aerodynamic_model,
     )
+    unstable = np.any([model.statically_unstable for model in alone], axis=0)
     return ReducedModel(
         mass=mass,
         damping=diagonal_matrices(own - diagonals(coupled)) + coupled,
         stiffness=stiffness,
         load=take_load(load, (slice(None), 0)),
-        shapes=nodal,
-        direction=np.repeat(np.arange(3), len(loops)),
-        statically_unstable=np.asarray(
-            alone.statically_unstable.any(axis=1) | (np.linalg.eigvalsh(stiffness)[:, 0] <= 0.0)
+        shapes=fields,
+        direction=np.append(np.repeat(np.arange(3), len(loops)), np.zeros(fields.shape[1] - 3 * len(loops), np.intp)),
+        statically_unstable=np.asarray(unstable | (np.linalg.eigvalsh(stiffness)[:, 0] <= 0.0)),
+        stretching=take_stretching(
+            _stretching(discretization, _with_relief(discretization, nodal[:, None], relief), analysis),
+            (slice(None), 0),
         ),
     )
 
 
 def with_published_load(discretization: Discretization, model: ReducedModel) -> ReducedModel:
-    """Return the hybrid model with the load of the published closure, which section 7.1's formula needs."""
+    """Return the hybrid model with the load of the published closure, which section 7.1's formula needs.
+
+    Without stretching and relief coordinate: the formula treats three linear coordinates.
+    """
+    three = slice(3)
+    model = replace(
+        model,
+        mass=model.mass[..., three, three],
+        damping=model.damping[..., three, three],
+        stiffness=model.stiffness[..., three, three],
+        shapes=model.shapes[..., three, :, :],
+        direction=model.direction[three],
+        stretching=None,
+    )
     values = at_points(discretization.matrices, model.shapes)
     load = published_load(
         discretization.lines,
@@ -107,23 +157,48 @@ def with_published_load(discretization: Discretization, model: ReducedModel) -> 
     return replace(model, load=load)
 
 
-def _condensed(system: Matrices, nodal: FloatArray, inertia: LongitudinalInertia) -> tuple[FloatArray, FloatArray]:
-    """Project onto f_u, f_v, f_w, f_theta and condense f_u, eqs. (18)-(20).
+def _relief(discretization: Discretization, loops: tuple[int, ...], analysis: Analysis) -> FloatArray | None:
+    """Return the displacement of the relief coordinate (lines, freedoms), None where the loops need none."""
+    if analysis.stretching is Stretching.NEGLECTED or 1 in loops:
+        return None
+    return relief_displacement(discretization)
 
-    nodal: (lines, groups, 4, k, nodes), k shapes per direction that move together; returns M and K
-    (lines, groups, 3 k, 3 k).
+
+def _basis(nodal: FloatArray, relief: FloatArray | None) -> FloatArray:
+    """Return the displacements of coordinates: f_u, f_v, f_w, f_theta of k shapes each, then the relief coordinate.
+
+    nodal: (lines, groups, 4, k, nodes), k shapes per direction that move together; returns (lines, groups,
+    coordinates, freedoms).
     """
     lines, groups, _, k, nodes = nodal.shape
     spread = nodal[..., None] * np.eye(FIELDS)[:, None, None, :]
     basis = spread.reshape(lines, groups, FIELDS * k, nodes * FIELDS)
+    if relief is None:
+        return basis
+    return np.append(basis, np.broadcast_to(relief[:, None, None], (lines, groups, 1, nodes * FIELDS)), axis=-2)
+
+
+def _condensed(
+    system: Matrices, basis: FloatArray, longitudinal: int, inertia: LongitudinalInertia
+) -> tuple[FloatArray, FloatArray]:
+    """Project onto a basis (lines, groups, coordinates, freedoms) and condense its first ones, f_u, eqs. (18)-(20)."""
     stiffness = basis @ system.stiffness[:, None] @ basis.swapaxes(-1, -2)
     mass = basis @ system.mass[:, None] @ basis.swapaxes(-1, -2)
-    follow = -np.linalg.solve(stiffness[..., :k, :k], stiffness[..., :k, k:])
-    condensed = stiffness[..., k:, k:] + stiffness[..., k:, :k] @ follow
-    reduced = mass[..., k:, k:]
-    if inertia is LongitudinalInertia.CONDENSED:
-        reduced = reduced + follow.swapaxes(-1, -2) @ mass[..., :k, :k] @ follow
-    return reduced, condensed
+    along, across = slice(longitudinal), slice(longitudinal, None)
+    follow = -np.linalg.solve(stiffness[..., along, along], stiffness[..., along, across])
+    condensed = stiffness[..., across, across] + stiffness[..., across, along] @ follow
+    if inertia is LongitudinalInertia.NEGLECTED:
+        return mass[..., across, across], condensed
+    shared = mass[..., across, along] @ follow
+    kept = follow.swapaxes(-1, -2) @ mass[..., along, along] @ follow
+    return mass[..., across, across] + shared + shared.swapaxes(-1, -2) + kept, condensed
+
+
+def _stretching(discretization: Discretization, moving: FloatArray, analysis: Analysis) -> StretchingForce | None:
+    """Return the stretching of coordinates that move as (lines, groups, m, 3, nodes), None where it is neglected."""
+    if analysis.stretching is Stretching.NEGLECTED:
+        return None
+    return stretching_of(discretization.lines, discretization.profile, discretization.sections, moving)
 
 
 def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: Analysis) -> PolynomialLoad:
@@ -155,3 +230,13 @@ def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: An
 def _diagonal_fields(shapes: FloatArray) -> FloatArray:
     """Return V, W, Theta of the coordinates with shapes f_v, f_w, f_theta (..., 3, nodes): (..., 3, 3, nodes)."""
     return shapes[..., None, :] * np.eye(3)[..., None]
+
+
+def _with_relief(discretization: Discretization, nodal: FloatArray, relief: FloatArray | None) -> FloatArray:
+    """Append V, W, Theta of the relief coordinate (lines, freedoms) to fields in space (lines, ..., m, 3, nodes)."""
+    if relief is None:
+        return nodal
+    in_plane = relief.reshape(len(relief), -1, FIELDS).swapaxes(-1, -2)
+    fields = fields_in_space(discretization.profile, in_plane)[:, 1:]
+    extra = fields.reshape(len(relief), *(1,) * (nodal.ndim - 3), *fields.shape[1:])
+    return np.append(nodal, np.broadcast_to(extra, (*nodal.shape[:-3], 1, *nodal.shape[-2:])), axis=-3)

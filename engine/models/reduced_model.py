@@ -1,4 +1,4 @@
-"""The reduced model, hybrid or finite element: M q'' + C q' + K q = U^2 f(q, q'/U). Theory section 4."""
+"""The reduced model, hybrid or finite element: M q'' + C q' + K q = U^2 f(q, q'/U) - g(q). Theory section 4, 12.1."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,18 +7,20 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.models.aerodynamic_load import PolynomialLoad, take_load
+from engine.models.aerodynamic_load import PolynomialLoad, force, force_gradient, take_load
+from engine.models.stretching import StretchingForce, restoring_force, restoring_gradient, take_stretching
 from engine.spec import Line
 
 
 @dataclass(frozen=True, slots=True)
 class ReducedModel:
-    """M q'' + C q' + K q = U^2 f(q, q'/U) for a stack of models with m generalized coordinates.
+    """M q'' + C q' + K q = U^2 f(q, q'/U) - g(q) for a stack of models with m generalized coordinates.
 
     mass, damping, stiffness: (..., m, m); load: f, of the same leading axes; shapes: (..., m, 3, nodes), the fields V,
-    W, Theta of each coordinate; direction: (m,), the direction of each coordinate (0 vertical, 1 horizontal, 2
-    torsional); statically_unstable: (...), True where the stiffness is not positive definite; damping has no meaning
-    there.
+    W, Theta of each coordinate that the wind acts on and that are reported, zero for a relief coordinate; direction:
+    (m,), the direction of each coordinate (0 vertical, 1 horizontal, 2 torsional); statically_unstable: (...), True
+    where the stiffness is not positive definite; damping has no meaning there; stretching: g, of the same leading axes,
+    None where it is neglected.
     """
 
     mass: FloatArray
@@ -28,6 +30,7 @@ class ReducedModel:
     shapes: FloatArray
     direction: IntArray
     statically_unstable: BoolArray
+    stretching: StretchingForce | None = None
 
     @property
     def modal_masses(self) -> FloatArray:
@@ -55,7 +58,41 @@ def take(model: ReducedModel, index: Any) -> ReducedModel:
         shapes=model.shapes[index],
         direction=model.direction,
         statically_unstable=model.statically_unstable[index],
+        stretching=take_stretching(model.stretching, index),
     )
+
+
+def resultant(model: ReducedModel, state: FloatArray, wind_speed: FloatArray) -> FloatArray:
+    """Return f - g / U^2, the forces of wind and stretching over U^2.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        With leading axes (...,).
+    state : (..., samples, 2 m)
+        q and q'/U.
+    wind_speed : (...,)
+        U [m/s].
+
+    Returns
+    -------
+    (..., samples, m)
+    """
+    load = force(model.load, state)
+    if model.stretching is None:
+        return load
+    m = model.mass.shape[-1]
+    return np.asarray(load - restoring_force(model.stretching, state[..., :m]) / wind_speed[..., None, None] ** 2)
+
+
+def resultant_gradient(model: ReducedModel, state: FloatArray, wind_speed: FloatArray) -> FloatArray:
+    """Differentiate `resultant` by (q, q'/U): (..., samples, m, 2 m)."""
+    gradient = force_gradient(model.load, state)
+    if model.stretching is None:
+        return gradient
+    m = model.mass.shape[-1]
+    by_q = restoring_gradient(model.stretching, state[..., :m]) / wind_speed[..., None, None, None] ** 2
+    return np.concatenate([gradient[..., :m] - by_q, gradient[..., m:]], axis=-1)
 
 
 def damping_ratios(lines: Sequence[Line]) -> FloatArray:

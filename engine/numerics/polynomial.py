@@ -93,13 +93,13 @@ def substitute(table: FloatArray, forms: FloatArray) -> FloatArray:
     -------
     (..., outputs, monomials of variables)
     """
-    local, variables = forms.shape[-2:]
+    local = forms.shape[-2]
     result, start = [], 0
     products = forms
     for degree in (1, 2, 3):
         if degree > 1:
             index, factor = _products(local)[degree - 2]
-            products = _multiply(products[..., index, :], forms[..., factor, :], variables, degree)
+            products = multiply_forms(products[..., index, :], forms[..., factor, :])
         stop = start + count(local, degree)
         coefficients = np.moveaxis(table[..., start:stop], -2, -3)
         flat = coefficients.reshape(*coefficients.shape[:-2], -1)
@@ -108,10 +108,24 @@ def substitute(table: FloatArray, forms: FloatArray) -> FloatArray:
     return np.concatenate(result, axis=-1)
 
 
-def _multiply(left: FloatArray, right: FloatArray, variables: int, degree: int) -> FloatArray:
-    """Multiply homogeneous polynomials of degree - 1 (..., monomials) by linear forms (..., variables)."""
+def multiply_forms(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Multiply homogeneous polynomials of degree 1 or 2 (..., monomials) by linear forms (..., variables).
+
+    Returns
+    -------
+    (..., monomials of one degree more)
+    """
+    variables = right.shape[-1]
     outer = left[..., :, None] * right[..., None, :]
-    return np.asarray(outer.reshape(*outer.shape[:-2], -1) @ _fold(variables, degree))
+    return collected(outer.reshape(*outer.shape[:-2], -1), variables, 2 if left.shape[-1] == variables else 3)
+
+
+def collected(products: FloatArray, variables: int, degree: int) -> FloatArray:
+    """Collect equal monomials among products of each monomial of one degree less with each variable.
+
+    products: (..., monomials of degree - 1 times variables); returns (..., monomials of degree).
+    """
+    return np.asarray(products @ _fold(variables, degree))
 
 
 @lru_cache

@@ -13,6 +13,7 @@ from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome, Stability
 from engine.spec import Model
 from engine.tori.quasi_periodic import QuasiPeriodicMotions
+from engine.tori.spectrum import mean_square_velocity
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,3 +81,17 @@ def _marked(grid: BoolArray, places: IntArray) -> BoolArray:
     marks = np.zeros_like(grid)
     marks[places[:, 0], places[:, 1]] = True
     return marks
+
+
+def cycle_loops(findings: ModelFindings) -> IntArray:
+    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 in each cycle: (cycles,)."""
+    cycles = findings.cycles
+    energy = findings.model.modal_masses[cycles.member] * (cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
+    return np.asarray(findings.loops[cycles.member, energy.argmax(axis=-1)])
+
+
+def torus_loops(findings: ModelFindings) -> IntArray:
+    """Return the number of loops of the coordinate of largest kinetic energy in each quasi-periodic motion: (tori,)."""
+    known = findings.quasi_periodic
+    energy = findings.model.modal_masses[known.member] * mean_square_velocity(known.tori)
+    return np.asarray(findings.loops[known.member, energy.argmax(axis=-1)])

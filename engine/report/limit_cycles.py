@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray, eigenvalues
+from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
 from engine.checks.data_limits import motion_outcomes
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
 from engine.mechanics.static_profile import horizontal_position
@@ -16,8 +16,9 @@ from engine.models.discretization import Discretization, nodal_motion, observati
 from engine.models.relative_wind import FASTEST, largest_reach
 from engine.outcome import Outcome, Stability
 from engine.report.cells import finite_or_none, lists_by_line
-from engine.report.findings import MissingMotions, ModelFindings, missing_motions
+from engine.report.findings import MissingMotions, ModelFindings, cycle_loops, missing_motions, torus_loops
 from engine.report.internal_resonances import divide_by_direction, motion_shares
+from engine.report.tensions import cycle_tensions, torus_tensions
 from engine.result import LimitCycleRow
 from engine.spec import AerodynamicModel, Analysis
 from engine.tori.spectrum import amplitude_range, base_frequencies, mean_square_velocity, sampled_states
@@ -133,7 +134,7 @@ def _cycles(
     cycles = findings.cycles
     if cycles.member.size == 0:
         return iter(())
-    line, loops = findings.line[cycles.member], _dominant_loops(findings)
+    line, loops = findings.line[cycles.member], cycle_loops(findings)
     shapes = findings.model.shapes[cycles.member]
     series = np.empty((cycles.member.size, 3, cycles.orbits.coefficients.shape[-1]))
     for k in np.unique(loops):
@@ -144,13 +145,14 @@ def _cycles(
     motion = nodal_motion(discretization, findings.line, findings.model.shapes, model)
     reach = largest_reach(motion, cycles.member, state)
     measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
+    slack = cycle_tensions(discretization, findings)[:, 0] <= 0.0
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
         "stability": cycles.floquet.stability.tolist(),
         "branch": cycles.branch.tolist(),
         "found_by": cycles.found_by,
         "harmonics": cycles.harmonics.tolist(),
-        "outcome": _outcomes(discretization, line, measures, model),
+        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, model)),
     }
     keys = _RowKeys(line, loops, cycles.orbits.wind_speed)
     return _rows(findings, scales, keys, measures, labels, series)
@@ -179,7 +181,8 @@ def _quasi_periodic_motions(
     tori, member, line = known.tori, known.member, findings.line[known.member]
     frequency, _ = base_frequencies(model, member, tori)
     energy = model.modal_masses[member] * mean_square_velocity(tori)
-    loops = findings.loops[member, energy.argmax(axis=-1)]
+    loops = torus_loops(findings)
+    slack = torus_tensions(discretization, findings)[:, 0] <= 0.0
     motion = nodal_motion(discretization, findings.line, model.shapes, model_of_wind)
     ranges, reach = np.empty((2, 3, member.size)), np.empty((2, member.size))
     for i in range(member.size):
@@ -202,7 +205,7 @@ def _quasi_periodic_motions(
         "branch": known.branch.tolist(),
         "found_by": known.found_by,
         "harmonics": repeat(tori.order[0]),
-        "outcome": _outcomes(discretization, line, measures, model_of_wind),
+        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, model_of_wind)),
     }
     return _rows(findings, scales, _RowKeys(line, loops, tori.wind_speed), measures, labels)
 
@@ -216,6 +219,11 @@ def _outcomes(
     sag, fitted_range = discretization.profile.sag[line], discretization.sections.fitted_range[line]
     too_fast = (velocity > FASTEST) & (model is not AerodynamicModel.PUBLISHED)
     return motion_outcomes(angle, fitted_range, too_fast, amplitudes, sag)
+
+
+def _slack_first(slack: BoolArray, outcomes: list[Outcome]) -> list[Outcome]:
+    """Replace the outcomes of motions with slack conductors: no coefficients would help them."""
+    return [Outcome.SLACK if loose else outcome for loose, outcome in zip(slack.tolist(), outcomes, strict=True)]
 
 
 def _rows(
@@ -257,10 +265,3 @@ def _numbers(column: FloatArray) -> list[Any]:
 def _observed_at(discretization: Discretization, loops: int) -> FloatArray:
     """Return the horizontal position of s = L/(2 loops) on each line [m]."""
     return horizontal_position(discretization.profile, discretization.profile.arc_length / (2.0 * loops))
-
-
-def _dominant_loops(findings: ModelFindings) -> IntArray:
-    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 in each cycle: (cycles,)."""
-    mass = findings.model.modal_masses[findings.cycles.member]
-    energy = mass * (findings.cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
-    return np.asarray(findings.loops[findings.cycles.member, energy.argmax(axis=-1)])

@@ -16,6 +16,7 @@ from engine.report.internal_resonances import internal_resonance_rows
 from engine.report.limit_cycles import Motion, limit_cycle_rows
 from engine.report.model_comparisons import model_comparisons
 from engine.report.static_equilibria import static_equilibrium_rows
+from engine.report.tensions import tension_rows
 from engine.report.warnings import (
     dropped_warnings,
     fit_warnings,
@@ -63,11 +64,16 @@ def line_results(
     longitudinal = longitudinal_share(discretization.matrices, shapes)
     critical = [critical_wind_speed_rows(model_findings, shapes.loops, longitudinal) for model_findings in findings]
     bifurcations = [bifurcation_rows(model_findings) for model_findings in findings]
+    tensions = [tension_rows(discretization, model_findings) for model_findings in findings]
     motions = [limit_cycle_rows(discretization, model_findings, analysis, lowest) for model_findings in findings]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     curves = [amplitude_curve_rows(discretization, model_findings) for model_findings in reported]
     physics = PhysicsRow(
-        analysis.physics, analysis.aerodynamic_model, analysis.longitudinal_inertia, analysis.static_twist
+        analysis.physics,
+        analysis.aerodynamic_model,
+        analysis.longitudinal_inertia,
+        analysis.stretching,
+        analysis.static_twist,
     )
     dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
     neglected = neglected_twist_warnings(discretization, _statically_unstable(findings, len(discretization.lines)))
@@ -89,6 +95,7 @@ def line_results(
                 critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 static_equilibria=tuple(equilibria[i]),
                 limit_cycles=cycles,
+                tensions=tuple(row for table in tensions for row in table[i]),
                 bifurcations=tuple(row for table in bifurcations for row in table[i]),
                 amplitude_curves=tuple(row for table in curves for row in table[i]),
                 model_comparisons=model_comparisons(cycles),

@@ -48,7 +48,7 @@ def loop_competitions(
     member = cycles.member[stable_alone]
     line, column = hybrid.line[member], np.searchsorted(np.sort(loops), hybrid.loops[member, 0])
     column = np.argsort(loops)[column]
-    start = _embedded(cycles.orbits, stable_alone, column, len(loops))
+    start = _embedded(cycles.orbits, stable_alone, column, joint.mass.shape[-1])
     orbits, solution = balance(joint, line, start)
     ratio = oscillation_size(joint, line, orbits) / oscillation_size(joint, line, start)
     same_cycle = solution.converged & (ratio < SAME_SIZE) & (ratio > 1.0 / SAME_SIZE)
@@ -77,12 +77,18 @@ def loop_competitions(
     return rows
 
 
-def _embedded(orbits: Orbits, selected: IntArray, column: IntArray, count: int) -> Orbits:
-    """Express cycles of one number of loops in the coordinates of all, the others at rest."""
+def _embedded(orbits: Orbits, selected: IntArray, column: IntArray, coordinates: int) -> Orbits:
+    """Express cycles of one number of loops in the coordinates of all, the others at rest.
+
+    A relief coordinate, the last one, goes to that of the joint model if there is one.
+    """
     own = orbits.coefficients[selected]
+    count = coordinates // 3
     coefficients = np.zeros((selected.size, 3, count, own.shape[-1]))
-    coefficients[np.arange(selected.size), :, column] = own
+    coefficients[np.arange(selected.size), :, column] = own[:, :3]
     flat = coefficients.reshape(selected.size, 3 * count, -1)
+    relief = own[:, 3 : 3 + coordinates - 3 * count]
+    flat = np.concatenate([flat, relief], axis=1)
     return Orbits(flat, orbits.angular_frequency[selected], orbits.wind_speed[selected])
 
 
@@ -105,8 +111,8 @@ def _leading(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArr
 
 
 def _energy_by_loops(joint: ReducedModel, line: IntArray, vector: ComplexArray, count: int) -> FloatArray:
-    """Return sum M_ii |x_i|^2 of a disturbance (q, q'/w) by its number of loops: (cycles, loops)."""
+    """Return sum M_ii |x_i|^2 of a disturbance (q, q'/w) by its number of loops, without relief: (cycles, loops)."""
     mass = joint.modal_masses[line]
     m = mass.shape[-1]
-    energy = mass * (np.abs(vector[:, :m]) ** 2 + np.abs(vector[:, m:]) ** 2)
+    energy = (mass * (np.abs(vector[:, :m]) ** 2 + np.abs(vector[:, m:]) ** 2))[:, : 3 * count]
     return np.asarray(energy.reshape(line.size, 3, count).sum(axis=1))

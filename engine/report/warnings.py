@@ -24,6 +24,7 @@ from engine.spec import (
     LongitudinalInertia,
     Model,
     StretchDevice,
+    Stretching,
     ice_properties,
 )
 
@@ -108,7 +109,9 @@ def _neglected(analysis: Analysis) -> str:
         parts.append("how the horizontal velocity and the rotation of the sub-conductors change the wind")
     if analysis.longitudinal_inertia is LongitudinalInertia.NEGLECTED:
         parts.append("the longitudinal inertia of the hybrid model")
-    return "it neglects " + " and ".join(parts) if parts else "every option was said singly"
+    if analysis.stretching is Stretching.NEGLECTED:
+        parts.append("the stretching of the conductors by large motion")
+    return "it neglects " + "; ".join(parts) if parts else "every option was said singly"
 
 
 def _lacks_rest(aerodynamics: Aerodynamics | None) -> bool:

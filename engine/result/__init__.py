@@ -23,6 +23,7 @@ from engine.result.motions import (
     LoopCompetitionRow,
     ModelComparisonRow,
     Orbit,
+    TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 from engine.result.tables import TABLES, Result, Tables
@@ -51,6 +52,7 @@ __all__ = [
     "StaticState",
     "Table",
     "Tables",
+    "TensionRow",
     "Title",
     "columns_of",
     "tables_of",

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from engine.outcome import Outcome
 from engine.result.columns import Column
-from engine.spec import AerodynamicModel, LongitudinalInertia, Model, Physics, StaticTwist
+from engine.spec import AerodynamicModel, LongitudinalInertia, Model, Physics, StaticTwist, Stretching
 
 Direction = Literal["vertical", "horizontal", "torsional", "longitudinal"]
 ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
@@ -51,6 +51,7 @@ class PhysicsRow:
     longitudinal_inertia: Annotated[
         LongitudinalInertia, Column("Longitudinal inertia of the hybrid model", "condensed")
     ]
+    stretching: Annotated[Stretching, Column("Stretching of the conductors by large motion", "included")]
     static_twist: Annotated[
         StaticTwist, Column("Whether eccentric weight twists the line at rest, or only where that is large", "solved")
     ]

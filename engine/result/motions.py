@@ -119,6 +119,30 @@ class BifurcationRow:
 
 
 @dataclass(frozen=True, slots=True)
+class TensionRow:
+    """The range of a sub-conductor's tension over a motion, static and dynamic part together.
+
+    Theory section 12.1. No numbers where the conductor would go slack.
+    """
+
+    model: ModelColumn
+    loops: LoopsColumn
+    wind_speed_m_per_s: Annotated[float, Column("Wind speed", 10.0, unit="m/s")]
+    branch: Annotated[int, Column("Family of cycles", 0)]
+    kind: Annotated[Literal["periodic", "quasi_periodic"], Column("Kind of motion", "periodic")]
+    stability: Annotated[Stability, Column("Stability of the motion", "stable")]
+    smallest_horizontal_n: Annotated[float | None, Column("Smallest horizontal component", 28583.0, unit="N")]
+    largest_horizontal_n: Annotated[float | None, Column("Largest horizontal component", 32057.0, unit="N")]
+    smallest_at_support_n: Annotated[float | None, Column("Smallest tension at the higher support", 28617.0, unit="N")]
+    largest_at_support_n: Annotated[float | None, Column("Largest tension at the higher support", 32095.0, unit="N")]
+    largest_share_of_rated_strength: Annotated[
+        float | None,
+        Column("Largest tension at the higher support over the rated strength, null without one", 0.23, unit="1"),
+    ]
+    outcome: OutcomeColumn
+
+
+@dataclass(frozen=True, slots=True)
 class AmplitudeCurveRow:
     """A computed point of a branch of limit cycles; amplitudes are half of peak-to-peak.
 

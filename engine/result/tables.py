@@ -22,6 +22,7 @@ from engine.result.motions import (
     LoopCompetitionRow,
     ModelComparisonRow,
     Orbit,
+    TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 
@@ -42,6 +43,9 @@ class Tables:
         Title("Angles at rest in the wind; empty unless the twist is solved for a table of coefficients"),
     ] = ()
     limit_cycles: Annotated[tuple[LimitCycleRow, ...], Title("Motions at every wind speed")] = ()
+    tensions: Annotated[
+        tuple[TensionRow, ...], Title("Tensions during the motions; empty where stretching is neglected")
+    ] = ()
     bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Bifurcations of the motions over the wind speed")] = ()
     amplitude_curves: Annotated[
         tuple[AmplitudeCurveRow, ...],

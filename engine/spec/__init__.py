@@ -17,6 +17,7 @@ from engine.spec.analysis import (
     Model,
     Physics,
     StaticTwist,
+    Stretching,
     TorusSearch,
     check_compatible,
 )
@@ -86,6 +87,7 @@ __all__ = [
     "SpoilerChoice",
     "StaticTwist",
     "StretchDevice",
+    "Stretching",
     "Support",
     "Supports",
     "TorsionalDamper",

@@ -50,6 +50,13 @@ class LongitudinalInertia(StrEnum):
     CONDENSED = "condensed"
 
 
+class Stretching(StrEnum):
+    """Whether the square of the slopes stretches the conductors, which stiffens large motions. Theory section 12.1."""
+
+    NEGLECTED = "neglected"
+    INCLUDED = "included"
+
+
 class StaticTwist(StrEnum):
     """Whether the static twist by ice and pendulums is neglected, as in the source, or solved where large or always."""
 
@@ -97,12 +104,11 @@ class Check(StrEnum):
 class Analysis:
     """The questions put to a line: loops per span, models, wind speeds [m/s], and modelling choices.
 
-    physics: names the set that aerodynamic_model, longitudinal_inertia and static_twist belong to, which
-    `with_physics` fills in;
-    lacks: the field of the line that kept an analysis for which no physics was asked from being full, None if there is
-    none; critical_wind_limit: highest wind speed searched for critical wind speeds [m/s]; harmonics: of the harmonic
-    balance; finite_element_loops: loops of the modes that the finite element model combines. If it is empty, that model
-    gives its natural frequencies only.
+    physics: names the set that aerodynamic_model, longitudinal_inertia, stretching and static_twist belong to, which
+    `with_physics` fills in; lacks: the field of the line that kept an analysis for which no physics was asked from
+    being full, None if there is none; critical_wind_limit: highest wind speed searched for critical wind speeds [m/s];
+    harmonics: of the harmonic balance; finite_element_loops: loops of the modes that the finite element model combines.
+    If it is empty, that model gives its natural frequencies only.
 
     Raises
     ------
@@ -118,6 +124,7 @@ class Analysis:
     lacks: str | None = None
     aerodynamic_model: AerodynamicModel = AerodynamicModel.PUBLISHED
     longitudinal_inertia: LongitudinalInertia = LongitudinalInertia.NEGLECTED
+    stretching: Stretching = Stretching.NEGLECTED
     critical_wind_limit: float = 30.0
     harmonics: int = 5
     finite_element_loops: tuple[int, ...] = (1, 2, 3)
@@ -141,6 +148,9 @@ class Analysis:
             None if 1 <= self.harmonics <= 20 else Fault("harmonics", self.harmonics, "must be from 1 to 20"),
             Fault("closure", self.closure.value, "must be exact with the relative wind")
             if relative and self.closure is Closure.PUBLISHED
+            else None,
+            Fault("closure", self.closure.value, "must be exact with stretching")
+            if self.stretching is Stretching.INCLUDED and self.closure is Closure.PUBLISHED
             else None,
         )
 

@@ -4,7 +4,15 @@ from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
-from engine.spec.analysis import AerodynamicModel, Analysis, Closure, LongitudinalInertia, Physics, StaticTwist
+from engine.spec.analysis import (
+    AerodynamicModel,
+    Analysis,
+    Closure,
+    LongitudinalInertia,
+    Physics,
+    StaticTwist,
+    Stretching,
+)
 from engine.spec.line import Line
 
 AT_REST = "ice.aerodynamics_at_rest"
@@ -13,11 +21,13 @@ _DEFAULTS: dict[Physics, dict[str, Any]] = {
     Physics.SOURCE: {
         "aerodynamic_model": AerodynamicModel.PUBLISHED,
         "longitudinal_inertia": LongitudinalInertia.NEGLECTED,
+        "stretching": Stretching.NEGLECTED,
         "static_twist": StaticTwist.NEGLECTED,
     },
     Physics.FULL: {
         "aerodynamic_model": AerodynamicModel.RELATIVE_WIND,
         "longitudinal_inertia": LongitudinalInertia.CONDENSED,
+        "stretching": Stretching.INCLUDED,
         "static_twist": StaticTwist.WHERE_LARGE,
     },
 }
@@ -30,6 +40,7 @@ class PhysicsRequest:
     physics: Physics | None = None
     aerodynamic_model: AerodynamicModel | None = None
     longitudinal_inertia: LongitudinalInertia | None = None
+    stretching: Stretching | None = None
     static_twist: StaticTwist | None = None
 
 

@@ -13,7 +13,8 @@ class Conductor:
     """One iced sub-conductor.
 
     diameter [m]; axial_rigidity EA [N]; torsional_rigidity GJ [N m2]; mass m [kg/m]; polar_inertia I about the bare
-    centre [kg m]; axial_torsional_coupling B_T [N m]. Theory section 1.
+    centre [kg m]; axial_torsional_coupling B_T [N m]; rated_strength: tension at which it breaks [N], None if unknown,
+    which only shares of it need. Theory section 1.
     """
 
     diameter: float
@@ -22,13 +23,21 @@ class Conductor:
     mass: float
     polar_inertia: float
     axial_torsional_coupling: float = 0.0
+    rated_strength: float | None = None
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
         require(
             *(
                 positive(f"conductor.{name}", getattr(self, name))
-                for name in ("diameter", "axial_rigidity", "torsional_rigidity", "mass", "polar_inertia")
+                for name in (
+                    "diameter",
+                    "axial_rigidity",
+                    "torsional_rigidity",
+                    "mass",
+                    "polar_inertia",
+                    "rated_strength",
+                )
             ),
             finite("conductor.axial_torsional_coupling", self.axial_torsional_coupling),
             self._coupling_fault(),

@@ -13,6 +13,7 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.models.aerodynamic_load import PolynomialLoad
 from engine.models.reduced_model import ReducedModel, take
+from engine.models.stretching import StretchingForce
 
 NODES = 9  # values per panel
 HALVINGS = 6
@@ -113,11 +114,13 @@ def _lagrange(place: FloatArray) -> FloatArray:
 
 _OWN = ("mass", "damping", "stiffness", "shapes")
 _OF_LOAD = tuple(field.name for field in fields(PolynomialLoad))
+_OF_STRETCHING = tuple(field.name for field in fields(StretchingForce))
 
 
 def _arrays(model: ReducedModel) -> list[FloatArray]:
     own: list[FloatArray] = [getattr(model, name) for name in _OWN]
-    return own + [getattr(model.load, name) for name in _OF_LOAD]
+    own += [getattr(model.load, name) for name in _OF_LOAD]
+    return own if model.stretching is None else own + [getattr(model.stretching, name) for name in _OF_STRETCHING]
 
 
 def _to_rows(model: ReducedModel) -> FloatArray:
@@ -141,5 +144,14 @@ def _from_rows(template: ReducedModel, numbers: FloatArray) -> ReducedModel:
         for (here, _), array in zip(_slices(template), _arrays(template), strict=True)
     ]
     mass, damping, stiffness, shapes = arrays[: len(_OWN)]
-    load = PolynomialLoad(*arrays[len(_OWN) :])
-    return ReducedModel(mass, damping, stiffness, load, shapes, template.direction, template.statically_unstable)
+    of_load, of_stretching = arrays[len(_OWN) :][: len(_OF_LOAD)], arrays[len(_OWN) + len(_OF_LOAD) :]
+    return ReducedModel(
+        mass,
+        damping,
+        stiffness,
+        PolynomialLoad(*of_load),
+        shapes,
+        template.direction,
+        template.statically_unstable,
+        StretchingForce(*of_stretching) if of_stretching else None,
+    )

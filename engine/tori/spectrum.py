@@ -87,10 +87,10 @@ def mean_square_velocity(tori: Tori) -> FloatArray:
     return np.asarray(0.5 * (np.abs(rate[:, None] * phasors(tori.coefficients)) ** 2).sum(axis=-1))
 
 
-def sampled_states(torus: Tori) -> FloatArray:
-    """Return q and q'/U of one torus on a grid over both phases: (1, samples, 2 m)."""
+def sampled_states(tori: Tori) -> FloatArray:
+    """Return q and q'/U of tori on a grid over both phases: (tori, samples, 2 m)."""
     phase = 2.0 * np.pi * np.arange(GRID // 2) / (GRID // 2)
-    return states(torus, _grid(phase, phase))
+    return states(tori, _grid(phase, phase))
 
 
 def _grid(first: FloatArray, second: FloatArray) -> FloatArray:

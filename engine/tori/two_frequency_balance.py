@@ -2,8 +2,8 @@
 
 A motion is q(theta_1, theta_2) with theta_1 = w t and theta_2 = W t: w is the frequency of the cycle that it
 bifurcates from, W the slower frequency of its modulation. The coefficients of each coordinate are ordered as mean, then
-cos and sin of k_1 theta_1 + k_2 theta_2 for each pair (k_1, k_2) of `harmonic_lattice`. The load is a cubic polynomial,
-so a grid of more than four samples per harmonic yields them without aliasing.
+cos and sin of k_1 theta_1 + k_2 theta_2 for each pair (k_1, k_2) of `harmonic_lattice`. The forces are cubic
+polynomials, so a grid of more than four samples per harmonic yields their harmonics without aliasing.
 """
 
 from collections.abc import Sequence
@@ -13,8 +13,8 @@ from functools import lru_cache
 import numpy as np
 
 from engine.arrays import ComplexArray, FloatArray, IntArray, merge_axes
-from engine.models.aerodynamic_load import force, force_gradient
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.aerodynamic_load import force
+from engine.models.reduced_model import ReducedModel, resultant, resultant_gradient, take
 from engine.numerics.newton import NewtonOptions, Solution, newton
 
 Order = tuple[int, int]
@@ -104,7 +104,7 @@ def states(tori: Tori, phases: FloatArray) -> FloatArray:
 def linearized(model: ReducedModel, tori: Tori) -> tuple[FloatArray, FloatArray]:
     """Return the residual of the balance and its derivatives, for a model with leading axis (tori,).
 
-    The residual holds the harmonics of M q'' + C q' + K q - U^2 f.
+    The residual holds the harmonics of M q'' + C q' + K q - U^2 f + g.
 
     Returns
     -------
@@ -118,10 +118,10 @@ def linearized(model: ReducedModel, tori: Tori) -> tuple[FloatArray, FloatArray]
     slope = derivative(tori.coefficients, rate)
     state = np.concatenate([tori.coefficients, slope / speed], axis=1) @ lattice.values.T
     state = state.swapaxes(-1, -2)
-    load, gradient = force(model.load, state), force_gradient(model.load, state)
+    gradient = resultant_gradient(model, state, tori.wind_speed)
     by_q, by_velocity = gradient[..., :m], gradient[..., m:]
     residual = model.mass @ derivative(slope, rate) + model.damping @ slope + model.stiffness @ tori.coefficients
-    residual = residual - speed**2 * _projected(load, lattice)
+    residual = residual - speed**2 * _projected(resultant(model, state, tori.wind_speed), lattice)
     columns = [_by_coefficients(model, tori, _spectrum(by_q, lattice), _spectrum(by_velocity, lattice))]
     for axis in (0, 1):
         along = derivative(tori.coefficients, np.broadcast_to(lattice.pairs[:, axis].astype(float), rate.shape))
@@ -129,7 +129,7 @@ def linearized(model: ReducedModel, tori: Tori) -> tuple[FloatArray, FloatArray]
         by_frequency = (by_velocity @ (along @ lattice.values.T).swapaxes(-1, -2)[..., None])[..., 0]
         columns.append(merge_axes(linear - speed * _projected(by_frequency, lattice), -2)[..., None])
     by_wind = (by_velocity @ state[..., m:, None])[..., 0]
-    columns.append(merge_axes(speed * _projected(by_wind - 2.0 * load, lattice), -2)[..., None])
+    columns.append(merge_axes(speed * _projected(by_wind - 2.0 * force(model.load, state), lattice), -2)[..., None])
     return merge_axes(residual, -2), np.concatenate(columns, axis=-1)
 
 

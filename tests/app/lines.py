@@ -20,6 +20,7 @@ FULL_LINE: dict[str, Any] = {
         "axial_torsional_coupling_n_m": 0.5,
         "mass_kg_per_m": 2.379,
         "polar_inertia_kg_m": 3.334e-4,
+        "rated_strength_n": 140000.0,
     },
     "bundle": {"subconductors": 2, "radius_m": 0.2355, "orientation_deg": 90.0},
     "span": {"length_m": 125.88, "horizontal_tension_n": 30000.0, "elements": 12, "level_difference_m": 3.0},

@@ -73,7 +73,7 @@ _CONDUCTOR = st.builds(
             "mass_kg_per_m": near(2.379),
             "polar_inertia_kg_m": near(3.334e-4),
         },
-        optional={"axial_torsional_coupling_n_m": st.floats(-2.0, 2.0)},
+        optional={"axial_torsional_coupling_n_m": st.floats(-2.0, 2.0), "rated_strength_n": st.floats(1e4, 1e6)},
     ),
     _RIGIDITY,
 )
@@ -180,6 +180,7 @@ ANALYSES = st.fixed_dictionaries(
         "physics": st.sampled_from(["source", "full", None]),
         "aerodynamic_model": st.sampled_from(["published", "relative_wind"]),
         "longitudinal_inertia": st.sampled_from(["neglected", "condensed"]),
+        "stretching": st.sampled_from(["neglected", "included"]),
         "critical_wind_limit_m_per_s": st.floats(1.0, 60.0),
         "harmonics": st.integers(1, 6),
         "static_twist": st.sampled_from([None, "neglected", "where_large", "solved"]),

@@ -15,7 +15,7 @@ from engine.cycles.harmonic_balance import (
 from engine.cycles.search import Cycles, energy_starts, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
-from engine.spec import AerodynamicModel, Analysis, Line
+from engine.spec import AerodynamicModel, Analysis, Line, Stretching
 from tests.builders import finite_element, hybrid, source_line
 
 LIGHT = 0.0308
@@ -33,6 +33,7 @@ def analysed(subconductors: int, torsional_ratio: float, loops: int) -> tuple[Re
 
 
 RELATIVE = Analysis(aerodynamic_model=AerodynamicModel.RELATIVE_WIND)
+STRETCHING = Analysis(stretching=Stretching.INCLUDED)
 
 
 def relative_line(subconductors: int) -> Line:
@@ -45,6 +46,9 @@ def relative_line(subconductors: int) -> Line:
 MODELS = {
     "hybrid": lambda: hybrid(source_line(3), 2),
     "hybrid, relative wind": lambda: hybrid(relative_line(2), 2, RELATIVE),
+    "hybrid, stretching": lambda: hybrid(relative_line(2), 2, STRETCHING),
+    "one loop, stretching": lambda: hybrid(relative_line(3), 1, STRETCHING),
+    "finite element, stretching": lambda: finite_element(source_line(2), (1, 2), STRETCHING),
     "finite element": lambda: finite_element(source_line(2)),
     "finite element, relative wind": lambda: finite_element(relative_line(1), (1, 2), RELATIVE),
 }
@@ -66,15 +70,7 @@ def perturbed(model: ReducedModel) -> ReducedModel:
     """Return a stack of models, each with a damping of its own, so that members must not be mixed up."""
     stack = take(model, np.zeros(4, dtype=np.intp))
     factors = np.linspace(0.5, 2.0, 4)[:, None, None]
-    return ReducedModel(
-        stack.mass,
-        factors * stack.damping,
-        stack.stiffness,
-        stack.load,
-        stack.shapes,
-        stack.direction,
-        stack.statically_unstable,
-    )
+    return replace(stack, damping=factors * stack.damping)
 
 
 def orbit_of(model: ReducedModel, wind_speed: float) -> Orbits:

@@ -29,6 +29,7 @@ from engine.spec import (
     Spacer,
     Span,
     StaticTwist,
+    Stretching,
     Support,
     Supports,
     Wind,
@@ -207,8 +208,18 @@ def test_line_and_analysis_must_fit() -> None:
 
 
 KNOWN = replace(LINE, ice=Ice(replace(ICE_AT_40, at_rest=(0.0, 1.0, 0.0))))
-SOURCE = (AerodynamicModel.PUBLISHED, LongitudinalInertia.NEGLECTED, StaticTwist.NEGLECTED)
-FULL = (AerodynamicModel.RELATIVE_WIND, LongitudinalInertia.CONDENSED, StaticTwist.WHERE_LARGE)
+SOURCE = (
+    AerodynamicModel.PUBLISHED,
+    LongitudinalInertia.NEGLECTED,
+    Stretching.NEGLECTED,
+    StaticTwist.NEGLECTED,
+)
+FULL = (
+    AerodynamicModel.RELATIVE_WIND,
+    LongitudinalInertia.CONDENSED,
+    Stretching.INCLUDED,
+    StaticTwist.WHERE_LARGE,
+)
 
 
 @pytest.mark.parametrize(
@@ -219,8 +230,9 @@ FULL = (AerodynamicModel.RELATIVE_WIND, LongitudinalInertia.CONDENSED, StaticTwi
         (KNOWN, PhysicsRequest(Physics.SOURCE), Physics.SOURCE, SOURCE),
         (LINE, PhysicsRequest(Physics.FULL), Physics.FULL, FULL),
         (KNOWN, PhysicsRequest(Physics.SOURCE, FULL[0]), Physics.SOURCE, (FULL[0], *SOURCE[1:])),
-        (LINE, PhysicsRequest(None, None, FULL[1]), Physics.SOURCE, (SOURCE[0], FULL[1], SOURCE[2])),
-        (KNOWN, PhysicsRequest(static_twist=SOURCE[2]), Physics.FULL, (*FULL[:2], SOURCE[2])),
+        (LINE, PhysicsRequest(None, None, FULL[1]), Physics.SOURCE, (SOURCE[0], FULL[1], *SOURCE[2:])),
+        (KNOWN, PhysicsRequest(stretching=SOURCE[2]), Physics.FULL, (*FULL[:2], SOURCE[2], FULL[3])),
+        (KNOWN, PhysicsRequest(static_twist=SOURCE[3]), Physics.FULL, (*FULL[:3], SOURCE[3])),
     ],
 )
 def test_physics_is_that_asked_for_or_that_of_the_data(
@@ -228,7 +240,8 @@ def test_physics_is_that_asked_for_or_that_of_the_data(
 ) -> None:
     found = with_physics(line, Analysis(loops=(2,)), asked)
     assert found.physics is physics
-    assert (found.aerodynamic_model, found.longitudinal_inertia, found.static_twist) == options
+    chosen = (found.aerodynamic_model, found.longitudinal_inertia, found.stretching, found.static_twist)
+    assert chosen == options
     assert found.loops == (2,)
     unasked = asked.physics is None and line is LINE
     assert found.lacks == ("ice.aerodynamics_at_rest" if unasked else None)

@@ -28,7 +28,7 @@ def test_every_field_of_the_contract_arrives_in_the_engine_in_its_unit() -> None
     own = spec.Aerodynamics(vertical, horizontal, torsional, at_rest=(0.1, 1.0, 0.2))
     on_segment = spec.Aerodynamics(vertical, horizontal, torsional, at_rest=(0.3, 1.1, 0.4))
     assert line == spec.Line(
-        conductor=spec.Conductor(0.0286, 28418105.8, 101.0, 2.379, 3.334e-4, 0.5),
+        conductor=spec.Conductor(0.0286, 28418105.8, 101.0, 2.379, 3.334e-4, 0.5, 140000.0),
         bundle=spec.Bundle.regular(2, 0.2355, math.pi / 2),
         span=spec.Span(125.88, horizontal_tension=30000.0, elements=12, level_difference=3.0),
         ice=spec.Ice(own, 2.05e-3, -0.63e-3, (spec.IceSegment(0.0, 62.94, on_segment, 1e-3, None, 2.3),)),
@@ -93,22 +93,32 @@ def test_every_choice_of_an_analysis_arrives_in_the_engine() -> None:
 @pytest.mark.parametrize(
     ("analysis", "expected"),
     [
-        ({}, ("source", "published", "neglected", "neglected")),
-        ({"physics": "source"}, ("source", "published", "neglected", "neglected")),
-        ({"physics": "source", "static_twist": "solved"}, ("source", "published", "neglected", "solved")),
-        ({"physics": "full"}, ("full", "relative_wind", "condensed", "where_large")),
+        ({}, ("source", "published", "neglected", "neglected", "neglected")),
+        ({"physics": "source"}, ("source", "published", "neglected", "neglected", "neglected")),
+        (
+            {"physics": "source", "static_twist": "solved"},
+            ("source", "published", "neglected", "neglected", "solved"),
+        ),
+        ({"physics": "full"}, ("full", "relative_wind", "condensed", "included", "where_large")),
         (
             {"physics": "full", "longitudinal_inertia": "neglected"},
-            ("full", "relative_wind", "neglected", "where_large"),
+            ("full", "relative_wind", "neglected", "included", "where_large"),
         ),
-        ({"physics": "full", "static_twist": "neglected"}, ("full", "relative_wind", "condensed", "neglected")),
-        ({"physics": None}, ("full", "relative_wind", "condensed", "where_large")),
-        ({"physics": None, "aerodynamic_model": "published"}, ("full", "published", "condensed", "where_large")),
+        (
+            {"physics": "full", "stretching": "neglected", "static_twist": "neglected"},
+            ("full", "relative_wind", "condensed", "neglected", "neglected"),
+        ),
+        ({"physics": None}, ("full", "relative_wind", "condensed", "included", "where_large")),
+        (
+            {"physics": None, "aerodynamic_model": "published"},
+            ("full", "published", "condensed", "included", "where_large"),
+        ),
     ],
 )
 def test_physics_sets_what_is_not_said_singly(analysis: dict[str, Any], expected: tuple[str, ...]) -> None:
     _, asked = built(FULL_LINE, analysis)
-    found = (asked.physics, asked.aerodynamic_model, asked.longitudinal_inertia, asked.static_twist)
+    options = (asked.aerodynamic_model, asked.longitudinal_inertia, asked.stretching, asked.static_twist)
+    found = (asked.physics, *options)
     assert found == expected
     assert asked.lacks is None
 

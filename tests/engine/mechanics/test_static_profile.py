@@ -6,7 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine.mechanics.static_profile import arc_position, coordinates, horizontal_position, static_profile
+from engine.mechanics.static_profile import (
+    arc_position,
+    coordinates,
+    end_steepness,
+    horizontal_position,
+    static_profile,
+)
 from engine.outcome import InvalidSpec
 from engine.spec import BlowOut, Span, Support, Supports, Wind
 from tests.builders import source_line
@@ -147,3 +153,14 @@ def test_uplift_of_an_insulator_string_is_a_fault() -> None:
     low = 150.0 - c * math.asinh(120.0 / (2.0 * c * math.sinh(150.0 / c)))
     own, other = (30_000.0 * math.sinh(x / c) for x in (low, 150.0))
     assert held[0] == pytest.approx(by_hand(300.0) + (own + other + 15_000.0) / 2.0, rel=1e-12)
+
+
+def test_tension_at_the_steeper_end_follows_from_the_slope_of_the_curve() -> None:
+    line = replace(source_line(1), span=replace(source_line(1).span, level_difference=40.0))
+    windy = replace(line, wind=replace(line.wind, blow_out=BlowOut(20.0, 1.0)))
+    profile = static_profile((source_line(1), line, windy))
+    ends = np.array([[0.0, 1e-4], [1.0 - 1e-4, 1.0]]) * profile.arc_length[:, None, None]
+    points = coordinates(profile, ends.reshape(3, -1)).reshape(3, 2, 2, 3)
+    steps = np.diff(points, axis=2)[:, :, 0]
+    steepness = np.linalg.norm(steps, axis=-1) / steps[..., 0]
+    assert end_steepness(profile) == pytest.approx(steepness.max(axis=-1), rel=1e-5)

@@ -1,0 +1,44 @@
+"""The frequency of large free vibrations against exact chains of bars. Theory section 12.1."""
+
+import ctypes.util
+import os
+from types import ModuleType
+
+import pytest
+
+from benchmarks.free_vibration import EXACT_SHIFTS, SPANS, finite_element_shift, hybrid_shift
+
+
+@pytest.mark.parametrize(("name", "amplitude", "exact"), EXACT_SHIFTS[:-1])
+def test_the_relief_coordinate_gives_the_shift_of_an_exact_chain(name: str, amplitude: float, exact: float) -> None:
+    assert 100.0 * hybrid_shift(SPANS[name], amplitude) == pytest.approx(exact, rel=0.015)
+
+
+def test_long_spans_between_dead_ends_relieve_in_more_shapes_than_one() -> None:
+    name, amplitude, exact = EXACT_SHIFTS[-1]
+    shifts = [100.0 * shift(SPANS[name], amplitude) for shift in (hybrid_shift, finite_element_shift)]
+    assert shifts[0] == pytest.approx(exact, rel=0.05)
+    assert shifts[1] == pytest.approx(exact, rel=0.005)
+
+
+def test_the_finite_element_model_relieves_in_its_symmetric_modes() -> None:
+    name, amplitude, exact = EXACT_SHIFTS[1]
+    assert 100.0 * finite_element_shift(SPANS[name], amplitude) == pytest.approx(exact, rel=0.015)
+
+
+def test_opensees_swings_at_the_same_frequency() -> None:
+    peer = outside_code()
+    line = SPANS["source's line, springs"]
+    conductor = peer.Conductor(line.conductor.axial_rigidity, line.conductor.mass, 30e3)
+    section = peer.Section((125.88,), end_stiffness=(1.285e5, 1.285e5))
+    small, large = (peer.swinging_frequency(conductor, section, 2, size) for size in (1e-3, 0.95))
+    assert hybrid_shift(line, 0.95) == pytest.approx(large / small - 1.0, rel=0.02)
+
+
+def outside_code() -> ModuleType:
+    """Return the module that calls OpenSees; without its system libraries skip, and under CI fail."""
+    if os.environ.get("CI") != "true" and ctypes.util.find_library("lapack") is None:
+        pytest.skip("OpenSees needs the system's BLAS and LAPACK (libblas3, liblapack3)")
+    from benchmarks import opensees  # noqa: PLC0415 - it loads the outside code
+
+    return opensees
