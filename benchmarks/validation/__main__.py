@@ -10,6 +10,7 @@ from benchmarks.validation import (
     device_placement,
     direct_integration,
     frequencies,
+    full_physics,
     internal_resonance,
     limit_cycles,
     model_comparison,
@@ -46,6 +47,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "static_state": static_state.section,
     "static_twist": static_twist.section,
     "stretching": stretching.section,
+    "full_physics": full_physics.section,
     "device_placement": device_placement.section,
 }
 
