@@ -28,9 +28,10 @@ from app.reference.source_lines import EXAMPLE_NAMES, example
 Json = Mapping[str, Any]
 Jobs = dict[str, dict[str, JobDocument]]
 
-_CYCLES: Json = {"loops": [1, 2], "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 5}}
-_FREQUENCIES: Json = {"loops": [1, 2, 3], "wind_speeds_m_per_s": [], "finite_element_loops": []}
-_COEXISTING: Json = {"loops": [2], "models": ["hybrid"], "wind_speeds_m_per_s": [12.0]}
+_SOURCE: Json = {"physics": "source"}  # that of the tables beside which the results are printed
+_CYCLES: Json = {**_SOURCE, "loops": [1, 2], "wind_speeds_m_per_s": {"start": 4.0, "stop": 6.0, "count": 5}}
+_FREQUENCIES: Json = {**_SOURCE, "loops": [1, 2, 3], "wind_speeds_m_per_s": [], "finite_element_loops": []}
+_COEXISTING: Json = {**_SOURCE, "loops": [2], "models": ["hybrid"], "wind_speeds_m_per_s": [12.0]}
 _LIGHT_DAMPING = 0.0308  # torsional ratio: a tenth of the source's
 _TABLES = ("frequencies", "critical-wind-speeds", "limit-cycles")
 _PICTURES = ("amplitude", "orbit")

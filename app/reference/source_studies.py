@@ -65,6 +65,7 @@ def study_request(name: str, line: str) -> dict[str, Any]:
             "loops": list(preset.loops),
             "models": ["hybrid"],
             "wind_speeds_m_per_s": deepcopy(preset.wind_speeds),
+            "physics": "source",
         },
     }
     return request | ({"study": {"axes": deepcopy(preset.axes)}} if preset.axes else {})

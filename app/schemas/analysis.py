@@ -77,9 +77,10 @@ class Analysis(Document):
         default="exact", description="How the angle of attack varies along the span", examples=["exact"]
     )
     physics: Literal["full", "source"] | None = Field(
-        default="source",
+        default=None,
         description="Full physics, or the source's simplifications; null: full if the line's coefficients at rest are "
-        "known. Sets aerodynamic_model, longitudinal_inertia, stretching and static_twist where they are null",
+        "known, else the source's with a warning. Sets aerodynamic_model, longitudinal_inertia, stretching and "
+        "static_twist where they are null",
         examples=["full"],
     )
     aerodynamic_model: Literal["published", "relative_wind"] | None = Field(

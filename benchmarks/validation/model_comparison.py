@@ -31,8 +31,10 @@ def section() -> Iterator[str]:
         "Vertical and horizontal amplitude in m. The hybrid model neglects longitudinal inertia, as the source does; "
         "`condensed` keeps it. The finite element model keeps it too and lets one, two and three loops move together. "
         "The table shows its cycle nearest to the hybrid one, stable or not. At one loop the models agree. At two "
-        "loops the vertical and horizontal frequencies lie 0.1 % apart. Longitudinal inertia shifts the vertical one "
-        "by as much, and the amplitudes follow the detuning.\n"
+        "loops the vertical and horizontal frequencies lie 0.1 % apart, and the amplitudes follow the detuning. The "
+        "neglect of longitudinal inertia shifts the vertical frequency by as much, to the wrong side of the horizontal "
+        "one: independent corotational finite elements (OpenSees) side with the condensed model and with the finite "
+        "element model. This is an error of the source's hybrid model, which full physics does not have.\n"
     )
     head = ["n", "loops", "hybrid", "hybrid, condensed", "finite element", "its stability", "difference %"]
     yield table(head, [row for n in SUBCONDUCTORS for row in _compared(n, results[n], condensed[n])])

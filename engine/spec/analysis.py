@@ -137,7 +137,6 @@ class Analysis:
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
-        relative = self.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
         require(
             *_loops_faults("loops", self.loops),
             *_loops_faults("finite_element_loops", self.finite_element_loops or (1,)),
@@ -146,13 +145,18 @@ class Analysis:
             *(positive(f"wind_speeds.{i}", speed) for i, speed in enumerate(self.wind_speeds)),
             positive("critical_wind_limit", self.critical_wind_limit),
             None if 1 <= self.harmonics <= 20 else Fault("harmonics", self.harmonics, "must be from 1 to 20"),
-            Fault("closure", self.closure.value, "must be exact with the relative wind")
-            if relative and self.closure is Closure.PUBLISHED
-            else None,
-            Fault("closure", self.closure.value, "must be exact with stretching")
-            if self.stretching is Stretching.INCLUDED and self.closure is Closure.PUBLISHED
-            else None,
+            self._closure_fault(),
         )
+
+    def _closure_fault(self) -> Fault | None:
+        beyond = {
+            "the relative wind": self.aerodynamic_model is AerodynamicModel.RELATIVE_WIND,
+            "stretching": self.stretching is Stretching.INCLUDED,
+        }
+        needing = [name for name, included in beyond.items() if included]
+        if not needing or self.closure is not Closure.PUBLISHED:
+            return None
+        return Fault("closure", self.closure.value, f"must be exact with {' and '.join(needing)}")
 
     def _size_fault(self) -> Fault | None:
         together = set(self.loops) | set(self.finite_element_loops)

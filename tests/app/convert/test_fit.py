@@ -77,7 +77,8 @@ def test_a_line_with_the_table_is_the_line_with_its_fit() -> None:
     first, second = (example("c11-twin") for _ in range(2))
     first["ice"]["aerodynamics"] = measured()
     second["ice"] |= {name: fitted[name] for name in ("aerodynamics", "aerodynamics_at_rest")}
-    asked = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [6.0], "aerodynamic_model": "relative_wind"}
+    options = {"physics": "source", "aerodynamic_model": "relative_wind"}
+    asked = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [6.0], **options}
     tables = [_tables({"line": line, "analysis": asked}) for line in (first, second)]
     assert tables[0] == tables[1]
 
