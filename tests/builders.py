@@ -187,3 +187,11 @@ def random_line(generator: np.random.Generator) -> Line:
         wind=Wind(float(generator.uniform(1.0, 1.4))),
         damping=Damping(*damping),
     )
+
+
+def lightly_damped_line(generator: np.random.Generator) -> Line:
+    """Draw a line as `random_line` does, with 0.3 to 5 % of torsional damping; half of them are single conductors."""
+    line = random_line(generator)
+    ratio = float(np.exp(generator.uniform(np.log(0.003), np.log(0.05))))
+    bundle = Bundle.regular(1, 0.0, 0.0) if generator.random() < 0.5 else line.bundle
+    return replace(line, bundle=bundle, damping=replace(line.damping, torsional_ratio=ratio))

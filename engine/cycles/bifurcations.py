@@ -5,20 +5,22 @@ multiplier passes -1, at a branch point 1; at a fold the branch reverses its dir
 of a smooth test function along the branch.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
-from enum import StrEnum
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, ObjectArray, filled
-from engine.cycles.branches import BranchSet, CycleProblem, ends_at_hopf_points, orbits_of, points_of
-from engine.cycles.floquet import Floquet, floquet
+from engine.cycles.branch_set import FINE_SHARE, BranchSet, CycleProblem, orbits_of, points_of
+from engine.cycles.branches import ends_at_hopf_points
+from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, resized
+from engine.cycles.transitions import FACTORS, Kind, Transitions, branch_point_factors, product_of, transitions
 from engine.mechanics.modes import solve_symmetric
 from engine.models.critical_wind_speeds import Crossings, crossing_error
 from engine.models.reduced_model import ReducedModel
-from engine.numerics.continuation import BranchPoints, locate_zeros, make_points, project_onto_branches
+from engine.numerics.branch_zeros import LocatedZeros, locate_zeros, project_onto_branches
+from engine.numerics.continuation import BranchPoints, make_points
 
 MORE_HARMONICS = 4  # added for locating a bifurcation to those that the branch was followed with
 STEP_FACTOR = 4  # on the number of steps of the Floquet integration
@@ -26,16 +28,6 @@ ACCURACY = 1e-8  # relative change of the wind speed in the last step
 ON_CIRCLE = 1e-5  # largest distance of the critical multiplier from its theoretical place
 SAME = 1e-6  # relative distance below which two points are the same
 ORDERS = np.arange(4.0)  # multiples of the base frequency near which the second frequency is searched
-
-
-class Kind(StrEnum):
-    """Types of bifurcations, with the words that results carry."""
-
-    HOPF = "hopf"
-    FOLD = "fold"
-    TORUS = "torus"
-    PERIOD_DOUBLING = "period_doubling"
-    BRANCH_POINT = "branch_point"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,26 +49,6 @@ class Bifurcations:
     coordinate: IntArray
     uncertainty: FloatArray
     may_end_stability: BoolArray
-
-
-Factors = Callable[[ComplexArray], ComplexArray]
-
-
-def _pair_factors(multipliers: ComplexArray) -> ComplexArray:
-    i, j = np.triu_indices(multipliers.shape[-1], 1)
-    with np.errstate(over="ignore", invalid="ignore"):  # see `_product`
-        return 1.0 - multipliers[..., i] * multipliers[..., j]
-
-
-def _branch_point_factors(multipliers: ComplexArray) -> ComplexArray:
-    return 1.0 - multipliers
-
-
-FACTORS: dict[Kind, Factors] = {
-    Kind.TORUS: _pair_factors,
-    Kind.PERIOD_DOUBLING: lambda multipliers: 1.0 + multipliers,
-    Kind.BRANCH_POINT: _branch_point_factors,
-}
 
 
 def bifurcations(
@@ -107,63 +79,30 @@ def bifurcations(
 
 def bifurcations_on(branch_set: BranchSet, families: IntArray) -> Iterator[Bifurcations]:
     """Locate the bifurcations on branches that were followed; families: (branches,), the family of each."""
-    problem, points = branch_set.problem, branch_set.points
-    floquet_result = floquet(*problem.models(points.z, points.branch), branch_set.orbits)
-    segment, slopes = _segments(branch_set), points.tangent[:, -1]
-    changes = {Kind.FOLD: slopes[segment] * slopes[segment + 1] < 0.0}
-    for kind in FACTORS:
-        changes[kind] = _sign_changes(floquet_result, segment, kind)
-    changes[Kind.BRANCH_POINT] &= ~changes[Kind.FOLD]
-    growing = np.asarray((np.abs(floquet_result.multipliers[:, 1:]) > 1.0).any(axis=-1))
-    # A segment with several changes may hold stable cycles between them, although both of its ends are unstable.
-    several = np.sum(list(changes.values()), axis=0) > 1
-    may_end = np.asarray(several | ~(growing[segment] & growing[segment + 1]))
-    for kind, here in changes.items():
-        if here.any():
-            yield _locate_bifurcations(branch_set, families, segment[here], kind, may_end[here])
+    branch_set, found = transitions(branch_set)
+    for kind in dict.fromkeys(found.kind):
+        here = np.flatnonzero([other is kind for other in found.kind])
+        yield _locate_bifurcations(branch_set, families, found.select(here), kind)
 
 
-def _segments(branch_set: BranchSet) -> IntArray:
-    """Return the left point of every segment between cycles; the equilibrium at a Hopf point is left out."""
-    branch = branch_set.points.branch
-    first = np.append(True, branch[1:] != branch[:-1])[: branch.size]
-    at_equilibrium = first & np.isfinite(branch_set.hopf_wind_speed[branch])
-    return np.flatnonzero((branch[1:] == branch[:-1]) & ~at_equilibrium[:-1])
-
-
-def _sign_changes(floquet_result: Floquet, segment: IntArray, kind: Kind) -> BoolArray:
-    """Return in which segments the product of the factors changes sign by more than the multipliers' error."""
-    factors = FACTORS[kind](floquet_result.multipliers[:, 1:])
-    value = _product(factors)
-    clear = np.abs(factors).min(axis=-1, initial=np.inf) > 3.0 * floquet_result.trivial_error
-    return np.asarray((value[segment] * value[segment + 1] < 0.0) & clear[segment] & clear[segment + 1])
-
-
-def _product(factors: ComplexArray) -> FloatArray:
-    """Return the product of factors (..., n), each limited to modulus 1 so that it cannot overflow: (...)."""
-    with np.errstate(invalid="ignore"):  # multipliers that overflowed yield NaN
-        return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
-
-
-def _locate_bifurcations(
-    branch_set: BranchSet, families: IntArray, segment: IntArray, kind: Kind, may_end: BoolArray
-) -> Bifurcations:
-    """Locate the zero in each of these segments with more harmonics; where that fails, return the segment's middle.
-
-    may_end: (segments,), whether the cycles of each may be stable at one end.
-    """
-    problem = branch_set.problem
-    ends = [_with_more_harmonics(problem, branch_set.points.select(segment + step)) for step in (0, 1)]
-    zero = locate_zeros(problem, ends[0], ends[1], lambda points: _test_function(problem, points, kind), ACCURACY)
+def _locate_bifurcations(branch_set: BranchSet, families: IntArray, places: Transitions, kind: Kind) -> Bifurcations:
+    """Locate the zero in each of these places with more harmonics; where that fails, return the middle of the place."""
+    # Torsion must count here although it carries little energy: the fold of a resonance is one of torsion alone.
+    problem = replace(branch_set.problem, smallest_share=FINE_SHARE)
+    sides = [branch_set.points.select(side) for side in (places.left, places.right)]
+    ends = [_with_more_harmonics(problem, side) for side in sides]
+    zero = _zeros(problem, ends, kind)
     multipliers, error = _multipliers(problem, zero.points)
     critical, distance = _critical_multiplier(multipliers, kind)
-    value = [branch_set.points.z[segment + step, -1] for step in (0, 1)]
+    value = [side.z[:, -1] for side in sides]
     inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE)
     z = np.where(inside[:, None], zero.points.z, ends[0].z)
     orbits = problem.orbits(z, zero.points.branch)
     member = problem.member[zero.points.branch]
     # Two real multipliers whose product is 1 do not make a torus point.
     real = (np.abs(critical.imag) < ON_CIRCLE) & inside & (kind is Kind.TORUS)
+    kinds = filled(member.size, kind)
+    kinds[real] = filled(int(real.sum()), Kind.UNRESOLVED)
     width = np.abs(value[1] - value[0])
     noise = width * error  # a multiplier changes by an amount of order 1 over a segment
     # If refinement moves the zero outside its segment, take the shift of the segment's ends as its uncertainty.
@@ -172,15 +111,22 @@ def _locate_bifurcations(
     result = Bifurcations(
         member=member,
         branch=families[zero.points.branch],
-        kind=filled(member.size, kind),
+        kind=kinds,
         parameter=np.where(inside, z[:, -1], 0.5 * (value[0] + value[1])),
         angular_frequency=orbits.angular_frequency,
         second_frequency=_second_frequency(problem.model, member, orbits, critical, kind),
         coordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
         uncertainty=np.where(inside, zero.uncertainty + noise, width + moved),
-        may_end_stability=may_end,
+        may_end_stability=places.may_end,
     )
-    return _select(result, np.flatnonzero(~real))
+    return _select(result, np.flatnonzero(~(real & (places.changed == 0))))
+
+
+def _zeros(problem: CycleProblem, ends: list[BranchPoints], kind: Kind) -> LocatedZeros:
+    """Search the zero between two ends; where stability changes for an unknown reason there is nothing to search."""
+    if kind is Kind.UNRESOLVED:
+        return LocatedZeros(ends[0], np.full(ends[0].branch.size, np.inf))
+    return locate_zeros(problem, ends[0], ends[1], lambda points: _test_function(problem, points, kind), ACCURACY)
 
 
 def _with_more_harmonics(problem: CycleProblem, points: BranchPoints) -> BranchPoints:
@@ -206,12 +152,12 @@ def _multipliers(problem: CycleProblem, points: BranchPoints) -> tuple[ComplexAr
 def _test_function(problem: CycleProblem, points: BranchPoints, kind: Kind) -> FloatArray:
     if kind is Kind.FOLD:
         return points.tangent[:, -1]
-    return _product(FACTORS[kind](_multipliers(problem, points)[0]))
+    return product_of(FACTORS[kind](_multipliers(problem, points)[0]))
 
 
 def _critical_multiplier(multipliers: ComplexArray, kind: Kind) -> tuple[ComplexArray, FloatArray]:
     """Return the critical multiplier and its distance from where it should be (at a fold the one nearest 1, and 0)."""
-    factors = np.abs(FACTORS.get(kind, _branch_point_factors)(multipliers))
+    factors = np.abs(FACTORS.get(kind, branch_point_factors)(multipliers))
     if factors.size == 0:
         return np.zeros(0, dtype=np.complex128), np.zeros(0)
     smallest = np.where(np.isnan(factors), np.inf, factors).argmin(axis=-1)

@@ -3,142 +3,40 @@
 A point z of a branch holds the Fourier coefficients of the cycle, its angular frequency and the wind speed.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths, merge_axes
-from engine.cycles.harmonic_balance import Orbits, basis, first_harmonic_angle, linearized, select, total_size
-from engine.kernels import compiled
+from engine.cycles.branch_set import BranchSet, CycleProblem, orbits_of, points_of
+from engine.cycles.floquet import Floquet
+from engine.cycles.harmonic_balance import Orbits, first_harmonic_angle, select, total_size
+from engine.cycles.refinement import judged_points, refined
 from engine.models.critical_wind_speeds import Crossings, critical_modes
 from engine.models.reduced_model import ReducedModel, lowest_frequency
 from engine.numerics.continuation import (
     BranchPoints,
-    NewtonStart,
-    Problem,
     StepControl,
+    concatenated,
     continue_branches,
-    correct_by_newton,
     interpolate,
     make_points,
     tangents,
 )
-from engine.numerics.newton import NewtonOptions, Solution
 from engine.progress import driven
 
 STEPS = StepControl(first=0.2)
 REFERENCE_ANGLE = 0.05  # rad; the amplitude with this angle of attack is the smallest scale of a branch
-SMALLEST_SHARE = 0.2  # of the cycle's size: smallest scale of a coordinate that hardly moves
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is really a static one
 REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
+CLOSED = 0.7  # scaled distance from its start within which a branch that had left it farther than LEFT is closed
+LEFT = 1.0
+MOST_CUTS = 3  # times that a branch is followed on after the continuation had left it
 LAST = slice(-1, None)
 CELLS = 8  # parts of a segment between two points that are searched for a given wind speed
 LOWEST_WIND = 0.25  # of the lowest wind speed asked for: branches are not followed below it
 HIGHEST_WIND = 1.05  # of the highest wind speed: a branch may fold just above it and return
-
-
-@dataclass(frozen=True, slots=True)
-class CycleProblem(Problem):
-    """Harmonic balance with the wind speed as parameter, in the form of `engine.numerics.continuation.Problem`.
-
-    model: leading axis (members,); member: (branches,), model of each branch; reference: (branches,), smallest scale of
-    the amplitudes on each branch, measured as the root of sum M_ii |q_i|^2.
-    """
-
-    model: ReducedModel
-    member: IntArray
-    reference: FloatArray
-
-    def orbits(self, z: FloatArray, branch: IntArray) -> Orbits:
-        """Return the cycles at points (k, n + 1) of branches (k,)."""
-        return orbits_of(z, self.model.mass.shape[-1])
-
-    def repeated(self, branch: IntArray) -> "CycleProblem":
-        """Return the problem for selected, possibly repeated branches."""
-        return CycleProblem(self.model, self.member[branch], self.reference[branch])
-
-    def models(self, z: FloatArray, branch: IntArray) -> tuple[ReducedModel, IntArray]:
-        """Return a stack of models and, for points (k, n + 1) of branches (k,), the index of each one's model: (k,)."""
-        return self.model, self.member[branch]
-
-    def system(self, z: FloatArray, anchor: FloatArray, branch: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals and slopes of the balance and of the phase condition <q - q_anchor, dq_anchor/dtau> = 0."""
-        member, m = self.member[branch], self.model.mass.shape[-1]
-        phase = self.phase(anchor, branch)
-        drift = np.einsum("kx,kx->k", phase, z[:, :-2] - anchor[:, :-2])
-        residuals, slopes = linearized(self.model, member, orbits_of(z, m))
-        last = np.concatenate([phase, np.zeros((phase.shape[0], 2))], axis=-1)
-        return np.concatenate([residuals, drift[:, None]], axis=-1), np.concatenate([slopes, last[:, None]], axis=1)
-
-    def phase(self, anchor: FloatArray, branch: IntArray) -> FloatArray:
-        """Return the derivative of the phase condition by the coefficients: (k, m (2 H + 1))."""
-        near = orbits_of(anchor, self.model.mass.shape[-1]).coefficients
-        weight = self.model.modal_masses[self.member[branch]][..., None]
-        return merge_axes(weight * (near @ basis(near.shape[-1] // 2).derivative.T), -2)
-
-    def correct(
-        self, start: NewtonStart, branch: IntArray, condition: tuple[FloatArray, FloatArray], options: NewtonOptions
-    ) -> tuple[Solution, FloatArray]:
-        """Solve the balance with one additional linear condition, by the compiled kernel where it is available."""
-        if not compiled.AVAILABLE:
-            return correct_by_newton(self, start, branch, condition, options)
-        phase = (self.phase(start.anchor, branch), start.anchor)
-        return compiled.followed_balances(
-            self.model, self.member[branch], phase, condition, (start.guess, start.scale, options)
-        )
-
-    def scale(self, z: FloatArray, branch: IntArray) -> FloatArray:
-        """Return the scales of points: each coordinate's size or a share of the cycle's, frequency and wind speed."""
-        weight = np.sqrt(self.model.modal_masses)[self.member[branch]]
-        coefficients = orbits_of(z, weight.shape[-1]).coefficients
-        own = weight * lengths(coefficients)
-        whole = np.maximum(lengths(own), self.reference[branch])
-        size = np.maximum(own, SMALLEST_SHARE * whole[:, None]) / weight
-        return np.concatenate([np.repeat(size, coefficients.shape[-1], axis=-1), np.abs(z[:, -2:])], axis=-1)
-
-
-@dataclass(frozen=True, slots=True)
-class BranchSet:
-    """Branches that were followed together.
-
-    problem: with one entry per branch; points: sorted by branch, in the order in which they were computed; outcome:
-    (branches,) of Outcome, CONVERGED where a branch ended or left the range of wind speeds; ended_at_equilibrium:
-    (branches,), whether it ended at the equilibrium, in another Hopf point; hopf_wind_speed: (branches,), wind speed of
-    the Hopf point where it started, infinite if it did not start at one [m/s].
-    """
-
-    problem: CycleProblem
-    points: BranchPoints
-    outcome: ObjectArray
-    ended_at_equilibrium: BoolArray
-    hopf_wind_speed: FloatArray
-
-    @property
-    def orbits(self) -> Orbits:
-        """The cycle of each point."""
-        return self.problem.orbits(self.points.z, self.points.branch)
-
-    @property
-    def last(self) -> IntArray:
-        """Index of the last point of each branch."""
-        return np.searchsorted(self.points.branch, np.arange(self.problem.member.size), side="right") - 1
-
-    @property
-    def member(self) -> IntArray:
-        """The model of each point."""
-        return self.problem.member[self.points.branch]
-
-
-def orbits_of(z: FloatArray, m: int) -> Orbits:
-    """Convert points (k, m (2 H + 1) + 2) to orbits."""
-    return Orbits(z[:, :-2].reshape(z.shape[0], m, (z.shape[1] - 2) // m), z[:, -2], z[:, -1])
-
-
-def points_of(orbits: Orbits) -> FloatArray:
-    """Convert orbits to points (k, m (2 H + 1) + 2)."""
-    tail = np.stack([orbits.angular_frequency, orbits.wind_speed], axis=-1)
-    return np.concatenate([merge_axes(orbits.coefficients, -2), tail], axis=-1)
 
 
 def follow_from_hopf_points(
@@ -243,9 +141,58 @@ def follow_branches(
     hopf_wind_speed: FloatArray,
 ) -> BranchSet:
     """Follow branches from points (branches, n + 1) until they end or leave the limits of the parameter."""
-    before = make_points(problem, np.arange(start.shape[0]), start, direction)
-    found, last = [before], before.select(before.branch)
-    ended = np.zeros(start.shape[0], dtype=np.bool_)
+    origin = make_points(problem, np.arange(start.shape[0]), start, direction)
+    points, outcome, ended = _followed(problem, origin, origin, limits)
+    points = concatenated([origin, points])
+    points = points.select(np.argsort(points.branch, kind="stable"))
+    found = BranchSet(problem, points, outcome, ended, hopf_wind_speed, judged_points(problem, points))
+    for _ in range(MOST_CUTS):
+        found, cut = refined(found)
+        if not cut.any():
+            break
+        found = _followed_on(found, origin, np.flatnonzero(cut), limits)
+    return found
+
+
+def _followed_on(found: BranchSet, origin: BranchPoints, index: IntArray, limits: tuple[float, float]) -> BranchSet:
+    """Follow some of the branches on from their last points; origin: the first points of all branches."""
+    own, last = found.problem.repeated(index), found.points.select(found.last[index])
+    here, first = (
+        make_points(own, np.arange(index.size), part.z, part.tangent) for part in (last, origin.select(index))
+    )
+    points, outcome, ended = _followed(own, here, first, limits)
+    new = BranchPoints(index[points.branch], points.z, points.scale, points.tangent)
+    every, judged = concatenated([found.points, new]), judged_points(found.problem, new)
+    order = np.argsort(every.branch, kind="stable")
+    floquet_result = Floquet(
+        *(
+            np.concatenate([getattr(found.floquet, name), getattr(judged, name)])[order]
+            for name in ("multipliers", "trivial_error", "stability")
+        )
+    )
+    outcomes, at_equilibrium = found.outcome.copy(), found.ended_at_equilibrium.copy()
+    outcomes[index], at_equilibrium[index] = outcome, ended
+    return replace(
+        found,
+        points=every.select(order),
+        outcome=outcomes,
+        ended_at_equilibrium=at_equilibrium,
+        floquet=floquet_result,
+    )
+
+
+def _followed(
+    problem: CycleProblem, start: BranchPoints, origin: BranchPoints, limits: tuple[float, float]
+) -> tuple[BranchPoints, ObjectArray, BoolArray]:
+    """Follow branches from start points until they end; origin: their first points, at which closed ones end.
+
+    Returns
+    -------
+    BranchPoints, (branches,), (branches,)
+        The points in the order in which they were computed; the outcomes; which branches ended at the equilibrium.
+    """
+    found, last = [start.select(start.branch[:0])], start.select(start.branch)
+    ended, left_start = np.zeros((2, start.branch.size), dtype=np.bool_)
     slowest = SLOWEST * lowest_frequency(problem.model)[problem.member]
 
     def goes_on(new: BranchPoints) -> BoolArray:
@@ -254,12 +201,13 @@ def follow_branches(
         found.append(new.select(~ended_at_equilibrium))
         last.overwrite(new)
         alive = ~ended_at_equilibrium & _stays_in_range(problem, new, limits, slowest)
-        return np.asarray(alive & ~_returned_to_start(problem, before.select(new.branch), new, len(found)))
+        distance, along = _from_start(problem, origin.select(new.branch), new)
+        closed = left_start[new.branch] & along & (distance < CLOSED)
+        left_start[new.branch] |= distance > LEFT
+        return np.asarray(alive & ~closed)
 
-    outcome = driven(continue_branches(problem, start, direction, STEPS), goes_on)
-    names = ("branch", "z", "scale", "tangent")
-    every = BranchPoints(*(np.concatenate([getattr(p, name) for p in found]) for name in names))
-    return BranchSet(problem, every.select(np.argsort(every.branch, kind="stable")), outcome, ended, hopf_wind_speed)
+    outcome = driven(continue_branches(problem, start.z, start.tangent, STEPS), goes_on)
+    return concatenated(found), outcome, ended
 
 
 def _passed_equilibrium(problem: CycleProblem, before: BranchPoints, new: BranchPoints) -> BoolArray:
@@ -282,15 +230,12 @@ def _stays_in_range(
     return np.asarray(inside & quick & (first_harmonic_angle(problem.model, member, orbits) < LARGEST_ANGLE))
 
 
-def _returned_to_start(problem: CycleProblem, start: BranchPoints, new: BranchPoints, count: int) -> BoolArray:
-    """Return which branches have returned to their starting point and so are closed."""
-    if count < 5:
-        return np.zeros(new.branch.size, dtype=np.bool_)
+def _from_start(problem: CycleProblem, start: BranchPoints, new: BranchPoints) -> tuple[FloatArray, BoolArray]:
+    """Return the distance of points from the start of their branch, and whether they go on in its direction."""
     scale = start.scale
     first, second = (_phase_invariants(p.z / scale, problem.model.mass.shape[-1]) for p in (start, new))
-    near = lengths(first - second) < STEPS.largest
     along = np.einsum("ki,ki->k", (start.tangent / scale)[:, -2:], (new.tangent / scale)[:, -2:]) > 0.0
-    return np.asarray(near & along)
+    return lengths(first - second), along
 
 
 def _phase_invariants(z: FloatArray, m: int) -> FloatArray:

@@ -41,6 +41,7 @@ class KnownCycles:
         self._orbits: list[tuple[FloatArray, float, float]] = []
         self._links: list[tuple[int, int]] = []
         self._followed: list[tuple[int, float]] = []
+        self._left_alone: set[int] = set()
         self._sizes: list[float] = []
         self._found_by: list[FoundBy] = []
         self._by_location: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
@@ -55,12 +56,19 @@ class KnownCycles:
         return member, wind
 
     def orbits(self, ids: IntArray) -> Orbits:
-        """Return the orbits of the cycles with these numbers."""
+        """Return the orbits of the cycles with these numbers, padded to the most harmonics among them."""
         size = self.model.mass.shape[-1]
         if ids.size == 0:
             return Orbits(np.zeros((0, size, 3)), np.zeros(0), np.zeros(0))
         coefficients, frequency, speed = zip(*(self._orbits[i] for i in ids), strict=True)
-        return Orbits(np.stack(coefficients), np.array(frequency), np.array(speed))
+        padded = np.zeros((ids.size, size, max(own.shape[-1] for own in coefficients)))
+        for row, own in zip(padded, coefficients, strict=True):
+            row[:, : own.shape[-1]] = own
+        return Orbits(padded, np.array(frequency), np.array(speed))
+
+    def harmonics(self, ids: IntArray) -> IntArray:
+        """Return the number of harmonics that each of the cycles with these numbers was solved with."""
+        return np.array([self._orbits[i][0].shape[-1] // 2 for i in ids], dtype=np.intp)
 
     @property
     def found_by(self) -> tuple[FoundBy, ...]:
@@ -149,10 +157,14 @@ class KnownCycles:
         """Record that cycles (k,) lie on followed branches (k,)."""
         self._links += zip(numbers.tolist(), followed.tolist(), strict=True)
 
+    def leave_alone(self, numbers: IntArray) -> None:
+        """Record that the branches of these cycles are not to be followed."""
+        self._left_alone.update(numbers.tolist())
+
     def unfollowed(self) -> IntArray:
         """Return, for each member, the cycle at the lowest wind speed that lies on no followed branch yet."""
         lowest: dict[int, int] = {}
-        lies_on_one = {number for number, _ in self._links}
+        lies_on_one = {number for number, _ in self._links} | self._left_alone
         for number, (member, wind) in enumerate(self._locations):
             if number not in lies_on_one and (member not in lowest or wind < self._locations[lowest[member]][1]):
                 lowest[member] = number

@@ -1,15 +1,77 @@
 """How many harmonics cycles need, and their stability with that many. Theory sections 7.2 and 7.3."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from engine.cycles.floquet import Floquet, floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
-from engine.models.reduced_model import ReducedModel
+from engine.models.aerodynamic_load import force_gradient
+from engine.models.reduced_model import ReducedModel, diagonals, lowest_frequency
 
 LARGEST_TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which a cycle is refined
 MOST_HARMONICS = 12
+MOST_FOLLOWED = 8  # harmonics of a branch: those beyond the sixth multiple of the lowest frequency are hardly driven
+LIGHT = 0.15  # growth rate over the lowest natural frequency, below which a resonance is sharp
+SUPERHARMONIC = 1.5  # ratio of a natural frequency to the lowest one, above which a multiple of it can be met
 STEP_FACTOR = 4  # on the number of steps of the Floquet integration, for cycles that need more harmonics
+
+
+def harmonics_needed(model: ReducedModel, wind_speeds: FloatArray, asked: int) -> IntArray:
+    """Return the number of harmonics with which the branches of each model are followed: (members,).
+
+    A lightly damped mode resonates with the harmonic that meets its frequency. Where a multiple of the lowest natural
+    frequency can meet one at any wind speed up to the highest, two more harmonics than that multiple are kept.
+
+    Parameters
+    ----------
+    model : ReducedModel
+        Leading axis (members,).
+    wind_speeds : (winds,)
+        In rising order [m/s].
+    asked : int
+        The least number.
+    """
+    members, m = model.modal_masses.shape
+    slope = force_gradient(model.load, np.zeros((members, 1, 2 * m)))[:, 0, :, :m]
+    by_wind = wind_speeds[-1] ** 2 * diagonals(slope) / model.modal_masses
+    square = np.maximum(model.uncoupled_squares, model.uncoupled_squares - by_wind)
+    lowest = lowest_frequency(model)[:, None]
+    ratio = np.sqrt(np.maximum(square, 0.0)) / lowest
+    light = diagonals(model.damping) / (2.0 * model.modal_masses * lowest) < LIGHT
+    order = np.ceil(np.where(light & (ratio > SUPERHARMONIC), ratio, 0.0)).max(axis=-1, initial=0.0)
+    # A model without stiffness has no frequencies, and no branches either.
+    order = np.where(np.isfinite(order), order, 0.0).astype(np.intp)
+    return np.where(order > 0, np.maximum(asked, np.minimum(order + 2, MOST_FOLLOWED)), asked)
+
+
+def resolved_in_groups(
+    model: ReducedModel, member: IntArray, orbits: Orbits, harmonics: IntArray
+) -> tuple[Orbits, Floquet, BoolArray, IntArray]:
+    """Return what `resolved_stability` does, for cycles (k,) with numbers of harmonics of their own, padded."""
+    counts = np.unique(harmonics).tolist()
+    if len(counts) == 1:
+        return resolved_stability(model, member, orbits)
+    groups = [np.flatnonzero(harmonics == count) for count in counts]
+    parts = [
+        resolved_stability(model, member[index], resized(select(orbits, index), count))
+        for index, count in zip(groups, counts, strict=True)
+    ]
+    order = np.argsort(np.concatenate(groups))
+    most = max(part[0].coefficients.shape[-1] // 2 for part in parts)
+    padded, judged = [resized(part[0], most) for part in parts], [part[1] for part in parts]
+    return (
+        Orbits(*(_joined(padded, name, order) for name in ("coefficients", "angular_frequency", "wind_speed"))),
+        Floquet(*(_joined(judged, name, order) for name in ("multipliers", "trivial_error", "stability"))),
+        np.concatenate([part[2] for part in parts])[order],
+        np.concatenate([part[3] for part in parts])[order],
+    )
+
+
+def _joined(parts: Sequence[Orbits] | Sequence[Floquet], name: str, order: IntArray) -> AnyArray:
+    """Return an array of several stacks in one, in a given order."""
+    return np.concatenate([getattr(part, name) for part in parts])[order]
 
 
 def resolved_stability(

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
+from engine.cycles.branch_set import BranchSet
 from engine.cycles.branches import (
     SLOWEST,
-    BranchSet,
     ends_at_hopf_points,
     follow_from_cycles,
     follow_from_hopf_points,
@@ -27,7 +27,7 @@ from engine.cycles.first_harmonic import (
 from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.cycles.known_cycles import KnownCycles, Starts
-from engine.cycles.resolution import resolved_stability
+from engine.cycles.resolution import harmonics_needed, resolved_in_groups
 from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
 from engine.models.reduced_model import ReducedModel, lowest_frequency, take
 from engine.outcome import Stability
@@ -140,14 +140,18 @@ def find_cycles(
     known = KnownCycles(model)
     if wind_speeds.size == 0:
         return _sorted_cycles(model, known, ())
-    branch_sets = _branches_from_hopf_points(model, crossings, wind_speeds, harmonics)
+    needed = harmonics_needed(model, wind_speeds, harmonics)
+    branch_sets: list[BranchSet] = []
+    for count in np.unique(needed).tolist():
+        own = np.isin(crossings.member, np.flatnonzero(needed == count))
+        branch_sets += _branches_from_hopf_points(model, crossings, own, wind_speeds, count)
     for branch_set in branch_sets:
         _add_cycles_on(known, branch_set, wind_speeds, "hopf_branch")
-    known.add(*solve_starts(model, known.new_starts(starts)), "explicit")
-    known.add(*solve_starts(model, known.new_starts(energy_starts(model, wind_speeds, harmonics))), "energy_balance")
+    _add_solutions(known, known.new_starts(starts), needed, "explicit")
+    _add_solutions(known, known.new_starts(energy_starts(model, wind_speeds, harmonics)), needed, "energy_balance")
     integration = integration or DirectIntegration()
     if integration.starts is not None:
-        known.add(*solve_starts(model, integration.starts), "direct_integration")
+        _add_solutions(known, integration.starts, needed, "direct_integration")
     _follow_new_cycles(known, branch_sets, wind_speeds)
     cycles = _sorted_cycles(model, known, tuple(branch_sets))
     member, wind = _without_stable_motion(model, cycles, wind_speeds)
@@ -155,7 +159,7 @@ def find_cycles(
         return cycles
     settled = integration.settle(member, wind)
     before = len(known)
-    known.add(*solve_starts(model, settled.starts), "direct_integration")
+    _add_solutions(known, settled.starts, needed, "direct_integration")
     if len(known) > before:
         _follow_new_cycles(known, branch_sets, wind_speeds)
         cycles = _sorted_cycles(model, known, tuple(branch_sets))
@@ -163,12 +167,29 @@ def find_cycles(
 
 
 def _follow_new_cycles(known: KnownCycles, branch_sets: list[BranchSet], wind_speeds: FloatArray) -> None:
-    """Follow cycles that lie on no branch yet, both ways, until no new cycle appears; append their branches."""
+    """Follow cycles that lie on no branch yet, both ways, until no new cycle appears; append their branches.
+
+    A solution that more harmonics do not resolve is no cycle, and its branch would mean nothing.
+    """
     while (unfollowed := known.unfollowed()).size:
-        member, _ = known.locations(unfollowed)
-        branch_set = follow_from_cycles(known.model, member, known.orbits(unfollowed), wind_speeds)
-        known.link(_add_cycles_on(known, branch_set, wind_speeds, "branch"), np.tile(unfollowed, 2))
-        branch_sets.append(branch_set)
+        place, orbits, harmonics = known.locations(unfollowed), known.orbits(unfollowed), known.harmonics(unfollowed)
+        resolved = resolved_in_groups(known.model, place[0], orbits, harmonics)[2]
+        known.leave_alone(unfollowed[~resolved])
+        unfollowed, harmonics = unfollowed[resolved], harmonics[resolved]
+        for count in np.unique(harmonics).tolist():
+            some = unfollowed[harmonics == count]
+            member, _ = known.locations(some)
+            branch_set = follow_from_cycles(known.model, member, known.orbits(some), wind_speeds)
+            known.link(_add_cycles_on(known, branch_set, wind_speeds, "branch"), np.tile(some, 2))
+            branch_sets.append(branch_set)
+
+
+def _add_solutions(known: KnownCycles, starts: Starts, needed: IntArray, found_by: FoundBy) -> None:
+    """Solve the balance from starts, with the number of harmonics that each member needs, and record the cycles."""
+    for count in np.unique(needed[starts.member]).tolist():
+        index = np.flatnonzero(needed[starts.member] == count)
+        orbits = resized(select(starts.orbits, index), count)
+        known.add(*solve_starts(known.model, Starts(starts.member[index], starts.wind[index], orbits)), found_by)
 
 
 def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
@@ -183,12 +204,12 @@ def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: Flo
 
 
 def _branches_from_hopf_points(
-    model: ReducedModel, crossings: Crossings, winds: FloatArray, harmonics: int
+    model: ReducedModel, crossings: Crossings, selected: BoolArray, winds: FloatArray, harmonics: int
 ) -> list[BranchSet]:
-    """Follow the branches from all onsets, then from the Hopf points at which none of these ended."""
-    onset = np.flatnonzero(crossings.oscillation & crossings.onset)
+    """Follow the branches from all selected onsets, then from the Hopf points at which none of these ended."""
+    onset = np.flatnonzero(crossings.oscillation & crossings.onset & selected)
     first = follow_from_hopf_points(model, crossings, onset, harmonics, winds)
-    restabilizations = np.flatnonzero(crossings.oscillation & ~crossings.onset)
+    restabilizations = np.flatnonzero(crossings.oscillation & ~crossings.onset & selected)
     same = first.problem.member[:, None] == crossings.member[restabilizations]
     unreached = restabilizations[~(same & ends_at_hopf_points(first, crossings, restabilizations)).any(axis=0)]
     if not unreached.size:
@@ -240,8 +261,9 @@ def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[B
         return _no_cycles(model, branch_sets, known.families()[1])
     every_cycle = np.arange(len(known))
     member, wind = known.locations(every_cycle)
-    orbits = known.orbits(every_cycle)
-    orbits, floquet_result, resolved, harmonics = resolved_stability(model, member, orbits)
+    orbits, floquet_result, resolved, harmonics = resolved_in_groups(
+        model, member, known.orbits(every_cycle), known.harmonics(every_cycle)
+    )
     (branch, followed), found_by = known.families(), known.found_by
     order = np.flatnonzero(resolved)
     order = order[np.lexsort((branch[order], wind[order], member[order]))]

@@ -1,10 +1,10 @@
-"""Pseudo-arclength continuation of stacks of branches, and location of zeros of a test function on them.
+"""Pseudo-arclength continuation of stacks of branches.
 
 Theory section 7.2. Nothing here depends on physics: a problem provides residuals and their derivatives by the unknowns
 and by one parameter, the last entry of each point. Branches run side by side, each with its own step length.
 """
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -15,8 +15,6 @@ from engine.numerics.newton import NewtonOptions, Solution, newton, solve_system
 from engine.outcome import Outcome
 
 CONTINUATION_OPTIONS = NewtonOptions(tolerance=1e-4, iterations=8)
-LOCATION_OPTIONS = NewtonOptions(iterations=8)
-MOST_ITERATIONS = 30
 ALL_UNKNOWNS = slice(None)
 
 
@@ -96,13 +94,16 @@ class BranchPoints:
         self.tangent[other.branch] = other.tangent
 
 
+def concatenated(parts: Sequence[BranchPoints]) -> BranchPoints:
+    """Return the points of several stacks in one."""
+    names = ("branch", "z", "scale", "tangent")
+    return BranchPoints(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
 def make_points(problem: Problem, branch: IntArray, z: FloatArray, direction: FloatArray) -> BranchPoints:
     """Return points z (k, n + 1) of branches (k,) with unit tangents along directions (k, n + 1)."""
     scale = problem.scale(z, branch)
     return BranchPoints(branch, z, scale, direction / lengths(direction / scale)[:, None])
-
-
-TestFunction = Callable[[BranchPoints], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,11 +112,12 @@ class StepControl:
 
     A step grows if Newton's method needs fewer than `iterations` iterations and shrinks if it needs more. It is halved
     if the method fails, if the cosine between successive tangents falls below `straightness`, or if the prediction
-    misses the solution by more than the fraction `miss` of the step. `points` is the largest number of points.
+    misses the solution by more than the fraction `miss` of the step. `points` is the largest number of points. First
+    and largest steps may differ between branches: (branches,).
     """
 
-    first: float = 0.05
-    largest: float = 0.7
+    first: float | FloatArray = 0.05
+    largest: float | FloatArray = 0.7
     smallest: float = 1e-5
     iterations: float = 2.5
     straightness: float = 0.85
@@ -164,17 +166,18 @@ def continue_branches(
     active = np.arange(start.shape[0])
     last = make_points(problem, active, start.copy(), direction)
     before = BranchPoints(active, np.full_like(start, np.nan), last.scale.copy(), last.tangent.copy())
-    length, count = np.full(active.size, steps.first), np.zeros(active.size, dtype=np.intp)
+    length, largest = (np.array(np.broadcast_to(size, active.shape)) for size in (steps.first, steps.largest))
+    count = np.zeros(active.size, dtype=np.intp)
     outcome = filled(active.size, Outcome.CONVERGED)
     while active.size:
         here = last.select(active)
         guess = _predict(before.select(active), here, length[active])
         # A starting point may have no phase, as an equilibrium has none.
         anchor = np.where(np.isnan(before.z[active]), guess, here.z)
-        new, solution = _solve_at_length(problem, here, length[active], guess, anchor, CONTINUATION_OPTIONS)
+        new, solution = solve_at_length(problem, here, length[active], guess, anchor, CONTINUATION_OPTIONS)
         good = solution.converged & _stays_on_branch(here, new, guess, steps)
         growth = 2.0 ** ((steps.iterations - solution.iterations) / steps.iterations)
-        length[active] = np.minimum(length[active] * np.where(good, growth, 0.5), steps.largest)
+        length[active] = np.minimum(length[active] * np.where(good, growth, 0.5), largest[active])
         accepted = new.select(good)
         before.overwrite(here.select(good))
         last.overwrite(accepted)
@@ -223,7 +226,7 @@ def _stays_on_branch(here: BranchPoints, new: BranchPoints, guess: FloatArray, s
     return np.asarray((cosine > steps.straightness) & (missed < steps.miss * far))
 
 
-def _solve_at_length(
+def solve_at_length(
     problem: Problem,
     base: BranchPoints,
     length: FloatArray,
@@ -251,49 +254,3 @@ def _branch_direction(matrix: FloatArray) -> FloatArray:
     right = np.zeros(matrix.shape[:-1])
     right[:, -1] = 1.0
     return solve_systems(matrix, right)
-
-
-def project_onto_branches(problem: Problem, points: BranchPoints) -> BranchPoints:
-    """Solve for the branch points in the planes normal to the tangents of these points; NaN where the solver failed."""
-    return _solve_at_length(problem, points, np.zeros(points.branch.size), points.z, points.z, LOCATION_OPTIONS)[0]
-
-
-@dataclass(frozen=True, slots=True)
-class LocatedZeros:
-    """Zeros of a test function: the points, and the change of the parameter in the last step towards each, (k,)."""
-
-    points: BranchPoints
-    uncertainty: FloatArray
-
-
-def locate_zeros(
-    problem: Problem, left: BranchPoints, right: BranchPoints, test: TestFunction, accuracy: float
-) -> LocatedZeros:
-    """Locate zeros of a test function between successive points of branches by the Illinois method.
-
-    The test function takes points and returns (k,); it has opposite signs at the left and right points, which lie on
-    the same branches. accuracy is the relative change of the parameter at which the search stops. The uncertainty is
-    infinite where the search left the branch.
-    """
-    whole = np.einsum("ki,ki->k", left.tangent / left.scale, (right.z - left.z) / left.scale)
-    end, other = whole.copy(), np.zeros_like(whole)
-    value, other_value = test(right), test(left)
-    found = right.select(np.arange(whole.size))
-    moved = np.full(whole.size, np.inf)
-    active = np.arange(whole.size)
-    for _ in range(MOST_ITERATIONS):
-        a, b, f_a, f_b = other[active], end[active], other_value[active], value[active]
-        middle = (a * f_b - b * f_a) / np.where(f_b == f_a, np.nan, f_b - f_a)
-        guess = interpolate(left.select(active), right.select(active), middle / whole[active])
-        point, _ = _solve_at_length(problem, left.select(active), middle, guess, left.z[active], LOCATION_OPTIONS)
-        f = test(point)
-        moved[active] = np.abs(point.z[:, -1] - found.z[active, -1])
-        found.z[active], found.scale[active], found.tangent[active] = point.z, point.scale, point.tangent
-        flips = f * f_b < 0.0
-        # Halve the value of an end that is kept twice, so that it moves in the next step (Illinois).
-        other[active], other_value[active] = np.where(flips, b, a), np.where(flips, f_b, 0.5 * f_a)
-        end[active], value[active] = middle, f
-        active = active[np.isfinite(f) & (moved[active] > accuracy * np.abs(point.z[:, -1]))]
-        if active.size == 0:
-            break
-    return LocatedZeros(found, np.where(np.isfinite(moved), moved, np.inf))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.cycles.branches import BranchSet
+from engine.cycles.branch_set import BranchSet
 from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak
 from engine.mechanics.static_profile import horizontal_position

@@ -10,7 +10,7 @@ from engine.result.columns import Column
 FoundBy = Literal[
     "hopf_branch", "explicit", "energy_balance", "direct_integration", "branch", "torus_point", "unstable_cycle"
 ]
-BifurcationType = Literal["hopf", "fold", "torus", "period_doubling", "branch_point"]
+BifurcationType = Literal["hopf", "fold", "torus", "period_doubling", "branch_point", "unresolved"]
 
 
 @dataclass(frozen=True)  # without slots: a line has dozens of these rows, and orjson serializes them from `__dict__`
@@ -109,7 +109,10 @@ class BifurcationRow:
     model: ModelColumn
     loops: LoopsColumn
     branch: Annotated[int, Column("Family of cycles", 0)]
-    type: Annotated[BifurcationType, Column("Kind of bifurcation", "torus")]
+    type: Annotated[
+        BifurcationType,
+        Column("Kind of bifurcation; unresolved: stability changes and its cause was not found", "torus"),
+    ]
     wind_speed_m_per_s: Annotated[float, Column("Wind speed", 6.82, unit="m/s")]
     frequency_hz: Annotated[float, Column("Frequency of the motion at the bifurcation", 0.4816, unit="Hz")]
     second_frequency_hz: Annotated[

@@ -11,11 +11,13 @@ import numpy as np
 from scipy.optimize import brentq
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.cycles.bifurcations import Bifurcations, Kind, bifurcations_on, distinct
-from engine.cycles.branches import BranchSet, CycleProblem, follow_both_ways, guessed_cycles, reference_size
+from engine.cycles.bifurcations import Bifurcations, bifurcations_on, distinct
+from engine.cycles.branch_set import BranchSet, CycleProblem
+from engine.cycles.branches import follow_both_ways, guessed_cycles, reference_size
 from engine.cycles.harmonic_balance import Orbits, linearized, residual
 from engine.cycles.known_cycles import KnownCycles, Starts
 from engine.cycles.search import solve_starts
+from engine.cycles.transitions import Kind
 from engine.models.critical_wind_speeds import at_wind, state_matrices
 from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.continuation import NewtonStart, correct_by_newton
@@ -41,11 +43,6 @@ class FieldProblem(CycleProblem):
     models_at: ModelsAt
     wind_speed: FloatArray
     width: float
-
-    def repeated(self, branch: IntArray) -> "FieldProblem":
-        """Return the problem for selected, possibly repeated branches."""
-        member, reference = self.member[branch], self.reference[branch]
-        return FieldProblem(self.model, member, reference, self.models_at, self.wind_speed, self.width)
 
     def orbits(self, z: FloatArray, branch: IntArray) -> Orbits:
         """Return the cycles at points (k, n + 1) of branches (k,), at their wind speeds."""

@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
-from engine.cycles.bifurcations import Bifurcations, Kind
+from engine.cycles.bifurcations import Bifurcations
 from engine.cycles.branches import guessed_points
 from engine.cycles.harmonic_balance import Orbits, select
 from engine.cycles.search import Cycles
+from engine.cycles.transitions import Kind
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
 from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.newton import NewtonOptions
@@ -105,8 +106,7 @@ def quasi_periodic_motions(
     ----------
     model : ReducedModel
         Leading axis (members,).
-    cycles, bifurcations
-        The bifurcations are those on the branches of the cycles.
+    cycles, bifurcations : those on the branches of the cycles
     winds : (winds,)
         In rising order [m/s].
     search : TorusSearch

@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
-from engine.cycles.bifurcations import Bifurcations, Kind
-from engine.cycles.branches import BranchSet, guessed_points, orbits_of
+from engine.cycles.bifurcations import Bifurcations
+from engine.cycles.branch_set import BranchSet, orbits_of
+from engine.cycles.branches import guessed_points
 from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, balance, resized, select
+from engine.cycles.transitions import Kind
 from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.continuation import BranchPoints, Problem, StepControl, continue_branches, make_points
 from engine.numerics.newton import NewtonOptions

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from engine.arrays import FloatArray
 from engine.cycles.bifurcations import Bifurcations, bifurcations
 from engine.cycles.first_harmonic import energy_balance_cycles
 from engine.cycles.harmonic_balance import (
@@ -15,7 +16,7 @@ from engine.cycles.harmonic_balance import (
 from engine.cycles.search import Cycles, energy_starts, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
-from engine.spec import AerodynamicModel, Analysis, Line, Stretching
+from engine.spec import AerodynamicModel, Analysis, Line, Span, Stretching
 from tests.builders import finite_element, hybrid, source_line
 
 LIGHT = 0.0308
@@ -30,6 +31,20 @@ def analysed(subconductors: int, torsional_ratio: float, loops: int) -> tuple[Re
     crossings = critical_wind_speeds(model, 30.0)
     cycles = find_cycles(model, crossings, WINDS, energy_starts(model, WINDS, 5), 5)
     return model, cycles, bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
+
+
+def resonant_line() -> Line:
+    """Return a line whose fifth harmonic meets the torsional mode near 7.7 m/s (two loops)."""
+    line = source_line(1, torsional_ratio=0.006463488305849856)
+    return replace(line, span=Span(115.59664153237746, horizontal_tension=27144.507347366452))
+
+
+def bifurcations_between(line: Line, loops: int, winds: FloatArray) -> tuple[Cycles, Bifurcations]:
+    """Return the cycles of a hybrid model at wind speeds, and the bifurcations on their branches."""
+    model = hybrid(line, loops)
+    crossings = critical_wind_speeds(model, 30.0)
+    cycles = find_cycles(model, crossings, winds, energy_starts(model, winds, 5), 5)
+    return cycles, bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
 
 
 RELATIVE = Analysis(aerodynamic_model=AerodynamicModel.RELATIVE_WIND)

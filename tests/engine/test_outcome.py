@@ -20,7 +20,7 @@ def linear_line() -> Line:
 
 def test_every_outcome_has_its_word_and_its_sentence() -> None:
     words = ["converged", "no_convergence", "statically_unstable", "outside_fit", "beyond_data", "no_bounded_motion"]
-    words.append("limit_reached")
+    words += ["slack", "limit_reached"]
     assert [outcome.value for outcome in Outcome] == words
     sentences = [outcome.sentence for outcome in Outcome]
     assert len(set(sentences)) == len(Outcome)

@@ -1,13 +1,14 @@
 """Cycles that a few harmonics do not resolve are solved again with more, and only those."""
 
 import numpy as np
+import pytest
 
 from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select
-from engine.cycles.resolution import LARGEST_TAIL, MOST_HARMONICS, resolved_stability
+from engine.cycles.resolution import LARGEST_TAIL, MOST_HARMONICS, harmonics_needed, resolved_stability
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Stability
-from tests.builders import Oscillators, hand_made
+from tests.builders import Oscillators, hand_made, hybrid, source_line
 
 SPEED = np.array([1.0])
 ONE = np.zeros(1, dtype=np.intp)
@@ -45,3 +46,15 @@ def test_a_cycle_that_more_harmonics_do_not_resolve_either_is_said_to_be_unresol
         start, _ = balance(van_der_pol(mu), ONE, start)
     _, _, resolved, _ = resolved_stability(model, ONE, start)
     assert resolved.tolist() == [False]
+
+
+def test_harmonics_follow_the_resonance_of_a_lightly_damped_mode_and_nothing_else() -> None:
+    winds = np.array([4.0, 12.0])
+    strongly, lightly, bundle = (
+        hybrid(line, 2)
+        for line in (source_line(1), source_line(1, torsional_ratio=0.01), source_line(2, torsional_ratio=0.01))
+    )
+    # Torsion meets five times the lowest frequency, 0.892 Hz, and is damped by 10 % or 0.3 % of it at two loops.
+    assert np.sqrt(lightly.uncoupled_squares / lightly.uncoupled_squares.min()).max() == pytest.approx(4.41, abs=0.01)
+    assert [harmonics_needed(model, winds, 5).tolist() for model in (strongly, lightly, bundle)] == [[5], [7], [5]]
+    assert harmonics_needed(lightly, winds, 9).tolist() == [9]

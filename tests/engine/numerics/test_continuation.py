@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 
 from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.numerics.branch_zeros import locate_zeros, project_onto_branches
 from engine.numerics.continuation import (
     BranchPoints,
     Problem,
     StepControl,
     continue_branches,
     interpolate,
-    locate_zeros,
     make_points,
-    project_onto_branches,
     tangents,
 )
 from engine.outcome import Outcome
@@ -133,3 +132,16 @@ def test_tangents_and_hermite_interpolation() -> None:
 def test_points_are_put_onto_the_branch() -> None:
     near = make_points(CIRCLES, np.array([1]), np.array([[3.1, 0.0]]), np.array([[0.0, 3.0]]))
     assert project_onto_branches(CIRCLES, near).z[0] == pytest.approx([3.0, 0.0], abs=1e-9)
+
+
+def test_first_and_largest_steps_may_differ_between_branches() -> None:
+    steps = StepControl(first=np.array([0.01, 0.1]), largest=np.array([0.02, 0.4]), points=12)
+    points = followed(CIRCLES, START, ALONG, steps)
+    turned = []
+    for branch in (0, 1):
+        z = np.concatenate([START[[branch]], *(p.z[p.branch == branch] for p in points)])
+        turned.append(np.hypot(*np.diff(z, axis=0).T) / CIRCLES.radius[branch])
+    assert turned[0][0] == pytest.approx(0.01, rel=1e-3)
+    assert turned[1][0] == pytest.approx(0.1, rel=1e-2)
+    assert turned[0].max() == pytest.approx(0.02, rel=1e-3)
+    assert turned[1].max() < 0.42

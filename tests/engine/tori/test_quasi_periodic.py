@@ -75,7 +75,9 @@ def rows(subconductors: int, wind: float, search: TorusSearch) -> list[LimitCycl
 @pytest.mark.parametrize(("subconductors", "wind"), [(1, 9.0), (2, 12.0), (3, 12.0)])
 def test_two_stable_cycles_of_a_source_line_are_parted_by_an_unstable_torus(subconductors: int, wind: float) -> None:
     (row,) = rows(subconductors, wind, TorusSearch.EVERY)
-    assert (row.stability, row.outcome, row.found_by) == (Stability.UNSTABLE, Outcome.CONVERGED, "torus_point")
+    assert (row.stability, row.found_by) == (Stability.UNSTABLE, "torus_point")
+    assert row.horizontal_ratio is not None
+    assert row.outcome is (Outcome.BEYOND_DATA if row.horizontal_ratio > 1.0 else Outcome.CONVERGED)
     assert row.frequency_hz == pytest.approx(0.8915, rel=2e-3)
     assert row.second_frequency_hz == pytest.approx(0.889, rel=5e-3)
     assert row.horizontal_min_m is not None

@@ -1,0 +1,69 @@
+"""Every change of stability on a branch has its bifurcation, and none depends on the wind speeds asked for."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from engine.arrays import FloatArray
+from engine.cycles.bifurcations import Bifurcations
+from engine.cycles.search import Cycles
+from engine.cycles.transitions import FACTORS, Kind
+from engine.outcome import Stability
+from engine.spec import Line
+from tests.builders import lightly_damped_line
+from tests.engine.motions import bifurcations_between, resonant_line
+
+FEW, MANY = np.linspace(3.0, 13.0, 6), np.linspace(3.0, 13.0, 21)
+SAME = 1e-4  # relative difference of two wind speeds that are the same bifurcation
+
+
+def drawn(number: int) -> Line:
+    generator = np.random.default_rng(number)
+    return lightly_damped_line(generator)
+
+
+LINES = [resonant_line(), *(drawn(number) for number in range(5))]
+
+
+def unexplained(cycles: Cycles, found: Bifurcations) -> list[tuple[float, float]]:
+    """Return neighbours, by their wind speeds, between which stability changes without a bifurcation."""
+    missing, first = [], 0
+    for branch_set in cycles.branch_sets:
+        points, stability = branch_set.points, branch_set.floquet.stability
+        known = np.flatnonzero(stability != Stability.UNKNOWN)
+        for left, right in itertools.pairwise(known.tolist()):
+            if points.branch[left] != points.branch[right] or stability[left] == stability[right]:
+                continue
+            low, high = sorted((float(points.z[left, -1]), float(points.z[right, -1])))
+            own = found.branch == cycles.followed[first + points.branch[left]]
+            reach = found.uncertainty + SAME * found.parameter
+            if not (own & (found.parameter > low - reach) & (found.parameter < high + reach)).any():
+                missing.append((low, high))
+        first += branch_set.problem.member.size
+    return missing
+
+
+def within(found: Bifurcations, kind: Kind) -> FloatArray:
+    inside = (found.parameter > FEW[0]) & (found.parameter < FEW[-1])
+    return np.sort(found.parameter[inside & np.array([k is kind for k in found.kind], dtype=np.bool_)])
+
+
+@pytest.mark.parametrize("line", LINES, ids=["resonant", *map(str, range(5))])
+@pytest.mark.parametrize("loops", [1, 2])
+def test_every_change_of_stability_has_its_row_whatever_wind_speeds_are_asked_for(line: Line, loops: int) -> None:
+    few, many = (bifurcations_between(line, loops, winds) for winds in (FEW, MANY))
+    for cycles, found in (few, many):
+        assert unexplained(cycles, found) == []
+        assert Kind.UNRESOLVED not in found.kind.tolist()
+    for kind in Kind:
+        assert within(few[1], kind) == pytest.approx(within(many[1], kind), rel=SAME)
+    stable = [cycles.floquet.stability == Stability.STABLE for cycles, _ in (few, many)]
+    counts = [np.bincount(cycles.wind[at], minlength=21) for (cycles, _), at in zip((few, many), stable, strict=True)]
+    assert counts[0][:6].tolist() == counts[1][::4].tolist()
+
+
+def test_multipliers_beyond_all_numbers_cross_nothing_and_warn_of_nothing() -> None:
+    huge = np.array([1e200 + 1e200j, 1e200 - 1e200j, 0.5])
+    assert not np.isfinite(FACTORS[Kind.TORUS](huge)).all()
+    assert FACTORS[Kind.TORUS](np.array([0.5, 3.0, 2.0])) == pytest.approx([-0.5, 0.0, -5.0])
