@@ -25,10 +25,12 @@ def discretized(lines: Sequence[Line]) -> Discretization:
     return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
 
 
-def hybrid_models(discretization: Discretization, loops: tuple[int, ...]) -> tuple[ReducedModel, ReducedModel]:
-    """Return the hybrid models (lines x loops,), line-major, with the exact and with the published load."""
+def hybrid_models(
+    discretization: Discretization, loops: tuple[int, ...], analysis: Analysis | None = None
+) -> tuple[ReducedModel, ReducedModel]:
+    """Return the hybrid models (lines x loops,), line-major, with an analysis' load and with the published one."""
     shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, tuple(sorted({1, *loops})))
-    grid = hybrid_model(discretization, shapes, loops, Analysis(loops=loops))
+    grid = hybrid_model(discretization, shapes, loops, analysis or Analysis(loops=loops))
     index = np.divmod(np.arange(len(discretization.lines) * len(loops)), len(loops))
     return take(grid, index), take(with_published_load(discretization, grid), index)
 

@@ -48,6 +48,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "static_twist": static_twist.section,
     "stretching": stretching.section,
     "full_physics": full_physics.section,
+    "full_completeness": completeness.full_section,
     "device_placement": device_placement.section,
 }
 
