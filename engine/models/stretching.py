@@ -108,6 +108,19 @@ def span_stiffness(lines: Sequence[Line], profile: StaticProfile, at: SlopePoint
     return np.asarray(1.0 / (effective_length / rigidity + (1.0 / profile.end_stiffness).sum(axis=1)))
 
 
+def relieved_share(lines: Sequence[Line], profile: StaticProfile, section_points: Sections) -> FloatArray:
+    """Return k_0/k, the share of the stiffness that is left when the sag follows statically: (lines,).
+
+    1/k_0 = 1/k + (1/H) int y_x^2 dx, with slopes from the chord. Theory section 12.1.
+    """
+    at = slope_points(lines, profile, section_points)
+    dx = at.weight * at.direction[..., 0]
+    slope = at.direction[..., 1:] / at.direction[..., :1]
+    chord = (slope * dx[..., None]).sum(axis=(1, 2), keepdims=True) / dx.sum(axis=(1, 2))[:, None, None, None]
+    give = (((slope - chord) ** 2).sum(axis=-1) * dx).sum(axis=(1, 2)) / profile.horizontal_tension
+    return np.asarray(1.0 / (1.0 + span_stiffness(lines, profile, at) * give))
+
+
 def restoring_force(stretching: StretchingForce, q: FloatArray) -> FloatArray:
     """Evaluate g at coordinates (..., samples, m): (..., samples, m) [N, N m]."""
     return np.asarray(polynomial.powers(q) @ stretching.table.swapaxes(-1, -2))

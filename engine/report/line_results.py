@@ -6,6 +6,7 @@ from engine import ENGINE_VERSION
 from engine.arrays import BoolArray
 from engine.mechanics.modes import DirectionalShapes, longitudinal_share
 from engine.models.discretization import Discretization
+from engine.models.stretching import relieved_share
 from engine.outcome import Outcome
 from engine.report.amplitude_curves import amplitude_curve_rows
 from engine.report.bifurcations import bifurcation_rows
@@ -25,6 +26,7 @@ from engine.report.warnings import (
     motion_warnings,
     neglected_twist_warnings,
     physics_warnings,
+    relief_warnings,
     twist_warnings,
     wind_twist_warnings,
 )
@@ -62,6 +64,7 @@ def line_results(
     lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
     frequencies = [frequency_rows(table, analysis.loops) for table in natural_frequencies]
     longitudinal = longitudinal_share(discretization.matrices, shapes)
+    relieved = relieved_share(*discretization.parts[:3])
     critical = [critical_wind_speed_rows(model_findings, shapes.loops, longitudinal) for model_findings in findings]
     bifurcations = [bifurcation_rows(model_findings) for model_findings in findings]
     tensions = [tension_rows(discretization, model_findings) for model_findings in findings]
@@ -83,6 +86,7 @@ def line_results(
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
         about_line = line_warnings(line) + physics_warnings(line, analysis) + twist_warnings(discretization, i)
         about_line += longitudinal_warnings(shapes.loops, longitudinal[i], analysis)
+        about_line += relief_warnings(analysis, float(relieved[i]))
         about_line += neglected[i] + wind_twist_warnings(discretization, i)
         own_frequencies = tuple(row for table in frequencies for row in table[i])
         results.append(

@@ -37,6 +37,7 @@ MOTION_WARNINGS = {
     Outcome.NO_BOUNDED_MOTION: "At {} combinations of model, loops and wind speed no motion is bounded: every motion "
     "that was integrated grew past an angle of attack of 180 degrees.",
 }
+LEAST_RELIEVED = 0.25  # k_0/k below which one relief coordinate is several per cent off in the frequency
 MUCH_LONGITUDINAL = 0.1  # share of a vertical shape's energy above which a warning names it
 LEAST_INERTIA = 1e-6  # least ratio of the inertias about mass centre and reference curve: M is nearly singular below it
 
@@ -100,6 +101,21 @@ def longitudinal_warnings(loops: Sequence[int], shares: FloatArray, analysis: An
             '"longitudinal_inertia": "condensed" keeps it.'
         )
     return [known]
+
+
+def relief_warnings(analysis: Analysis, relieved: float) -> list[str]:
+    """Return a sentence if one relief coordinate is not enough for the hybrid model; relieved: its k_0/k."""
+    several = [k for k in analysis.loops if k > 1]
+    if analysis.stretching is Stretching.NEGLECTED or Model.HYBRID not in analysis.models or not several:
+        return []
+    if relieved >= LEAST_RELIEVED:
+        return []
+    return [
+        f"The sag relieves this span so much (a share of {relieved:.2f} of its stiffness is left) that one relief "
+        "coordinate is some 5 % off in the rise of frequency by stretching at moderate amplitudes, and up to 40 % at "
+        "large ones, in two and more loops of the hybrid model. The finite element model with finite_element_loops 1, 2, 3 "
+        "and 5 is better."
+    ]
 
 
 def _neglected(analysis: Analysis) -> str:

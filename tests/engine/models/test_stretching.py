@@ -9,6 +9,7 @@ import pytest
 from engine.arrays import FloatArray
 from engine.models.stretching import (
     dynamic_tension,
+    relieved_share,
     restoring_force,
     restoring_gradient,
     slope_points,
@@ -99,6 +100,16 @@ def test_upward_motion_slackens_and_sideways_motion_tightens() -> None:
     # a_v = -(p/H) int f ds of the level catenary, and B of a sine, up to the sag's share of the slopes
     assert stretching.linear[0] == pytest.approx(-2.0 * arc / math.pi / parameter, rel=1e-4)
     assert stretching.square[1, 1] == pytest.approx(0.5 * math.pi**2 / arc, rel=1e-3)
+
+
+def test_the_sag_relieves_a_parabola_by_its_slopes() -> None:
+    line = CASES["dead ends"]
+    made = discretized(line)
+    at = slope_points((line,), made.profile, made.sections)
+    length, parameter = line.span.length, made.profile.catenary_parameter[0]
+    k, tension = span_stiffness((line,), made.profile, at)[0], made.profile.horizontal_tension[0]
+    expected = 1.0 / (1.0 + k / tension * length**3 / (12.0 * parameter**2))
+    assert relieved_share((line,), made.profile, made.sections)[0] == pytest.approx(expected, rel=2e-3)
 
 
 def test_end_springs_yield_to_tension() -> None:

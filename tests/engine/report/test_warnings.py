@@ -17,6 +17,8 @@ from engine.spec import (
     Spacer,
     Span,
     StaticTwist,
+    Stretching,
+    Support,
     Supports,
     with_physics,
 )
@@ -111,6 +113,17 @@ def test_physics_that_the_data_kept_from_being_full_is_named() -> None:
     (said,) = run(line, with_physics(line, asked, single)).warnings
     assert "longitudinal inertia" not in said
     assert run(line, with_physics(line, asked, PhysicsRequest(Physics.SOURCE))).warnings == ()
+
+
+def test_a_span_that_relieves_in_more_shapes_than_one_points_at_the_finite_element_model() -> None:
+    held = Support(dead_end=True)
+    line = replace(source_line(1), span=Span(300.0, sag=9.0), supports=Supports(None, held, held))
+    asked = Analysis(loops=(2,), wind_speeds=(), models=(Model.HYBRID,), stretching=Stretching.INCLUDED)
+    (said,) = [text for text in run(line, asked).warnings if "relief coordinate" in text]
+    assert "finite_element_loops 1, 2, 3 and 5 is better" in said
+    for other in (replace(asked, loops=(1,)), replace(asked, stretching=Stretching.NEGLECTED)):
+        assert not [text for text in run(line, other).warnings if "relief coordinate" in text]
+    assert not [text for text in run(source_line(1), asked).warnings if "relief coordinate" in text]
 
 
 def test_vertical_motion_that_is_partly_longitudinal_is_named() -> None:
