@@ -112,9 +112,9 @@ def relief_warnings(analysis: Analysis, relieved: float) -> list[str]:
         return []
     return [
         f"The sag relieves this span so much (a share of {relieved:.2f} of its stiffness is left) that one relief "
-        "coordinate is some 5 % off in the rise of frequency by stretching at moderate amplitudes, and up to 40 % at "
-        "large ones, in two and more loops of the hybrid model. The finite element model with finite_element_loops 1, 2, "
-        "3 and 5 is better."
+        "coordinate is some 5 % off in the rise of frequency by stretching at moderate amplitudes, and up to 40 % "
+        "at large ones, in two and more loops of the hybrid model. The finite element model with "
+        "finite_element_loops 1, 2, 3 and 5 is better."
     ]
 
 
