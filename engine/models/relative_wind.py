@@ -8,6 +8,7 @@ length l of `arm_scale` makes them of one size.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import comb
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from engine.spec import AerodynamicModel, Line
 VERTICAL, HORIZONTAL, TORSIONAL = range(3)
 LOCAL = 4  # numbers that describe the motion at a point
 FASTEST = 0.7  # velocity of a sub-conductor over the wind's, up to which the expanded load holds
+_ORDERS = [(i, j) for i in range(polynomial.DEGREE + 1) for j in range(polynomial.DEGREE + 1 - i)]
 BLOCK = 16  # motions examined together, so that all their samples stay in the processor's cache
 
 _Series = dict[tuple[int, ...], float]
@@ -103,7 +105,9 @@ def _reach(motion: NodalMotion, member: IntArray, state: FloatArray) -> FloatArr
     if motion.model is AerodynamicModel.PUBLISHED:
         angle = theta - v - half * turn
     else:
-        angle = theta - np.arctan2(rise + half * turn, 1.0 - sway)
+        across, along = rise + half * turn, 1.0 - sway
+        # Several times faster than arctan2, which only serves motion that outruns the wind.
+        angle = theta - (np.arctan(across / along) if (along > 0.0).all() else np.arctan2(across, along))
     every = (1, 2, 3)
     return np.stack([np.abs(angle).max(axis=every), np.sqrt((rise**2 + sway**2).max(axis=every))])
 
@@ -127,6 +131,9 @@ def bundle_table(lines: Sequence[Line], coefficients: FloatArray, twist: FloatAr
     (lines, points, 3, 34)
         Tables in the local motion, per 1/2 rho d (U phi)^2 of V and W and per 1/2 rho d^2 (U phi)^2 of Theta.
     """
+    if not twist.any() and (coefficients == coefficients[:, :1]).all() and twist.shape[1] > 1:
+        table = bundle_table(lines, coefficients[:, :1], twist[:, :1])  # the same at every point
+        return np.broadcast_to(table, (*twist.shape, *table.shape[-2:]))
     own = relative_wind_table(coefficients)
     turned = twist if twist.any() else twist[:, :1]
     mean, with_y, with_z = _sums_over_bundle(lines, turned)
@@ -147,13 +154,25 @@ def _sums_over_bundle(lines: Sequence[Line], twist: FloatArray) -> FloatArray:
     y, z = np.moveaxis(turned_arms(lines, twist), -1, 0)
     count = np.array([len(line.bundle.positions) for line in lines])[:, None]
     share = (np.arange(y.shape[-1]) < count) / count
-    forms = np.zeros((*y.shape, 3, LOCAL))
-    forms[..., [0, 1, 2], [0, 1, 2]] = 1.0
-    forms[..., 1, 3] = (0.5 * diameter - z) / scale
-    forms[..., 2, 3] = y / scale
     weights = share[:, None] * np.stack([np.ones_like(y), y / diameter, z / diameter])
-    table = weights[..., None, None] * np.eye(len(polynomial.monomials(3)))
-    return polynomial.substitute(table, np.broadcast_to(forms, (3, *forms.shape)))
+    rise, sway = (0.5 * diameter - z) / scale, y / scale
+    moments = np.stack([(weights * rise**i * sway**j).sum(axis=-1) for i, j in _ORDERS], axis=-1)
+    maps = _shifted()
+    return np.asarray((moments @ maps.reshape(len(maps), -1)).reshape(*moments.shape[:-1], *maps.shape[1:]))
+
+
+@lru_cache
+def _shifted() -> FloatArray:
+    """Return the expansion of Theta^k (v + beta t)^l (w + gamma t)^m by powers of beta and gamma: (10, 19, 34)."""
+    position = {monomial: column for column, monomial in enumerate(polynomial.monomials(LOCAL))}
+    result = np.zeros((len(_ORDERS), len(polynomial.monomials(3)), len(position)))
+    for row, monomial in enumerate(polynomial.monomials(3)):
+        k, rises, sways = (monomial.count(variable) for variable in range(3))
+        for power, (i, j) in enumerate(_ORDERS):
+            if i <= rises and j <= sways:
+                target = (0,) * k + (1,) * (rises - i) + (2,) * (sways - j) + (3,) * (i + j)
+                result[power, row, position[target]] = comb(rises, i) * comb(sways, j)
+    return result
 
 
 def turned_arms(lines: Sequence[Line], twist: FloatArray) -> FloatArray:
