@@ -1,6 +1,6 @@
 """The order of the steps of an analysis, and nothing else: lines and an analysis in, progress and results out."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
@@ -17,11 +17,12 @@ from engine.cycles.known_cycles import Starts, stacked
 from engine.cycles.search import Cycles, DirectIntegration, explicit_starts, find_cycles
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
-from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
-from engine.models.discretization import Discretization, discretize, fields_in_space, with_wind_twist
+from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds, no_crossings
+from engine.models.discretization import Discretization, discretize, fields_in_space, in_wind, with_wind_twist
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_published_load
 from engine.models.reduced_model import ReducedModel, take
+from engine.models.scanned_wind_speeds import crossings_in_wind
 from engine.outcome import Fault, InvalidSpec
 from engine.progress import Progress
 from engine.report.device_effects import device_effects
@@ -104,29 +105,58 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
 def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
     yield Progress(0.0, "static state and modes")
     prepared = _discretized(lines, analysis)
-    yield Progress(0.1, "critical wind speeds and limit cycles of the hybrid model")
-    hybrid = [_analyse_hybrid(prepared, group, analysis) for group in loop_groups(analysis.loops, analysis)]
-    findings, frequencies = [], []
-    if Model.HYBRID in analysis.models:
-        findings += hybrid
-        frequencies += [_coupled_frequencies(part) for part in hybrid]
-    if prepared.modes is not None:
-        frequencies.append(_full_frequencies(prepared.modes))
-        if analysis.finite_element_loops:
-            findings.append((yield from _analyse_finite_element(prepared, prepared.modes, hybrid, analysis)))
+    parts = _in_each_wind(prepared, analysis) if analysis.follows_twist else [(prepared, analysis)]
+    findings: list[ModelFindings] = []
+    frequencies: list[NaturalFrequencies] = []
+    competitions: list[list[LoopCompetitionRow]] = [[] for _ in lines]
+    for number, (here, asked) in enumerate(parts):
+        yield Progress(0.1 + 0.8 * number / len(parts), "critical wind speeds and limit cycles of the hybrid model")
+        hybrid = [_analyse_hybrid(here, group, asked) for group in loop_groups(asked.loops, asked)]
+        findings += hybrid if Model.HYBRID in asked.models else []
+        if here.modes is not None and asked.finite_element_loops:
+            findings.append((yield from _analyse_finite_element(here, here.modes, hybrid, asked)))
+        frequencies = frequencies or _frequencies(here, hybrid, asked)
+        further = _competitions(here, hybrid, asked)
+        competitions = [[*known, *more] for known, more in zip(competitions, further, strict=True)]
     yield Progress(0.95, "result rows")
-    competitions = _competitions(prepared, hybrid, analysis)
-    results = line_results(
-        prepared.discretization, prepared.shapes, tuple(frequencies), tuple(findings), analysis, competitions
-    )
+    about = _with_smallest_range(prepared, parts) if analysis.follows_twist else prepared.discretization
+    results = line_results(about, prepared.shapes, tuple(frequencies), tuple(findings), analysis, competitions)
     yield Progress(1.0, "done")
     return results
 
 
+def _frequencies(
+    prepared: _Discretized, hybrid: Sequence[ModelFindings], analysis: Analysis
+) -> list[NaturalFrequencies]:
+    frequencies = [_coupled_frequencies(part) for part in hybrid] if Model.HYBRID in analysis.models else []
+    return frequencies if prepared.modes is None else [*frequencies, _full_frequencies(prepared.modes)]
+
+
+def _in_each_wind(prepared: _Discretized, analysis: Analysis) -> list[tuple[_Discretized, Analysis]]:
+    """Return the state in still air with no wind speed, then the state at each wind speed with that one."""
+    parts = [(prepared, replace(analysis, wind_speeds=()))]
+    for i, speed in enumerate(_winds(analysis).tolist()):
+        here = in_wind(prepared.discretization, i)
+        parts.append((_with_modes(here, analysis), replace(analysis, wind_speeds=(speed,))))
+    return parts
+
+
+def _with_smallest_range(prepared: _Discretized, parts: list[tuple[_Discretized, Analysis]]) -> Discretization:
+    """Return the state in still air with the range of angles that the tables hold at every wind speed."""
+    ranges = [here.discretization.sections.fitted_range for here, _ in parts[1:]] or [np.array([np.inf])]
+    sections = replace(prepared.discretization.sections, fitted_range=np.min(ranges, axis=0))
+    return replace(prepared.discretization, sections=sections)
+
+
 def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
     discretization = discretize(lines, analysis.static_twist)
-    if analysis.static_twist is not StaticTwist.NEGLECTED and any(line.has_table for line in lines):
+    twisted = analysis.static_twist is not StaticTwist.NEGLECTED and any(line.has_table for line in lines)
+    if twisted or analysis.follows_twist:
         discretization = with_wind_twist(discretization, _winds(analysis))
+    return _with_modes(discretization, analysis)
+
+
+def _with_modes(discretization: Discretization, analysis: Analysis) -> _Discretized:
     system, arc_length = discretization.matrices, discretization.profile.arc_length
     finite_element = Model.FINITE_ELEMENT in analysis.models
     loops = set(analysis.loops) | {1, 2}
@@ -149,7 +179,12 @@ def _analyse_hybrid(prepared: _Discretized, loops: tuple[int, ...], analysis: An
     published = take(with_published_load(prepared.discretization, grid), (line, column))
     winds = _winds(analysis)
     starts = explicit_starts(published, model, winds, analysis.harmonics)
-    crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
+
+    def model_of(discretization: Discretization) -> ReducedModel:
+        own = directional_shapes(discretization.matrices, discretization.profile.arc_length, prepared.shapes.loops)
+        return take(hybrid_model(discretization, own, loops, analysis), (line, column))
+
+    crossings = _crossings(prepared, model, line, analysis, model_of)
     loops_of = np.array(loops)[column][:, None] * np.ones(model.mass.shape[-1], dtype=np.intp)
     return _findings(_ModelStack(Model.HYBRID, model, line, loops_of, crossings), winds, starts, analysis)
 
@@ -160,7 +195,13 @@ def _analyse_finite_element(
     """Analyse the finite element model of every line, also starting from the cycles of the hybrid models."""
     yield Progress(0.4, "critical wind speeds of the finite element model")
     model = finite_element_model(prepared.discretization, modes, prepared.shapes, analysis)
-    crossings = critical_wind_speeds(model, analysis.critical_wind_limit)
+
+    def model_of(discretization: Discretization) -> ReducedModel:
+        own = _with_modes(discretization, analysis)
+        assert own.modes is not None, "the finite element model was asked for"
+        return finite_element_model(discretization, own.modes, own.shapes, analysis)
+
+    crossings = _crossings(prepared, model, np.arange(len(prepared.discretization.lines)), analysis, model_of)
     yield Progress(0.5, "limit cycles of the finite element model")
     starts = stacked(
         [_cycles_in_full_modes(prepared.discretization, modes, part, model, analysis.harmonics) for part in hybrid]
@@ -173,6 +214,19 @@ def _analyse_finite_element(
     return _findings(stack, _winds(analysis), starts, analysis)
 
 
+def _crossings(
+    prepared: _Discretized,
+    model: ReducedModel,
+    line: IntArray,
+    analysis: Analysis,
+    model_of: Callable[[Discretization], ReducedModel],
+) -> Crossings:
+    """Return the critical wind speeds of a stack of models: by a scan in still air where the twist follows the wind."""
+    if analysis.follows_twist and not analysis.wind_speeds:  # see _in_each_wind
+        return crossings_in_wind(prepared.discretization, analysis.critical_wind_limit, line, model_of)
+    return critical_wind_speeds(model, analysis.critical_wind_limit)
+
+
 def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: Analysis) -> ModelFindings:
     """Find all motions of a stack of models at the wind speeds, and check them by direct integration if asked for."""
     model, direct = stack.model, analysis.check is Check.DIRECT
@@ -183,12 +237,13 @@ def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: A
     cycles = find_cycles(model, stack.crossings, winds, starts, analysis.harmonics, integration)
     bifurcation_points = bifurcations(cycles.branch_sets, cycles.followed, model, stack.crossings)
     tori = quasi_periodic_motions(model, cycles, bifurcation_points, winds, analysis.quasi_periodic)
+    follows = analysis.follows_twist and analysis.wind_speeds  # crossings about this state hold at its wind speed only
     return ModelFindings(
         name=stack.name,
         model=model,
         line=stack.line,
         loops=stack.loops,
-        crossings=stack.crossings,
+        crossings=no_crossings() if follows else stack.crossings,
         cycles=cycles,
         confidence=confidence(model, cycles, analysis.check),
         bifurcations=bifurcation_points,

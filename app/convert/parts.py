@@ -183,6 +183,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         models=tuple(spec.Model(model) for model in part.models),
         wind_speeds=part.speeds(),
         closure=spec.Closure(part.closure),
+        aerodynamic_load=spec.AerodynamicLoad(part.aerodynamic_load),
         critical_wind_limit=part.critical_wind_limit,
         harmonics=part.harmonics,
         finite_element_loops=tuple(part.finite_element_loops),

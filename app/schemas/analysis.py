@@ -83,11 +83,17 @@ class Analysis(Document):
         "static_twist where they are null",
         examples=["full"],
     )
-    aerodynamic_model: Literal["published", "relative_wind"] | None = Field(
+    aerodynamic_model: Literal["published", "relative_wind", "table"] | None = Field(
         default=None,
         description="Which velocities change the wind: the vertical one (published, source), or all those of each "
-        "sub-conductor (relative_wind, full), which needs ice.aerodynamics_at_rest or a table; null: as physics has it",
+        "sub-conductor (relative_wind, full), which needs ice.aerodynamics_at_rest or a table; table: all of them, by "
+        "a measured table as it stands and about the twist in the wind; null: as physics has it",
         examples=["published"],
+    )
+    aerodynamic_load: Literal["expanded", "unexpanded"] = Field(
+        default="expanded",
+        description="Load of the relative wind to third order in the motion, or as it stands, as a table always is",
+        examples=["expanded"],
     )
     longitudinal_inertia: Literal["neglected", "condensed"] | None = Field(
         default=None,

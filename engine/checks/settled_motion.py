@@ -12,8 +12,9 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled
 from engine.kernels import compiled
-from engine.models.aerodynamic_load import force_gradient
-from engine.models.reduced_model import ReducedModel
+from engine.models.reduced_model import ReducedModel, force_gradient
+from engine.models.unexpanded_load import UnexpandedLoad
+from engine.models.unexpanded_load import force as unexpanded_force
 from engine.outcome import Outcome
 
 STEPS = 24  # in the shortest natural period
@@ -42,6 +43,33 @@ class SettledMotions:
 
 
 @dataclass(frozen=True, slots=True)
+class UnexpandedTerms:
+    """The nonlinear part of an unexpanded load in q'', gain f(q, q'/U) - linear (q, q'); starts on the last axis.
+
+    gain: (m, m, starts); linear: (m, 2 m, starts); wind_speed: (starts,) [m/s]; member: (starts,), index of the load of
+    each start; load: leading axis (members,).
+    """
+
+    gain: FloatArray
+    linear: FloatArray
+    wind_speed: FloatArray
+    member: IntArray
+    load: UnexpandedLoad
+
+    def select(self, index: IntArray) -> "UnexpandedTerms":
+        """Select starts by their indices."""
+        gain, linear = self.gain[..., index], self.linear[..., index]
+        return UnexpandedTerms(gain, linear, self.wind_speed[index], self.member[index], self.load)
+
+    def acceleration(self, state: FloatArray) -> FloatArray:
+        """Return this part of q'' at states (2 m, starts): (m, starts)."""
+        m = self.gain.shape[0]
+        scaled = np.concatenate([state[:m], state[m:] / self.wind_speed]).T[:, None]
+        load = unexpanded_force(self.load.take(self.member), scaled)[:, 0].T
+        return np.asarray(np.einsum("ijs,js->is", self.gain, load) - np.einsum("iks,ks->is", self.linear, state))
+
+
+@dataclass(frozen=True, slots=True)
 class LawsonEquations:
     """The equations of motion of a stack of starts in the form that Lawson's method steps; starts on the last axis.
 
@@ -49,7 +77,8 @@ class LawsonEquations:
     monomials of degree 2 and 3, starts), coefficients of the wind's nonlinear part of q''; forms: (points, local
     variables, 2 m, starts), the linear forms in (q, q') that these monomials are taken of; restoring: (m, monomials of
     degree 2 and 3 of q, starts), coefficients of the part of stretching, no monomials where it is neglected; step:
-    (starts,) [s]; angle: (2 m, starts), largest coefficients of the angle of attack along the span.
+    (starts,) [s]; angle: (2 m, starts), largest coefficients of the angle of attack along the span; unexpanded: the
+    wind's part where its load is unexpanded, and then no points.
     """
 
     half_step: FloatArray
@@ -58,14 +87,17 @@ class LawsonEquations:
     restoring: FloatArray
     step: FloatArray
     angle: FloatArray
+    unexpanded: UnexpandedTerms | None = None
 
     def select(self, index: IntArray) -> "LawsonEquations":
         """Select starts by their indices."""
-        return LawsonEquations(*(part[..., index] for part in self.parts))
+        unexpanded = None if self.unexpanded is None else self.unexpanded.select(index)
+        half_step, nonlinear, forms, restoring, step, angle = (part[..., index] for part in self.parts)
+        return LawsonEquations(half_step, nonlinear, forms, restoring, step, angle, unexpanded)
 
     @property
     def parts(self) -> tuple[FloatArray, ...]:
-        """The fields in their order."""
+        """The arrays in their order."""
         return self.half_step, self.nonlinear, self.forms, self.restoring, self.step, self.angle
 
 
@@ -85,29 +117,46 @@ def lawson_equations(
     """Set up the equations of members (starts,) of a stack of models at wind speeds (starts,)."""
     from scipy.linalg import expm  # noqa: PLC0415 - import scipy only when integration is asked for
 
-    m, load = model.mass.shape[-1], model.load
+    m = model.mass.shape[-1]
     inverse = np.asarray(np.linalg.inv(model.mass)[member], dtype=np.float64)
     speed = wind_speed[:, None, None]
-    slope = force_gradient(load, np.zeros((model.mass.shape[0], 1, 2 * m)))[member, 0]
+    slope = force_gradient(model, np.zeros((model.mass.shape[0], 1, 2 * m)))[member, 0]
     by_q = inverse @ (speed**2 * slope[..., :m] - model.stiffness[member])
     by_rate = inverse @ (speed * slope[..., m:] - model.damping[member])
     linear = np.zeros((member.size, 2 * m, 2 * m))
     linear[:, :m, m:] = np.eye(m)
     linear[:, m:] = np.concatenate([by_q, by_rate], axis=-1)
-    nonlinear = speed[..., None] ** 2 * (inverse[:, None] @ load.table[member][..., load.forms.shape[-2] :])
     by_wind = np.repeat([np.ones(member.size), wind_speed], m, axis=0)
-    forms = np.moveaxis(load.forms[member], 0, -1) / by_wind
+    nonlinear, forms, unexpanded = _wind_terms(model, member, wind_speed, speed**2 * inverse)
     step = 2.0 * np.pi / (natural_frequency_range(model, member)[1] * steps)
-    angle = np.abs(load.angle[member]).max(axis=1).T / by_wind
+    angle = np.abs(model.load.angle[member]).max(axis=1).T / by_wind
     half_step = expm(0.5 * step[:, None, None] * linear)
     return LawsonEquations(
         np.moveaxis(half_step, 0, -1).copy(),
         np.moveaxis(nonlinear, 0, -1).copy(),
-        forms.copy(),
+        np.moveaxis(forms, 0, -1) / by_wind,
         np.moveaxis(_restoring_coefficients(model, inverse, member), 0, -1).copy(),
         step,
         angle.copy(),
+        unexpanded,
     )
+
+
+def _wind_terms(
+    model: ReducedModel, member: IntArray, wind_speed: FloatArray, gain: FloatArray
+) -> tuple[FloatArray, FloatArray, UnexpandedTerms | None]:
+    """Return the wind's nonlinear polynomials with their forms, or the terms of an unexpanded load.
+
+    gain: (starts, m, m), U^2 M^-1.
+    """
+    load, m = model.load, model.mass.shape[-1]
+    if model.unexpanded is None:
+        return gain[:, None] @ load.table[member][..., load.forms.shape[-2] :], load.forms[member], None
+    slope = force_gradient(model, np.zeros((model.mass.shape[0], 1, 2 * m)))[member, 0]
+    linear = gain @ slope / np.repeat([np.ones(member.size), wind_speed], m, axis=0).T[:, None]
+    gain, linear = (np.moveaxis(part, 0, -1).copy() for part in (gain, linear))
+    unexpanded = UnexpandedTerms(gain, linear, wind_speed, member, model.unexpanded)
+    return np.zeros((member.size, 0, m, 2)), np.zeros((member.size, 0, 1, 2 * m)), unexpanded
 
 
 def _restoring_coefficients(model: ReducedModel, inverse: FloatArray, member: IntArray) -> FloatArray:
@@ -141,6 +190,8 @@ def _nonlinear_acceleration(equations: LawsonEquations, state: FloatArray) -> Fl
     """Return the quadratic and cubic part of q'' at states (2 m, starts): (m, starts)."""
     terms = _higher_monomials(np.einsum("plks,ks->lps", equations.forms, state))
     by_wind = np.einsum("pots,tps->os", equations.nonlinear, terms)
+    if equations.unexpanded is not None:
+        by_wind = by_wind + equations.unexpanded.acceleration(state)
     m, count, _ = equations.restoring.shape
     if not count:
         return np.asarray(by_wind)
@@ -214,7 +265,7 @@ def _block(equations: LawsonEquations, state: FloatArray, steps: int) -> tuple[F
     count = BLOCK_PERIODS * steps
     window = 2.0 / count * np.sin(np.pi * np.arange(count) / count) ** 2
     if compiled.AVAILABLE:
-        state, square, largest = compiled.integrated_block(equations.parts, state, window)
+        state, square, largest = compiled.integrated_block(equations.parts, equations.unexpanded, state, window)
         return state, np.sqrt(square), largest
     square, largest = np.zeros_like(state), np.zeros(state.shape[1])
     with np.errstate(over="ignore", invalid="ignore"):

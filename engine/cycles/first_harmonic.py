@@ -13,9 +13,8 @@ import numpy as np
 
 from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
 from engine.kernels import compiled
-from engine.models.aerodynamic_load import force
 from engine.models.critical_wind_speeds import at_wind, state_matrices
-from engine.models.reduced_model import ReducedModel, diagonals, take
+from engine.models.reduced_model import ReducedModel, diagonals, force, take
 from engine.models.stretching import restoring_force
 
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
@@ -288,8 +287,6 @@ def _work(
     velocity = (1j * frequency[:, None, None] * shape[:, None] * phase).real
     drag = (velocity @ model.damping * velocity).sum(axis=-1).mean(axis=-1)
     state = np.concatenate([q, velocity / wind_speed[:, None, None]], axis=-1)
-    work = [
-        wind_speed**2 * (force(model.load, r * state) * r * velocity).sum(axis=-1).mean(axis=-1) for r in (1.0, 2.0)
-    ]
+    work = [wind_speed**2 * (force(model, r * state) * r * velocity).sum(axis=-1).mean(axis=-1) for r in (1.0, 2.0)]
     cubic = (work[1] - 4.0 * work[0]) / 12.0
     return work[0] - cubic - drag, cubic

@@ -5,16 +5,18 @@ and stretching are cubic polynomials of (q, q'/U), so 4 H + 2 samples in time yi
 aliasing.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merge_axes
 from engine.kernels import compiled
-from engine.models.aerodynamic_load import force
-from engine.models.reduced_model import ReducedModel, resultant, resultant_gradient, take
+from engine.models.reduced_model import ReducedModel, force, resultant, resultant_gradient, samples_in_period, take
 from engine.numerics.newton import NewtonOptions, Solution, newton
+
+SETTLED = 1e-8  # m, rad: largest change of a coefficient from twice the samples of an unexpanded load
+MOST_SAMPLES = 1024
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,7 @@ class Orbits:
 
 @dataclass(frozen=True, slots=True)
 class Basis:
-    """Fourier basis on 4 H + 2 samples of one period.
+    """Fourier basis on samples of one period.
 
     values, slopes: (samples, 2 H + 1), the basis functions and their derivatives by tau; projection:
     (2 H + 1, samples), from samples to coefficients; derivative: (2 H + 1, 2 H + 1), from coefficients to those of the
@@ -45,9 +47,9 @@ class Basis:
 
 
 @lru_cache
-def basis(harmonics: int) -> Basis:
-    """Return the Fourier basis of H harmonics."""
-    samples = 4 * harmonics + 2
+def basis(harmonics: int, samples: int | None = None) -> Basis:
+    """Return the Fourier basis of H harmonics, on 4 H + 2 samples unless another number is given."""
+    samples = samples or 4 * harmonics + 2
     tau = 2.0 * np.pi * np.arange(samples) / samples
     values = fourier(tau, harmonics)
     derivative = np.zeros((2 * harmonics + 1, 2 * harmonics + 1))
@@ -79,7 +81,7 @@ def states(orbits: Orbits, tau: FloatArray) -> FloatArray:
 
 def residual(model: ReducedModel, orbits: Orbits) -> FloatArray:
     """Return the residual, the harmonics of M q'' + C q' + K q - U^2 f + g: (cycles, m, 2 H + 1) [N or N m]."""
-    fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
+    fourier_basis = _basis_for(model, orbits)
     load = resultant(model, _sampled(orbits, fourier_basis), orbits.wind_speed)
     square = orbits.wind_speed[:, None, None] ** 2
     return _linear_part(model, orbits, fourier_basis) - square * (fourier_basis.projection @ load).swapaxes(-1, -2)
@@ -91,7 +93,7 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     The block of a pair of coordinates is linear in M_ij, C_ij, K_ij and the samples of the load's gradient, so all
     blocks come from one product with a constant matrix.
     """
-    fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
+    fourier_basis = _basis_for(model, orbits)
     cycles, m, size = orbits.coefficients.shape
     gradient = resultant_gradient(model, _sampled(orbits, fourier_basis), orbits.wind_speed)
     omega = orbits.angular_frequency[:, None, None]
@@ -100,7 +102,7 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     linear = np.stack([omega**2 * model.mass, omega * model.damping, model.stiffness], axis=-1)
     parts = [linear, -((speed**2)[..., None]) * samples[:, :, :m], -((speed * omega)[..., None]) * samples[:, :, m:]]
     flat = np.concatenate(parts, axis=-1).reshape(cycles * m * m, -1 if cycles else 0)
-    blocks = (flat @ _block_basis(size // 2)).reshape(cycles, m, m, size, size)
+    blocks = (flat @ _block_basis(size // 2, samples.shape[-1])).reshape(cycles, m, m, size, size)
     by_coefficients = blocks.swapaxes(2, 3).reshape(cycles, m * size, m * size)
     slope = orbits.coefficients @ fourier_basis.derivative.T
     by_omega = 2.0 * omega * model.mass @ (slope @ fourier_basis.derivative.T) + model.damping @ slope
@@ -111,13 +113,13 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
 
 def wind_slopes(model: ReducedModel, orbits: Orbits) -> FloatArray:
     """Differentiate the residual by the wind speed at constant coefficients: (cycles, m, 2 H + 1)."""
-    fourier_basis = basis(orbits.coefficients.shape[-1] // 2)
+    fourier_basis = _basis_for(model, orbits)
     m = model.mass.shape[-1]
     state = _sampled(orbits, fourier_basis)
     speed = orbits.wind_speed[:, None, None]
     by_rate = (resultant_gradient(model, state, orbits.wind_speed)[..., m:] @ state[..., m:, None])[..., 0]
     return np.asarray(
-        (fourier_basis.projection @ (speed * by_rate - 2.0 * speed * force(model.load, state))).swapaxes(-1, -2)
+        (fourier_basis.projection @ (speed * by_rate - 2.0 * speed * force(model, state))).swapaxes(-1, -2)
     )
 
 
@@ -125,6 +127,8 @@ def balance(
     model: ReducedModel, member: IntArray, start: Orbits, options: NewtonOptions | None = None
 ) -> tuple[Orbits, Solution]:
     """Solve the harmonic balance from many starts side by side.
+
+    The samples of an unexpanded load are doubled until no coefficient of a solution moves by more than `SETTLED`.
 
     Parameters
     ----------
@@ -143,6 +147,22 @@ def balance(
     Solution
         Outcome and iterations; a start that falls to the equilibrium does not converge.
     """
+    orbits, solution = _balanced(model, member, start, options)
+    moving = np.flatnonzero(solution.converged)
+    while model.unexpanded is not None and moving.size and model.unexpanded.samples < MOST_SAMPLES:
+        model = replace(model, unexpanded=replace(model.unexpanded, samples=2 * model.unexpanded.samples))
+        finer, again = _balanced(model, member[moving], select(orbits, moving), options)
+        change = np.abs(finer.coefficients - orbits.coefficients[moving]).max(axis=(1, 2))
+        orbits.coefficients[moving], orbits.angular_frequency[moving] = finer.coefficients, finer.angular_frequency
+        solution.outcome[moving] = again.outcome
+        moving = moving[again.converged & (change > SETTLED)]
+    return orbits, solution
+
+
+def _balanced(
+    model: ReducedModel, member: IntArray, start: Orbits, options: NewtonOptions | None
+) -> tuple[Orbits, Solution]:
+    """Solve the harmonic balance with a fixed number of samples."""
     _, m, size = start.coefficients.shape
     weight = np.sqrt(model.modal_masses)[member]
     start_coefficients = merge_axes(start.coefficients, -2)
@@ -166,7 +186,7 @@ def balance(
         solution = compiled.solved_balances(model, member, start.wind_speed, reference, (x, scale, options))
     else:
         solution = newton(system, x, scale, options)
-    return _unpacked(solution.x, m, start.wind_speed), solution
+    return _unpacked(solution.x, m, start.wind_speed.copy()), solution
 
 
 def linearized(model: ReducedModel, member: IntArray, orbits: Orbits) -> tuple[FloatArray, FloatArray]:
@@ -212,9 +232,8 @@ def first_harmonic_angle(model: ReducedModel, member: IntArray, orbits: Orbits) 
 
 def resized(orbits: Orbits, harmonics: int) -> Orbits:
     """Truncate the coefficients to a number of harmonics, or pad them with zeros."""
-    size = 2 * harmonics + 1
-    kept = orbits.coefficients[..., :size]
-    padded = np.zeros((*kept.shape[:-1], size))
+    kept = orbits.coefficients[..., : 2 * harmonics + 1]
+    padded = np.zeros((*kept.shape[:-1], 2 * harmonics + 1))
     padded[..., : kept.shape[-1]] = kept
     return Orbits(padded, orbits.angular_frequency, orbits.wind_speed)
 
@@ -247,15 +266,20 @@ def _peak(values: FloatArray) -> FloatArray:
 
 
 @lru_cache
-def _block_basis(harmonics: int) -> FloatArray:
+def _block_basis(harmonics: int, samples: int) -> FloatArray:
     """Return the flattened Jacobian blocks per unit of w^2 M, w C, K and of each sample of the gradient."""
-    fourier_basis = basis(harmonics)
+    fourier_basis = basis(harmonics, samples)
     linear = np.stack(
         [fourier_basis.derivative @ fourier_basis.derivative, fourier_basis.derivative, np.eye(2 * harmonics + 1)]
     )
     by_value = np.einsum("as,sb->sab", fourier_basis.projection, fourier_basis.values)
     by_slope = np.einsum("as,sb->sab", fourier_basis.projection, fourier_basis.slopes)
     return merge_axes(np.concatenate([linear, by_value, by_slope]), -2)
+
+
+def _basis_for(model: ReducedModel, orbits: Orbits) -> Basis:
+    harmonics = orbits.coefficients.shape[-1] // 2
+    return basis(harmonics, samples_in_period(model, harmonics))
 
 
 def _sampled(orbits: Orbits, fourier_basis: Basis) -> FloatArray:
@@ -265,11 +289,10 @@ def _sampled(orbits: Orbits, fourier_basis: Basis) -> FloatArray:
 
 
 def _linear_part(model: ReducedModel, orbits: Orbits, fourier_basis: Basis) -> FloatArray:
-    omega = orbits.angular_frequency[:, None, None]
-    slope = orbits.coefficients @ fourier_basis.derivative.T
+    omega, q = orbits.angular_frequency[:, None, None], orbits.coefficients
+    slope = q @ fourier_basis.derivative.T
     bend = slope @ fourier_basis.derivative.T
-    result = omega**2 * model.mass @ bend + omega * model.damping @ slope + model.stiffness @ orbits.coefficients
-    return np.asarray(result)
+    return np.asarray(omega**2 * model.mass @ bend + omega * model.damping @ slope + model.stiffness @ q)
 
 
 def _unpacked(x: FloatArray, m: int, wind_speed: FloatArray) -> Orbits:

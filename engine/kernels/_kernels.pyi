@@ -1,7 +1,7 @@
 from engine.arrays import AnyArray, FloatArray
 
 Arrays = tuple[AnyArray, ...]
-Shape = tuple[int, int, int, int, bool]
+Shape = tuple[int, int, int, int, bool, int]
 
 def newton(
     model: Arrays,
@@ -17,4 +17,11 @@ def monodromies(
     model: Arrays, shape: Shape, size: tuple[int, int, int], orbits: Arrays, matrices: FloatArray, /
 ) -> None: ...
 def even_parts(size: tuple[int, int], places: Arrays, results: Arrays, /) -> None: ...
-def flows(size: tuple[int, int, int, int, int, bool], equations: Arrays, results: Arrays, /) -> None: ...
+def flows(
+    size: tuple[int, int, int, int, int, bool],
+    equations: Arrays,
+    results: Arrays,
+    starts: tuple[AnyArray | int, ...] = ...,
+    load: Arrays = ...,
+    /,
+) -> None: ...

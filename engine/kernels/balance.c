@@ -38,7 +38,7 @@ static void fill_waves(System *w)
 int prepare_system(System *w, const Model *model, int harmonics, int besides)
 {
     *w = (System){.m = model->m, .stretches = model->stretches, .harmonics = harmonics, .size = 2 * harmonics + 1};
-    w->samples = 4 * harmonics + 2;
+    w->samples = model->samples > 4 * harmonics + 2 ? model->samples : 4 * harmonics + 2;
     w->groups = (w->samples + LANES - 1) / LANES;
     w->waves_kept = (2 * harmonics + LANES) / LANES * LANES;
     w->orders = harmonics + w->waves_kept;
@@ -76,7 +76,9 @@ void arrange_system(System *w, const Model *model)
 {
     const int m = w->m;
     memset(w->active, 0, 2 * (size_t)m * sizeof *w->active);
-    for (int row = 0; row < model->points * model->local; row++)
+    for (int v = 0; v < 2 * m; v++)
+        w->active[v] = model->samples > 0;
+    for (int row = 0; row < model->points * model->local && !model->samples; row++)
         for (int v = 0; v < 2 * m; v++)
             w->active[v] |= model->forms[(ptrdiff_t)row * 2 * m + v] != 0.0;
     for (int j = 0; j < m; j++)
@@ -140,10 +142,10 @@ WIDE static void sample(System *w, const Model *model, const double *coefficient
 
 /* Transform one row of the load for k up to `last`: cos k tau needs only the sums of the samples at tau and -tau, sin k tau
  * only the differences. */
-WITHIN void fold_and_sum(System *w, int harmonics, int row, int last)
+WITHIN void fold_and_sum(System *w, int harmonics, int half, int row, int last)
 {
     const double *load = (const double *)(w->loads + row * w->groups);
-    const int half = 2 * harmonics + 1, kept = (2 * harmonics + LANES) / LANES * LANES;
+    const int kept = (2 * harmonics + LANES) / LANES * LANES;
     double *sums = w->folded, *differences = w->folded + half + 1;
     double *even = w->spectra + row * 2 * w->orders + harmonics, *odd = even + w->orders;
     sums[0] = load[0], sums[half] = load[half];
@@ -169,10 +171,10 @@ WITHIN void fold_and_sum(System *w, int harmonics, int row, int last)
 
 WIDE static void transform(System *w, int row, int last)
 {
-    if (w->harmonics == 5) /* the default: the compiler unrolls loops of known length */
-        fold_and_sum(w, 5, row, last);
+    if (w->harmonics == 5 && w->samples == 22) /* the default: the compiler unrolls loops of known length */
+        fold_and_sum(w, 5, 11, row, last);
     else
-        fold_and_sum(w, w->harmonics, row, last);
+        fold_and_sum(w, w->harmonics, w->samples / 2, row, last);
 }
 
 /* Transform every row of the load that can be nonzero. */

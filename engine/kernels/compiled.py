@@ -4,11 +4,30 @@ AVAILABLE is False where the kernels were not built. The callers then run their 
 kernels are tested.
 """
 
+from typing import Protocol
+
 import numpy as np
 
 from engine.arrays import AnyArray, FloatArray, IntArray
 from engine.models.reduced_model import ReducedModel
+from engine.models.unexpanded_load import UnexpandedLoad
 from engine.numerics.newton import NewtonOptions, Solution, solution_from_steps
+
+
+class UnexpandedStarts(Protocol):
+    """The terms of an unexpanded load in the equations of starts, as `engine.checks.settled_motion` sets them up."""
+
+    @property
+    def gain(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def linear(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def wind_speed(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def member(self) -> IntArray: ...  # noqa: D102
+    @property
+    def load(self) -> UnexpandedLoad: ...  # noqa: D102
+
 
 try:
     from engine.kernels._kernels import even_parts, flows, linearization, monodromies, newton
@@ -176,14 +195,16 @@ def even_part(
 
 
 def integrated_block(
-    equations: tuple[FloatArray, ...], state: FloatArray, window: FloatArray
+    equations: tuple[FloatArray, ...], unexpanded: UnexpandedStarts | None, state: FloatArray, window: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Integrate the equations of motion over the window's steps, for `engine.checks.settled_motion`.
 
     Parameters
     ----------
     equations : tuple of arrays
-        The fields of `engine.checks.settled_motion.LawsonEquations`.
+        The arrays of `engine.checks.settled_motion.LawsonEquations`.
+    unexpanded : UnexpandedStarts, optional
+        Its terms of an unexpanded load.
     state : (2 m, starts)
         q and q'.
     window : (steps,)
@@ -199,20 +220,60 @@ def integrated_block(
     end = np.array(state, order="C")
     square, largest = np.empty(end.shape), np.empty(starts)
     size = (starts, window.size, m, points, forms.shape[1], restoring.size > 0)
-    flows(size, _contiguous(*equations, window), (end, square, largest))
+    results = (end, square, largest)
+    if unexpanded is None:
+        flows(size, _contiguous(*equations, window), results)
+    else:
+        load = unexpanded.load
+        extra = _contiguous(unexpanded.gain, unexpanded.linear, unexpanded.wind_speed, unexpanded.member)
+        shape = load.fields.shape[-3], load.present.shape[-1]
+        none = (load.fields,) * 5  # of the model's structure only the number of members is read
+        flows(size, _contiguous(*equations, window), results, (*extra, *shape), (*none, *_unexpanded_parts(load)))
     return end, square, np.sqrt(largest)
 
 
-def _shape(model: ReducedModel) -> tuple[int, int, int, int, bool]:
-    """Return members, coordinates, points, local variables and whether the model stretches."""
-    members, points, local, twice = model.load.forms.shape
-    return members, twice // 2, points, local, model.stretching is not None
+def _shape(model: ReducedModel) -> tuple[int, int, int, int, bool, int]:
+    """Return members, coordinates, points, local variables, whether the model stretches, and samples in a period.
+
+    An unexpanded load has sub-conductors in place of local variables; otherwise the number of samples is 0.
+    """
+    load, m = model.unexpanded, model.mass.shape[-1]
+    members, stretches = model.mass.shape[0], model.stretching is not None
+    if load is not None:
+        return members, m, load.fields.shape[-3], load.present.shape[-1], stretches, load.samples
+    return members, m, *model.load.forms.shape[1:3], stretches, 0
 
 
 def _parts(model: ReducedModel) -> tuple[AnyArray, ...]:
     load, stretching, none = model.load, model.stretching, np.empty(0)
     own = (none, none) if stretching is None else (stretching.table, stretching.slopes)
-    return _contiguous(model.mass, model.damping, model.stiffness, load.forms, load.table, load.slopes, *own)
+    structure = (model.mass, model.damping, model.stiffness, *own)
+    if model.unexpanded is not None:
+        return (*_contiguous(*structure), *_unexpanded_parts(model.unexpanded))
+    return _contiguous(*structure, load.forms, load.table, load.slopes)
+
+
+def _unexpanded_parts(load: UnexpandedLoad) -> tuple[AnyArray, ...]:
+    curves = load.curves
+    first, begins = curves.pieces
+    return _contiguous(
+        load.which,
+        first,
+        curves.periodic.astype(np.intp),
+        curves.turning.astype(np.intp),
+        load.fields,
+        load.strength,
+        load.factor,
+        load.diameter,
+        load.positions,
+        load.present,
+        load.rest_angle,
+        load.at_rest,
+        curves.origin,
+        begins,
+        curves.knots,
+        curves.powers,
+    )
 
 
 def _contiguous(*arrays: AnyArray) -> tuple[AnyArray, ...]:

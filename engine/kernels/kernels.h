@@ -30,14 +30,35 @@ static inline int monomials_of(int variables)
     return lower_of(variables) - 1 + variables * (variables + 1) * (variables + 2) / 6;
 }
 
+/* The load of the relative wind as it stands, laid out as engine.models.unexpanded_load.UnexpandedLoad: fields (points, 3,
+ * m), strength, factor, rest_angle, which (points), diameter, positions (points, subconductors, 2), present (subconductors)
+ * and at_rest (m) of a member; curves of all members: first (curves + 1), the pieces of each, periodic, turning, origin
+ * (curves), begins, knots (pieces) and powers (pieces, 3, 4). */
+typedef struct {
+    ptrdiff_t points, subconductors;
+    const double *fields, *strength, *factor, *diameter, *positions, *present, *rest_angle, *at_rest;
+    const double *origin, *begins, *knots, *powers;
+    const ptrdiff_t *which, *first, *periodic, *turning;
+} Unexpanded;
+
 /* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U) - g(q), laid out as engine.models.reduced_model.ReducedModel:
  * mass, damping, stiffness (m, m); f: forms (points, local, 2 m), table (points, m, monomials), slopes (points, m, local,
  * lower monomials); g, if it `stretches`: restoring (m, monomials of m variables) and restoring_slopes (m, m, lower
- * monomials). */
+ * monomials). If there are `samples`, f is unexpanded, and a period of the harmonic balance has that many samples. */
 typedef struct {
-    int m, points, local, stretches;
+    int m, points, local, stretches, samples;
     const double *mass, *damping, *stiffness, *forms, *table, *slopes, *restoring, *restoring_slopes;
+    Unexpanded unexpanded;
 } Model;
+
+/* Return one member of a stack of unexpanded loads with m coordinates. */
+Unexpanded unexpanded_of(const Unexpanded *stack, int m, ptrdiff_t member);
+
+/* Evaluate an unexpanded load (m) and, if it is wanted, its gradient (m, 2 m) at one state (2 m). */
+void unexpanded_force(const Unexpanded *load, int m, const double *state, double *force, double *gradient);
+
+/* Evaluate an unexpanded load (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m). */
+void unexpanded_at(const Unexpanded *load, int m, const Lanes *state, Lanes *force, Lanes *gradient);
 
 /* Return one member of a stack of models. */
 Model model_of(const Model *stack, ptrdiff_t member);
@@ -112,11 +133,15 @@ int integrate_monodromies(const Model *stack, const Monodromies *wanted);
  * last axis: half_step (2 m, 2 m), nonlinear (points, m, monomials of degree 2 and 3), forms (points, local, 2 m),
  * restoring (m, monomials of degree 2 and 3 of q) if it `stretches`, step and angle (2 m). One step is taken for every
  * entry of window (steps). state (2 m) is advanced in place; square (2 m) receives the sum of the squares after each step,
- * weighted by the window, and largest the largest square of the angle of attack. */
+ * weighted by the window, and largest the largest square of the angle of attack. An unexpanded load has no points here: if
+ * there is `gain` (m, m), its part of q'' is gain f(q, q'/U) - linear (q, q'), with linear (m, 2 m); member, wind_speed
+ * (starts). */
 typedef struct {
     ptrdiff_t starts, steps;
     int m, points, local, stretches;
-    const double *half_step, *nonlinear, *forms, *restoring, *step, *angle, *window;
+    const double *half_step, *nonlinear, *forms, *restoring, *step, *angle, *gain, *linear, *wind_speed, *window;
+    const ptrdiff_t *member;
+    Unexpanded unexpanded;
     double *state, *square, *largest;
 } Flows;
 

@@ -12,9 +12,13 @@ Model model_of(const Model *stack, ptrdiff_t member)
     one.mass += member * m * m;
     one.damping += member * m * m;
     one.stiffness += member * m * m;
-    one.forms += member * points * local * 2 * m;
-    one.table += member * table;
-    one.slopes += member * slopes;
+    if (one.samples) {
+        one.unexpanded = unexpanded_of(&stack->unexpanded, one.m, member);
+    } else {
+        one.forms += member * points * local * 2 * m;
+        one.table += member * table;
+        one.slopes += member * slopes;
+    }
     if (one.stretches) {
         one.restoring += member * m * monomials_of(one.m);
         one.restoring_slopes += member * m * m * lower_of(one.m);
@@ -80,7 +84,9 @@ WIDE void load_at(const Model *model, double speed, const Lanes *state, Lanes *f
     const int m = model->m;
     memset(force, 0, (size_t)m * sizeof *force);
     memset(gradient, 0, (size_t)m * 2 * (size_t)m * sizeof *gradient);
-    if (m == 3 && model->local == 3) /* the hybrid model: the compiler unrolls loops of known length */
+    if (model->samples)
+        unexpanded_at(&model->unexpanded, m, state, force, gradient);
+    else if (m == 3 && model->local == 3) /* the hybrid model: the compiler unrolls loops of known length */
         add_wind(model, 3, 3, state, force, gradient, scratch);
     else if (m == 3 && model->local == 4)
         add_wind(model, 3, 4, state, force, gradient, scratch);

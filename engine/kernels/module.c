@@ -7,7 +7,7 @@
 
 /* Buffers of one call, released together. */
 typedef struct {
-    Py_buffer held[28];
+    Py_buffer held[40];
     int count;
 } Buffers;
 
@@ -35,23 +35,6 @@ static void *items(Buffers *buffers, PyObject *array, Py_ssize_t expected, const
 #define RESULT(array, expected) items(&buffers, array, expected, "d", PyBUF_WRITABLE)
 #define INDICES(array, expected) items(&buffers, array, expected, "lq", 0)
 
-/* Read a stack of models from the tuple (mass, damping, stiffness, forms, table, slopes, restoring, restoring_slopes), the
- * last two empty where stretching is neglected. */
-static int read_model(Buffers *held, PyObject *parts, const int *shape, Model *model, Py_ssize_t members)
-{
-    const Py_ssize_t m = shape[0], points = shape[1], local = shape[2], stretches = shape[3];
-    const Py_ssize_t sizes[] = {m * m, m * m, m * m, points * local * 2 * m, points * m * monomials_of(shape[2]),
-                                points * m * local * lower_of(shape[2]), stretches * m * monomials_of(shape[0]),
-                                stretches * m * m * lower_of(shape[0])};
-    const double *read[8];
-    for (int i = 0; i < 8; i++)
-        if (!(read[i] = items(held, PyTuple_GET_ITEM(parts, i), members * sizes[i], "d", 0)))
-            return 0;
-    *model = (Model){shape[0], shape[1], shape[2], shape[3], read[0], read[1],
-                     read[2], read[3], read[4], read[5], read[6], read[7]};
-    return 1;
-}
-
 /* Return whether every index is below the limit; set an exception otherwise. */
 static int within(const Py_ssize_t *index, Py_ssize_t count, Py_ssize_t limit)
 {
@@ -60,6 +43,65 @@ static int within(const Py_ssize_t *index, Py_ssize_t count, Py_ssize_t limit)
             PyErr_Format(PyExc_IndexError, "model %zd of a stack of %zd", index[i], limit);
             return 0;
         }
+    return 1;
+}
+
+/* Read arrays of reals from a tuple, beginning with one of its items. */
+static int read_reals(Buffers *held, PyObject *parts, Py_ssize_t first, int count, const Py_ssize_t *sizes,
+                      const double **read)
+{
+    for (int i = 0; i < count; i++)
+        if (!(read[i] = items(held, PyTuple_GET_ITEM(parts, first + i), sizes[i], "d", 0)))
+            return 0;
+    return 1;
+}
+
+/* Read an unexpanded load from the items of a tuple behind the first five: indices which, first, periodic and turning, then
+ * the reals in the order of `sizes`. */
+static int read_unexpanded(Buffers *held, PyObject *parts, const int *shape, Unexpanded *load, Py_ssize_t members)
+{
+    const Py_ssize_t m = shape[0], points = shape[1], n = shape[2];
+    const Py_ssize_t curves = PyObject_Length(PyTuple_GET_ITEM(parts, 6)) - 1;
+    const Py_ssize_t *which, *first, *periodic, *turning;
+    if (!(which = items(held, PyTuple_GET_ITEM(parts, 5), members * points, "lq", 0))
+        || !within(which, members * points, curves)
+        || !(first = items(held, PyTuple_GET_ITEM(parts, 6), curves + 1, "lq", 0))
+        || !(periodic = items(held, PyTuple_GET_ITEM(parts, 7), curves, "lq", 0))
+        || !(turning = items(held, PyTuple_GET_ITEM(parts, 8), curves, "lq", 0)))
+        return 0;
+    const Py_ssize_t pieces = first[curves];
+    const Py_ssize_t sizes[] = {members * points * 3 * m, members * points, members * points, members,
+                                members * points * n * 2, members * n, members * points, members * m,
+                                curves, pieces, pieces, 12 * pieces};
+    const double *read[12];
+    if (!read_reals(held, parts, 9, 12, sizes, read))
+        return 0;
+    *load = (Unexpanded){points,  n,       read[0], read[1], read[2],  read[3],  read[4], read[5],  read[6],
+                         read[7], read[8], read[9], read[10], read[11], which,    first,   periodic, turning};
+    return 1;
+}
+
+/* Read a stack of models from a tuple: mass, damping, stiffness, restoring, restoring_slopes, the last two empty where
+ * stretching is neglected, and the load: forms, table, slopes, or an unexpanded one if the shape has samples. */
+static int read_model(Buffers *held, PyObject *parts, const int *shape, Model *model, Py_ssize_t members)
+{
+    const Py_ssize_t m = shape[0], points = shape[1], local = shape[2], stretches = shape[3];
+    const Py_ssize_t sizes[] = {members * m * m, members * m * m, members * m * m,
+                                members * stretches * m * monomials_of(shape[0]),
+                                members * stretches * m * m * lower_of(shape[0])};
+    const double *own[5], *load[3] = {NULL, NULL, NULL};
+    if (!read_reals(held, parts, 0, 5, sizes, own))
+        return 0;
+    *model = (Model){.m = shape[0], .points = shape[1], .local = shape[2], .stretches = shape[3], .samples = shape[4],
+                     .mass = own[0], .damping = own[1], .stiffness = own[2], .restoring = own[3],
+                     .restoring_slopes = own[4]};
+    if (model->samples)
+        return read_unexpanded(held, parts, shape, &model->unexpanded, members);
+    const Py_ssize_t of_load[] = {members * points * local * 2 * m, members * points * m * monomials_of(shape[2]),
+                                  members * points * m * local * lower_of(shape[2])};
+    if (!read_reals(held, parts, 5, 3, of_load, load))
+        return 0;
+    model->forms = load[0], model->table = load[1], model->slopes = load[2];
     return 1;
 }
 
@@ -78,11 +120,11 @@ static PyObject *newton(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
     PyObject *parts, *member, *speed, *reference, *anchor, *scale, *row, *target, *x, *step, *iterations, *tangent;
-    int shape[4], harmonics, follows, done = 1;
+    int shape[5], harmonics, follows, done = 1;
     Py_ssize_t members, cycles;
     Options options;
-    if (!PyArg_ParseTuple(arguments, "O!(niiip)(nip)(OOOOOOO)(ddi)(OOOO)", &PyTuple_Type, &parts, &members, shape,
-                          shape + 1, shape + 2, shape + 3, &cycles, &harmonics, &follows, &member, &speed, &reference, &anchor,
+    if (!PyArg_ParseTuple(arguments, "O!(niiipi)(nip)(OOOOOOO)(ddi)(OOOO)", &PyTuple_Type, &parts, &members, shape,
+                          shape + 1, shape + 2, shape + 3, shape + 4, &cycles, &harmonics, &follows, &member, &speed, &reference, &anchor,
                           &scale, &row, &target, &options.tolerance, &options.largest_step, &options.iterations, &x,
                           &step, &iterations, &tangent))
         return NULL;
@@ -108,10 +150,10 @@ static PyObject *linearization(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
     PyObject *parts, *member, *coefficients, *frequency, *speed, *residuals, *slopes;
-    int shape[4], harmonics;
+    int shape[5], harmonics;
     Py_ssize_t members, cycles;
-    if (!PyArg_ParseTuple(arguments, "O!(niiip)(ni)(OOOO)(OO)", &PyTuple_Type, &parts, &members, shape, shape + 1,
-                          shape + 2, shape + 3, &cycles, &harmonics, &member, &coefficients, &frequency, &speed, &residuals, &slopes))
+    if (!PyArg_ParseTuple(arguments, "O!(niiipi)(ni)(OOOO)(OO)", &PyTuple_Type, &parts, &members, shape, shape + 1,
+                          shape + 2, shape + 3, shape + 4, &cycles, &harmonics, &member, &coefficients, &frequency, &speed, &residuals, &slopes))
         return NULL;
     const Py_ssize_t n = shape[0] * (2 * (Py_ssize_t)harmonics + 1);
     Model model;
@@ -144,10 +186,10 @@ static PyObject *monodromies(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
     PyObject *parts, *member, *inverse, *coefficients, *frequency, *speed, *values, *slopes, *steps, *first, *matrices;
-    int shape[4], harmonics;
+    int shape[5], harmonics;
     Py_ssize_t members, cycles, rows;
-    if (!PyArg_ParseTuple(arguments, "O!(niiip)(nni)(OOOOOOOOO)O", &PyTuple_Type, &parts, &members, shape, shape + 1,
-                          shape + 2, shape + 3, &cycles, &rows, &harmonics, &member, &inverse, &coefficients, &frequency, &speed,
+    if (!PyArg_ParseTuple(arguments, "O!(niiipi)(nni)(OOOOOOOOO)O", &PyTuple_Type, &parts, &members, shape, shape + 1,
+                          shape + 2, shape + 3, shape + 4, &cycles, &rows, &harmonics, &member, &inverse, &coefficients, &frequency, &speed,
                           &values, &slopes, &steps, &first, &matrices))
         return NULL;
     const Py_ssize_t m = shape[0], size = 2 * (Py_ssize_t)harmonics + 1;
@@ -185,15 +227,34 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, 1);
 }
 
+/* Read the unexpanded load of starts: gain, linear, wind_speed and member, then the load as in read_unexpanded. */
+static int read_unexpanded_starts(Buffers *held, PyObject *extra, PyObject *parts, Flows *flows)
+{
+    const Py_ssize_t starts = flows->starts, m = flows->m;
+    const Py_ssize_t members = PyObject_Length(PyTuple_GET_ITEM(parts, 0));
+    const int shape[] = {flows->m, (int)PyLong_AsLong(PyTuple_GET_ITEM(extra, 4)),
+                         (int)PyLong_AsLong(PyTuple_GET_ITEM(extra, 5))};
+    const Py_ssize_t sizes[] = {m * m * starts, 2 * m * m * starts, starts};
+    const double *read[3];
+    if (!read_reals(held, extra, 0, 3, sizes, read)
+        || !(flows->member = items(held, PyTuple_GET_ITEM(extra, 3), starts, "lq", 0))
+        || !within(flows->member, starts, members))
+        return 0;
+    flows->gain = read[0], flows->linear = read[1], flows->wind_speed = read[2];
+    return read_unexpanded(held, parts, shape, &flows->unexpanded, members);
+}
+
 static PyObject *flows(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
     PyObject *half_step, *nonlinear, *forms, *restoring, *step, *angle, *window, *state, *square, *largest;
-    Flows wanted;
+    PyObject *extra = NULL, *parts = NULL;
+    Flows wanted = {.gain = NULL};
     int done = 1;
-    if (!PyArg_ParseTuple(arguments, "(nniiip)(OOOOOOO)(OOO)", &wanted.starts, &wanted.steps, &wanted.m, &wanted.points,
-                          &wanted.local, &wanted.stretches, &half_step, &nonlinear, &forms, &restoring, &step, &angle,
-                          &window, &state, &square, &largest))
+    if (!PyArg_ParseTuple(arguments, "(nniiip)(OOOOOOO)(OOO)|O!O!", &wanted.starts, &wanted.steps, &wanted.m,
+                          &wanted.points, &wanted.local, &wanted.stretches, &half_step, &nonlinear, &forms, &restoring,
+                          &step, &angle, &window, &state, &square, &largest, &PyTuple_Type, &extra, &PyTuple_Type,
+                          &parts))
         return NULL;
     const Py_ssize_t starts = wanted.starts, m = wanted.m, points = wanted.points, local = wanted.local;
     const Py_ssize_t terms = monomials_of(wanted.local) - local;
@@ -204,7 +265,8 @@ static PyObject *flows(PyObject *Py_UNUSED(self), PyObject *arguments)
         && (wanted.restoring = REALS(restoring, m * own * starts)) && (wanted.step = REALS(step, starts))
         && (wanted.angle = REALS(angle, 2 * m * starts)) && (wanted.window = REALS(window, wanted.steps))
         && (wanted.state = RESULT(state, 2 * m * starts)) && (wanted.square = RESULT(square, 2 * m * starts))
-        && (wanted.largest = RESULT(largest, starts))) {
+        && (wanted.largest = RESULT(largest, starts))
+        && (!extra || !parts || read_unexpanded_starts(&buffers, extra, parts, &wanted))) {
         Py_BEGIN_ALLOW_THREADS
         done = integrate_flows(&wanted);
         Py_END_ALLOW_THREADS

@@ -8,6 +8,8 @@
 /* The equations of LANES starts, and the memory that a step needs. */
 typedef struct {
     int m, points, local, terms, stretches;
+    Unexpanded unexpanded[LANES];
+    Lanes *gain, *linear, *wind_speed;
     Lanes *half_step, *nonlinear, *forms, *restoring, *angle, *step, *state, *square, *largest;
     Lanes *x, *monomials, *shifted, *here, *middle, *k[4];
 } Group;
@@ -29,6 +31,26 @@ static void scatter(const Lanes *from, ptrdiff_t rows, ptrdiff_t starts, ptrdiff
     for (ptrdiff_t row = 0; row < rows; row++)
         for (ptrdiff_t lane = 0; lane < LANES && first + lane < starts; lane++)
             to[row * starts + first + lane] = from[row][lane];
+}
+
+/* Add the part of an unexpanded load, less its linear part, to q'' (m) at a state (2 m). */
+static void add_unexpanded(const Group *group, const Lanes *state, Lanes *result)
+{
+    const int m = group->m;
+    double x[2 * m], force[m];
+    for (int lane = 0; lane < LANES; lane++) {
+        for (int i = 0; i < m; i++) {
+            x[i] = state[i][lane];
+            x[m + i] = state[m + i][lane] / (*group->wind_speed)[lane];
+        }
+        unexpanded_force(group->unexpanded + lane, m, x, force, NULL);
+        for (int i = 0; i < m; i++)
+            for (int j = 0; j < m; j++)
+                result[i][lane] += group->gain[i * m + j][lane] * force[j];
+    }
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < 2 * m; j++)
+            result[i] -= group->linear[i * 2 * m + j] * state[j];
 }
 
 /* Evaluate the quadratic and cubic part of q'' (m) at a state (2 m). */
@@ -53,6 +75,8 @@ WITHIN void nonlinear_acceleration(const Group *group, const Lanes *state, Lanes
             result[i] = sum;
         }
     }
+    if (group->gain)
+        add_unexpanded(group, state, result);
     if (!group->stretches)
         return;
     powers(m, state, group->monomials);
@@ -131,19 +155,21 @@ static size_t lay_out(Group *group, Lanes *memory)
 {
     const size_t m = (size_t)group->m, points = (size_t)group->points, local = (size_t)group->local;
     const size_t terms = (size_t)group->terms, own = group->stretches ? (size_t)terms_of(group->m) : 0;
+    const size_t unexpanded = group->gain ? 1 : 0;
     const size_t monomials = 1 + (local + terms > m + own ? local + terms : m + own);
     struct {
         Lanes **part;
         size_t size;
     } parts[] = {{&group->half_step, 4 * m * m}, {&group->nonlinear, points * m * terms},
                  {&group->forms, points * local * 2 * m}, {&group->restoring, m * own}, {&group->angle, 2 * m},
-                 {&group->step, 1},
+                 {&group->step, 1}, {&group->gain, unexpanded * m * m}, {&group->linear, unexpanded * 2 * m * m},
+                 {&group->wind_speed, unexpanded},
                  {&group->state, 2 * m}, {&group->square, 2 * m}, {&group->largest, 1}, {&group->x, local},
                  {&group->monomials, monomials}, {&group->shifted, 2 * m}, {&group->here, 2 * m},
                  {&group->middle, 2 * m}, {group->k, m}, {group->k + 1, m}, {group->k + 2, m}, {group->k + 3, m}};
     size_t used = 0;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-        if (memory)
+        if (memory && parts[i].size)
             *parts[i].part = memory + used;
         used += parts[i].size;
     }
@@ -155,6 +181,9 @@ int integrate_flows(const Flows *flows)
     const ptrdiff_t m = flows->m, points = flows->points, local = flows->local, starts = flows->starts;
     Group group = {.m = flows->m, .points = flows->points, .local = flows->local, .terms = terms_of(flows->local),
                    .stretches = flows->stretches};
+    Lanes unused;
+    if (flows->gain)
+        group.gain = &unused; /* until it is laid out */
     Lanes *memory = malloc(lay_out(&group, NULL) * sizeof *memory);
     if (!memory)
         return 0;
@@ -166,6 +195,14 @@ int integrate_flows(const Flows *flows)
         gather(flows->angle, 2 * m, starts, first, group.angle);
         gather(flows->restoring, group.stretches ? m * terms_of(group.m) : 0, starts, first, group.restoring);
         gather(flows->step, 1, starts, first, group.step);
+        for (int lane = 0; lane < LANES && flows->gain; lane++)
+            group.unexpanded[lane] = unexpanded_of(
+                &flows->unexpanded, flows->m, flows->member[first + lane < starts ? first + lane : starts - 1]);
+        if (flows->gain) {
+            gather(flows->gain, m * m, starts, first, group.gain);
+            gather(flows->linear, 2 * m * m, starts, first, group.linear);
+            gather(flows->wind_speed, 1, starts, first, group.wind_speed);
+        }
         gather(flows->state, 2 * m, starts, first, group.state);
         integrate_block(&group, flows->steps, flows->window);
         scatter(group.state, 2 * m, starts, first, flows->state);

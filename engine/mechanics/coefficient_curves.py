@@ -45,6 +45,13 @@ class CoefficientCurves:
     periodic: BoolArray
     turning: BoolArray
 
+    @property
+    def pieces(self) -> tuple[IntArray, FloatArray]:
+        """The first piece of each curve and, last, the number of pieces, (curves + 1,); where each begins [rad]."""
+        count = self.origin.size
+        first = np.searchsorted(self.keys, np.arange(count + 1) * SPACING - 3.0 * MARGIN)
+        return first, self.keys - np.repeat(np.arange(count), np.diff(first)) * SPACING
+
 
 @dataclass(frozen=True, slots=True)
 class LocalCurves:
@@ -114,10 +121,22 @@ def outside(curves: CoefficientCurves, which: IntArray, angle: FloatArray) -> Bo
     return np.asarray((angle < curves.lowest[which]) | (angle > curves.highest[which]))
 
 
+def reach(local: LocalCurves, here: BoolArray) -> FloatArray:
+    """Return the angle of attack up to which the curves of each line hold at rest, either way: (lines,) [rad].
+
+    here: (lines, elements, points), the points that are no padding. It is pi for tables of the circle and infinite for
+    cubics without a range.
+    """
+    curves, which = local.curves, local.which
+    own = np.minimum(curves.highest[which] - local.angle, local.angle - curves.lowest[which])
+    own = np.where(curves.periodic[which], np.pi, np.maximum(own, 0.0))
+    return np.asarray(np.where(here, own, np.inf).min(axis=(1, 2)))
+
+
 def largest_moment_slopes(curves: CoefficientCurves) -> FloatArray:
     """Return the largest slope of C_M over all angles, curve by curve: (curves,), infinite for cubics [1/rad]."""
     count = curves.origin.size
-    owner = np.searchsorted(np.arange(count) * SPACING - 3.0 * MARGIN, curves.keys, side="right") - 1
+    owner = np.repeat(np.arange(count), np.diff(curves.pieces[0]))
     ends = np.append(curves.keys[1:], count * SPACING)
     widths = np.minimum(ends, owner * SPACING + TURN) - curves.keys
     _, first, second, third = curves.powers[:, MOMENT].T

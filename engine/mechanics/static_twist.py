@@ -97,11 +97,17 @@ def twisted_state(lines: Sequence[Line], profile: StaticProfile, section_points:
 
 
 def twisted_matrices(
-    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, state: TwistedState
+    lines: Sequence[Line],
+    profile: StaticProfile,
+    section_points: Sections,
+    state: TwistedState,
+    *,
+    fit: bool = True,
 ) -> tuple[Sections, Matrices]:
     """Linearize about the twisted state; return the twisted sections and the matrices there.
 
-    A line whose state was not found keeps its untwisted sections and matrices.
+    A line whose state was not found keeps its untwisted sections and matrices. fit: whether tables of coefficients are
+    fitted at the local angle.
 
     Raises
     ------
@@ -111,7 +117,8 @@ def twisted_matrices(
     displacement = np.nan_to_num(state.displacement)
     angle = displacement[:, THETA::FIELDS]
     interpolation, weight = mass_points(lines, profile, section_points)
-    here = turned(lines, profile, section_points, at_mass_points(interpolation, angle))
+    twist = at_mass_points(interpolation, angle)
+    here = turned(lines, profile, section_points, twist) if fit else turned_moments(section_points, twist)
     _, stiffness = energy_derivatives(lines, profile, section_points, displacement)
     mass = mass_matrix(lines, profile, here, angle)
     return here, Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)

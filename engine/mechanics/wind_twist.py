@@ -41,7 +41,9 @@ class WindTwist:
     further_angle: FloatArray
 
 
-def wind_twist(elements: TorsionalElements, wind_speeds: FloatArray, asked: BoolArray) -> WindTwist:
+def wind_twist(
+    elements: TorsionalElements, wind_speeds: FloatArray, asked: BoolArray, *, further: bool = True
+) -> WindTwist:
     """Follow the twist from still air through rising wind speeds, and search for further equilibria.
 
     Where the state ends in a fold, the line turns over to the equilibrium downhill from there, which is followed on.
@@ -53,6 +55,8 @@ def wind_twist(elements: TorsionalElements, wind_speeds: FloatArray, asked: Bool
         In rising order [m/s].
     asked : (lines,)
         Which lines are followed.
+    further : bool
+        Whether further equilibria are searched.
 
     Returns
     -------
@@ -74,15 +78,16 @@ def wind_twist(elements: TorsionalElements, wind_speeds: FloatArray, asked: Bool
         speed = wind
         angle[known, i], outcome[known, i] = state[known], Outcome.CONVERGED
     line, fold_speed = np.array(folds, dtype=np.float64).reshape(-1, 2).T
-    further = [_further_equilibria(elements, wind, angle[:, i]) for i, wind in enumerate(wind_speeds.tolist())]
+    winds = enumerate(wind_speeds.tolist()) if further else ()
+    others = [_further_equilibria(elements, wind, angle[:, i]) for i, wind in winds]
     return WindTwist(
         angle=angle,
         outcome=outcome,
         fold_line=line.astype(np.intp),
         fold_wind_speed=fold_speed,
-        further_line=np.concatenate([np.zeros(0, dtype=np.intp), *(owner for owner, _ in further)]),
-        further_wind=np.repeat(np.arange(wind_speeds.size), [owner.size for owner, _ in further]),
-        further_angle=np.concatenate([np.zeros((0, nodes)), *(state for _, state in further)]),
+        further_line=np.concatenate([np.zeros(0, dtype=np.intp), *(owner for owner, _ in others)]),
+        further_wind=np.repeat(np.arange(len(others)), [owner.size for owner, _ in others]),
+        further_angle=np.concatenate([np.zeros((0, nodes)), *(state for _, state in others)]),
     )
 
 

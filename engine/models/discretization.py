@@ -11,6 +11,7 @@ import numpy as np
 
 from engine.arrays import FloatArray, IntArray
 from engine.mechanics.along_span import wind_factor
+from engine.mechanics.coefficient_curves import cubics_about, local_curves, reach
 from engine.mechanics.cross_sections import Sections, sections
 from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, matrices, shape_functions
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
@@ -19,6 +20,8 @@ from engine.mechanics.torsional_elements import torsional_elements
 from engine.mechanics.wind_twist import WindTwist, wind_twist
 from engine.models.relative_wind import NodalMotion, local_motion_forms, turned_arms
 from engine.spec import AerodynamicModel, Line, StaticTwist
+
+FIT_RANGE = np.radians(20.0)  # of the cubics that stand for curves in starts
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,13 +111,35 @@ def _in_plane(profile: StaticProfile, system: Matrices) -> Matrices:
     return replace(system, stiffness=turned(system.stiffness), mass=turned(system.mass))
 
 
-def with_wind_twist(discretization: Discretization, wind_speeds: FloatArray) -> Discretization:
-    """Add the static twist at rising wind speeds (winds,) [m/s] of lines whose tables are curves. Theory section 14."""
+def in_wind(discretization: Discretization, wind: int) -> Discretization:
+    """Return the discretization about the static state at a wind speed, by its index. Theory section 14.
+
+    Coefficients fixed to the section are cubics fitted to the curves there.
+    """
+    lines, profile, found = discretization.lines, discretization.profile, discretization.wind_twist
+    assert found is not None, "the twist in the wind was followed before"
+    displacement = np.zeros(discretization.matrices.stiffness.shape[:2])
+    if discretization.twist is not None:
+        displacement += np.nan_to_num(discretization.twist.displacement)
+    displacement[:, THETA::FIELDS] += np.nan_to_num(found.angle[:, wind])
+    state = TwistedState(displacement, found.outcome[:, wind])
+    here, system = twisted_matrices(lines, profile, sections(lines, profile), state, fit=False)
+    local = local_curves(lines, profile, here)
+    cubics = cubics_about(local.curves, local.which, local.angle, FIT_RANGE)
+    here = replace(here, aerodynamics=cubics, fitted_range=reach(local, here.local_weight > 0.0))
+    return Discretization(lines, profile, here, _in_plane(profile, system), state)
+
+
+def with_wind_twist(discretization: Discretization, wind_speeds: FloatArray, *, further: bool = True) -> Discretization:
+    """Add the static twist at rising wind speeds (winds,) [m/s] of lines whose tables are curves. Theory section 14.
+
+    further: whether further equilibria are searched, besides the one that a rising wind finds.
+    """
     twist = discretization.twist
     still = np.zeros((len(discretization.lines), 2 * discretization.lines[0].span.elements + 1))
     elements = torsional_elements(*discretization.parts, still if twist is None else np.nan_to_num(twist.angle))
     asked = np.array([line.has_table and not any(line.curve_faults()) for line in discretization.lines])
-    return replace(discretization, wind_twist=wind_twist(elements, wind_speeds, asked))
+    return replace(discretization, wind_twist=wind_twist(elements, wind_speeds, asked, further=further))
 
 
 def nodal_motion(

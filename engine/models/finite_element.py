@@ -9,6 +9,7 @@ from engine.models.aerodynamic_load import span_load, take_load
 from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
 from engine.models.stretching import stretching_of, take_stretching
+from engine.models.unexpanded_load import load_as_it_stands, take_unexpanded
 from engine.spec import Analysis, DampingModel, Stretching
 
 TRANSVERSE = (V, W, THETA)
@@ -51,6 +52,7 @@ def finite_element_model(
         direction=np.repeat(np.arange(3), len(modes.loops)),
         statically_unstable=unstable,
         stretching=take_stretching(stretching_of(*geometry, nodal[:, None]), (slice(None), 0)) if included else None,
+        unexpanded=take_unexpanded(load_as_it_stands(discretization, at[:, None], analysis), (slice(None), 0)),
     )
 
 

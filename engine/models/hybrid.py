@@ -22,6 +22,7 @@ from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals, take
 from engine.models.relief import DAMPING_RATIO, relief_displacement
 from engine.models.stretching import StretchingForce, stretching_of, take_stretching
+from engine.models.unexpanded_load import load_as_it_stands, take_unexpanded
 from engine.spec import AerodynamicModel, Analysis, Closure, DampingModel, LongitudinalInertia, Stretching
 
 
@@ -76,9 +77,10 @@ def hybrid_model(
     damping = diagonal_matrices(rate * diagonals(mass))  # (11)
     damping += device_damping(discretization.lines, discretization.profile, fields)
     load = _hybrid_load(discretization, fields, analysis)
+    unexpanded = load_as_it_stands(discretization, at_points(discretization.matrices, fields), analysis)
     stretching = _stretching(discretization, _with_relief(discretization, nodal, relief), analysis)
     direction = np.arange(fields.shape[2]) % 3
-    return ReducedModel(mass, damping, stiffness, load, fields, direction, unstable, stretching)
+    return ReducedModel(mass, damping, stiffness, load, fields, direction, unstable, stretching, unexpanded)
 
 
 def joint_model(
@@ -128,6 +130,7 @@ def joint_model(
             _stretching(discretization, _with_relief(discretization, nodal[:, None], relief), analysis),
             (slice(None), 0),
         ),
+        unexpanded=take_unexpanded(load_as_it_stands(discretization, values[:, None], analysis), (slice(None), 0)),
     )
 
 
@@ -145,6 +148,7 @@ def with_published_load(discretization: Discretization, model: ReducedModel) -> 
         shapes=model.shapes[..., three, :, :],
         direction=model.direction[three],
         stretching=None,
+        unexpanded=None,
     )
     values = at_points(discretization.matrices, model.shapes)
     load = published_load(

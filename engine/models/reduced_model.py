@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.models.aerodynamic_load import PolynomialLoad, force, force_gradient, take_load
+from engine.models import aerodynamic_load, unexpanded_load
+from engine.models.aerodynamic_load import PolynomialLoad, take_load
 from engine.models.stretching import StretchingForce, restoring_force, restoring_gradient, take_stretching
+from engine.models.unexpanded_load import UnexpandedLoad, take_unexpanded
 from engine.spec import Line
 
 
@@ -20,7 +22,8 @@ class ReducedModel:
     W, Theta of each coordinate that the wind acts on and that are reported, zero for a relief coordinate; direction:
     (m,), the direction of each coordinate (0 vertical, 1 horizontal, 2 torsional); statically_unstable: (...), True
     where the stiffness is not positive definite; damping has no meaning there; stretching: g, of the same leading axes,
-    None where it is neglected.
+    None where it is neglected; unexpanded: f as it stands, which then acts in the place of the load expanded in the
+    motion.
     """
 
     mass: FloatArray
@@ -31,6 +34,7 @@ class ReducedModel:
     direction: IntArray
     statically_unstable: BoolArray
     stretching: StretchingForce | None = None
+    unexpanded: UnexpandedLoad | None = None
 
     @property
     def modal_masses(self) -> FloatArray:
@@ -59,7 +63,28 @@ def take(model: ReducedModel, index: Any) -> ReducedModel:
         direction=model.direction,
         statically_unstable=model.statically_unstable[index],
         stretching=take_stretching(model.stretching, index),
+        unexpanded=take_unexpanded(model.unexpanded, index),
     )
+
+
+def samples_in_period(model: ReducedModel, harmonics: int) -> int:
+    """Return how many samples of a period the harmonic balance takes: enough for a cubic load to be exact at least."""
+    exact = 4 * harmonics + 2
+    return exact if model.unexpanded is None else max(exact, model.unexpanded.samples)
+
+
+def force(model: ReducedModel, state: FloatArray) -> FloatArray:
+    """Return the load divided by U^2 at states (..., samples, 2 m) of q and q'/U: (..., samples, m)."""
+    if model.unexpanded is not None:
+        return unexpanded_load.force(model.unexpanded, state)
+    return aerodynamic_load.force(model.load, state)
+
+
+def force_gradient(model: ReducedModel, state: FloatArray) -> FloatArray:
+    """Differentiate the load divided by U^2 by (q, q'/U): (..., samples, m, 2 m)."""
+    if model.unexpanded is not None:
+        return unexpanded_load.force_gradient(model.unexpanded, state)
+    return aerodynamic_load.force_gradient(model.load, state)
 
 
 def resultant(model: ReducedModel, state: FloatArray, wind_speed: FloatArray) -> FloatArray:
@@ -78,7 +103,7 @@ def resultant(model: ReducedModel, state: FloatArray, wind_speed: FloatArray) ->
     -------
     (..., samples, m)
     """
-    load = force(model.load, state)
+    load = force(model, state)
     if model.stretching is None:
         return load
     m = model.mass.shape[-1]
@@ -87,7 +112,7 @@ def resultant(model: ReducedModel, state: FloatArray, wind_speed: FloatArray) ->
 
 def resultant_gradient(model: ReducedModel, state: FloatArray, wind_speed: FloatArray) -> FloatArray:
     """Differentiate `resultant` by (q, q'/U): (..., samples, m, 2 m)."""
-    gradient = force_gradient(model.load, state)
+    gradient = force_gradient(model, state)
     if model.stretching is None:
         return gradient
     m = model.mass.shape[-1]

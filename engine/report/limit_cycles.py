@@ -152,7 +152,7 @@ def _cycles(
         "branch": cycles.branch.tolist(),
         "found_by": cycles.found_by,
         "harmonics": cycles.harmonics.tolist(),
-        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, model)),
+        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, _is_expanded(findings, model))),
     }
     keys = _RowKeys(line, loops, cycles.orbits.wind_speed)
     return _rows(findings, scales, keys, measures, labels, series)
@@ -177,7 +177,7 @@ def _quasi_periodic_motions(
     discretization: Discretization, findings: ModelFindings, model_of_wind: AerodynamicModel, scales: _Scales
 ) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all quasi-periodic motions."""
-    known, model = findings.quasi_periodic, findings.model
+    known, model, expanded = findings.quasi_periodic, findings.model, _is_expanded(findings, model_of_wind)
     tori, member, line = known.tori, known.member, findings.line[known.member]
     frequency, _ = base_frequencies(model, member, tori)
     energy = model.modal_masses[member] * mean_square_velocity(tori)
@@ -205,19 +205,24 @@ def _quasi_periodic_motions(
         "branch": known.branch.tolist(),
         "found_by": known.found_by,
         "harmonics": repeat(tori.order[0]),
-        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, model_of_wind)),
+        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, expanded)),
     }
     return _rows(findings, scales, _RowKeys(line, loops, tori.wind_speed), measures, labels)
 
 
+def _is_expanded(findings: ModelFindings, model: AerodynamicModel) -> bool:
+    """Return whether the load is expanded in velocities, and so holds for small ones only."""
+    return model is not AerodynamicModel.PUBLISHED and findings.model.unexpanded is None
+
+
 def _outcomes(
-    discretization: Discretization, line: IntArray, measures: Mapping[str, FloatArray], model: AerodynamicModel
+    discretization: Discretization, line: IntArray, measures: Mapping[str, FloatArray], expanded: bool
 ) -> list[Outcome]:
     """Return the outcomes of computed motions of lines (motions,)."""
     angle, velocity = (measures[name] for name in _REACH)
     amplitudes = np.stack([measures[name] for name in _AMPLITUDES[:2]])
     sag, fitted_range = discretization.profile.sag[line], discretization.sections.fitted_range[line]
-    too_fast = (velocity > FASTEST) & (model is not AerodynamicModel.PUBLISHED)
+    too_fast = (velocity > FASTEST) & expanded
     return motion_outcomes(angle, fitted_range, too_fast, amplitudes, sag)
 
 

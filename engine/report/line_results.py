@@ -74,6 +74,7 @@ def line_results(
     physics = PhysicsRow(
         analysis.physics,
         analysis.aerodynamic_model,
+        analysis.aerodynamic_load,
         analysis.longitudinal_inertia,
         analysis.stretching,
         analysis.static_twist,

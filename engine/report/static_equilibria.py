@@ -28,5 +28,5 @@ def static_equilibrium_rows(
 
 
 def _row(wind_speed: float, number: int, angle: FloatArray, outcome: Outcome) -> StaticEquilibriumRow:
-    middle, largest = angle[angle.size // 2], angle[np.abs(angle).argmax()]
+    middle, largest = float(angle[angle.size // 2]), float(angle[np.abs(angle).argmax()])
     return StaticEquilibriumRow(wind_speed, number, finite_or_none(middle), finite_or_none(largest), outcome)

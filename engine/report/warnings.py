@@ -191,7 +191,7 @@ def _neglected_twist(angle: float, unstable: bool) -> list[str]:
 def fit_warnings(cycles: Sequence[LimitCycleRow], analysis: Analysis) -> list[str]:
     """Return a sentence if cycles leave the fitted range of the coefficients, and one if the range of the expansion."""
     outside = [cycle for cycle in cycles if cycle.outcome is Outcome.OUTSIDE_FIT]
-    expanded = analysis.aerodynamic_model is not AerodynamicModel.PUBLISHED
+    expanded = analysis.aerodynamic_model is not AerodynamicModel.PUBLISHED and not analysis.load_stands
     fast = sum(expanded and (cycle.largest_velocity_ratio or 0.0) > FASTEST for cycle in outside)
     result = []
     if len(outside) > fast:

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from engine.outcome import Outcome
 from engine.result.columns import Column
-from engine.spec import AerodynamicModel, LongitudinalInertia, Model, Physics, StaticTwist, Stretching
+from engine.spec import AerodynamicLoad, AerodynamicModel, LongitudinalInertia, Model, Physics, StaticTwist, Stretching
 
 Direction = Literal["vertical", "horizontal", "torsional", "longitudinal"]
 ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
@@ -48,6 +48,7 @@ class PhysicsRow:
 
     physics: Annotated[Physics, Column("Set that the options belong to unless they were said singly", "full")]
     aerodynamic_model: Annotated[AerodynamicModel, Column("Velocities that change the wind", "relative_wind")]
+    aerodynamic_load: Annotated[AerodynamicLoad, Column("Whether the load is expanded in the motion", "expanded")]
     longitudinal_inertia: Annotated[
         LongitudinalInertia, Column("Longitudinal inertia of the hybrid model", "condensed")
     ]

@@ -6,6 +6,7 @@ the left support. Properties are given per sub-conductor, with its ice.
 """
 
 from engine.spec.analysis import (
+    AerodynamicLoad,
     AerodynamicModel,
     AmplitudeCurves,
     Analysis,
@@ -53,6 +54,7 @@ __all__ = [
     "CLOSED",
     "GRAVITY",
     "TURN",
+    "AerodynamicLoad",
     "AerodynamicModel",
     "Aerodynamics",
     "AirflowSpoiler",

@@ -41,6 +41,14 @@ class AerodynamicModel(StrEnum):
 
     PUBLISHED = "published"
     RELATIVE_WIND = "relative_wind"
+    TABLE = "table"
+
+
+class AerodynamicLoad(StrEnum):
+    """Whether the load of the relative wind is expanded to third order in the motion, or evaluated as it stands."""
+
+    EXPANDED = "expanded"
+    UNEXPANDED = "unexpanded"
 
 
 class LongitudinalInertia(StrEnum):
@@ -123,6 +131,7 @@ class Analysis:
     physics: Physics = Physics.SOURCE
     lacks: str | None = None
     aerodynamic_model: AerodynamicModel = AerodynamicModel.PUBLISHED
+    aerodynamic_load: AerodynamicLoad = AerodynamicLoad.EXPANDED
     longitudinal_inertia: LongitudinalInertia = LongitudinalInertia.NEGLECTED
     stretching: Stretching = Stretching.NEGLECTED
     critical_wind_limit: float = 30.0
@@ -150,13 +159,25 @@ class Analysis:
 
     def _closure_fault(self) -> Fault | None:
         beyond = {
-            "the relative wind": self.aerodynamic_model is AerodynamicModel.RELATIVE_WIND,
+            "the relative wind": self.aerodynamic_model is not AerodynamicModel.PUBLISHED,
             "stretching": self.stretching is Stretching.INCLUDED,
         }
         needing = [name for name, included in beyond.items() if included]
         if not needing or self.closure is not Closure.PUBLISHED:
             return None
         return Fault("closure", self.closure.value, f"must be exact with {' and '.join(needing)}")
+
+    @property
+    def load_stands(self) -> bool:
+        """Whether the load is evaluated as it stands; the published one is a cubic, which no expansion changes."""
+        unexpanded = self.aerodynamic_load is AerodynamicLoad.UNEXPANDED
+        relative = self.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
+        return self.aerodynamic_model is AerodynamicModel.TABLE or (relative and unexpanded)
+
+    @property
+    def follows_twist(self) -> bool:
+        """Whether each wind speed has its own static state, about which its motions are counted."""
+        return self.aerodynamic_model is AerodynamicModel.TABLE
 
     def _size_fault(self) -> Fault | None:
         together = set(self.loops) | set(self.finite_element_loops)
@@ -178,12 +199,17 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     ------
     InvalidSpec
         If the line has fewer elements than loops are asked for, the published closure is asked for with a wind profile,
-        or the relative wind is asked for without coefficients at rest.
+        the relative wind is asked for without coefficients at rest, or a table that is none or has gaps.
     """
     most = max(analysis.loops + analysis.finite_element_loops)
     published = analysis.closure is Closure.PUBLISHED
     relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
+    table = analysis.aerodynamic_model is AerodynamicModel.TABLE
     require(
+        Fault("ice.aerodynamics", None, "must be a measured table for the table model")
+        if table and line.ice.aerodynamics.measured is None
+        else None,
+        *(line.curve_faults() if table else ()),
         Fault("loops", most, f"must not exceed the number of elements ({line.span.elements})")
         if most > line.span.elements
         else None,

@@ -15,6 +15,7 @@ from engine.mechanics.static_profile import horizontal_position
 from engine.models.discretization import Discretization, discretize, observation
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import ReducedModel, take
+from engine.outcome import Fault, require
 from engine.report.cells import finite_or_none
 from engine.result import FollowedBifurcationRow, FollowedCycleRow, Result
 from engine.spec import Analysis, Line, Model
@@ -43,7 +44,14 @@ def followed(line_at: LineAt, values: Sequence[float], results: Sequence[Result]
     -------
     list of Result
         The results with `followed_cycles`, and with `followed_bifurcations` at the nearest value.
+
+    Raises
+    ------
+    InvalidSpec
+        If the load is not expanded: models at values in between are interpolated, which needs polynomials.
     """
+    rule = "must be expanded, and the model no table, in a study that follows its cycles"
+    require(Fault("aerodynamic_load", analysis.aerodynamic_load.value, rule) if analysis.load_stands else None)
     study = _Study(line_at, np.array(values, dtype=np.float64), analysis)
     discretization, grid = study.models_of([line_at(value) for value in values])
     known = study.starts(discretization, grid, results)

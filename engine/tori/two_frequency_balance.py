@@ -13,8 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from engine.arrays import ComplexArray, FloatArray, IntArray, merge_axes
-from engine.models.aerodynamic_load import force
-from engine.models.reduced_model import ReducedModel, resultant, resultant_gradient, take
+from engine.models.reduced_model import ReducedModel, force, resultant, resultant_gradient, take
 from engine.numerics.newton import NewtonOptions, Solution, newton
 
 Order = tuple[int, int]
@@ -129,7 +128,7 @@ def linearized(model: ReducedModel, tori: Tori) -> tuple[FloatArray, FloatArray]
         by_frequency = (by_velocity @ (along @ lattice.values.T).swapaxes(-1, -2)[..., None])[..., 0]
         columns.append(merge_axes(linear - speed * _projected(by_frequency, lattice), -2)[..., None])
     by_wind = (by_velocity @ state[..., m:, None])[..., 0]
-    columns.append(merge_axes(speed * _projected(by_wind - 2.0 * force(model.load, state), lattice), -2)[..., None])
+    columns.append(merge_axes(speed * _projected(by_wind - 2.0 * force(model, state), lattice), -2)[..., None])
     return merge_axes(residual, -2), np.concatenate(columns, axis=-1)
 
 

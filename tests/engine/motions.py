@@ -16,8 +16,9 @@ from engine.cycles.harmonic_balance import (
 from engine.cycles.search import Cycles, energy_starts, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
-from engine.spec import AerodynamicModel, Analysis, Line, Span, Stretching
+from engine.spec import AerodynamicLoad, AerodynamicModel, Analysis, Line, Span, Stretching
 from tests.builders import finite_element, hybrid, source_line
+from tests.engine.synthetic_table import with_table
 
 LIGHT = 0.0308
 
@@ -58,7 +59,19 @@ def relative_line(subconductors: int) -> Line:
     return replace(line, ice=replace(line.ice, aerodynamics=aerodynamics))
 
 
+UNEXPANDED = replace(RELATIVE, aerodynamic_load=AerodynamicLoad.UNEXPANDED)
+TABLE = Analysis(aerodynamic_model=AerodynamicModel.TABLE, stretching=Stretching.INCLUDED)
+
+
+def short(line: Line) -> Line:
+    """Return a line of four elements, for loads that are integrated along the span at every state."""
+    return replace(line, span=replace(line.span, elements=4))
+
+
 MODELS = {
+    "hybrid, unexpanded": lambda: hybrid(short(relative_line(2)), 2, UNEXPANDED),
+    "hybrid, table and stretching": lambda: hybrid(short(with_table(source_line(2), 20.0)), 2, TABLE),
+    "finite element, table": lambda: finite_element(short(with_table(source_line(1), -20.0)), (1, 2), TABLE),
     "hybrid": lambda: hybrid(source_line(3), 2),
     "hybrid, relative wind": lambda: hybrid(relative_line(2), 2, RELATIVE),
     "hybrid, stretching": lambda: hybrid(relative_line(2), 2, STRETCHING),

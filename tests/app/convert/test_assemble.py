@@ -79,6 +79,38 @@ def test_every_field_of_an_analysis_arrives_in_the_engine() -> None:
     )
 
 
+def circle(*, last: float = 0.0, without: tuple[float, float] = (0.0, 0.0)) -> dict[str, Any]:
+    """Return a table of the full circle, with another lift in its last row, or without the rows between two angles."""
+    rows: list[dict[str, float]] = [
+        {"angle_deg": a, "lift": 0.0, "drag": 1.0, "moment": 0.0}
+        for a in (10.0 * k for k in range(-18, 19))
+        if not without[0] < a < without[1]
+    ]
+    rows[-1]["lift"] = last
+    return {"table": rows, "static_angle_deg": 0.0, "half_range_deg": 45.0}
+
+
+@pytest.mark.parametrize(
+    ("table", "field"),
+    [
+        (circle(last=0.3), "ice.aerodynamics.table.36.lift"),
+        (circle(without=(60.0, 90.0)), "ice.aerodynamics.table.25.angle"),
+        (None, "ice.aerodynamics"),
+    ],
+)
+def test_the_table_model_names_the_row_that_keeps_a_table_from_being_a_curve(
+    table: dict[str, Any] | None, field: str
+) -> None:
+    line = changed("wind", {})
+    line = line if table is None else changed("ice", {"aerodynamics": table}, line)
+    parts_of_line = SoundParts.of(schemas.Line.model_validate(line))
+    _, _, wrong = gather(parts_of_line, schemas.Analysis.model_validate({"aerodynamic_model": "table"}))
+    assert [fault.field for fault in wrong] == [field]
+    for model in ("published", "relative_wind"):
+        options = {"aerodynamic_model": model}
+        assert gather(parts_of_line, schemas.Analysis.model_validate(options))[2] == []
+
+
 def test_every_choice_of_an_analysis_arrives_in_the_engine() -> None:
     choices = {
         field.name: list(type(field.default)) for field in fields(spec.Analysis) if isinstance(field.default, Enum)
@@ -86,7 +118,10 @@ def test_every_choice_of_an_analysis_arrives_in_the_engine() -> None:
     assert len(choices) >= 9
     for name, members in choices.items():
         for member in members:
-            _, analysis = built(changed("wind", {}), {name: member.value})
+            line = changed("wind", {})
+            if member is spec.AerodynamicModel.TABLE:
+                line = changed("ice", {"aerodynamics": circle()}, line)
+            _, analysis = built(line, {name: member.value})
             assert getattr(analysis, name) is member, (name, member)
 
 

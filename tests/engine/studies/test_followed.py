@@ -9,7 +9,7 @@ import pytest
 from engine.models.critical_wind_speeds import at_wind, critical_wind_speeds, state_matrices
 from engine.outcome import InvalidSpec
 from engine.result import FollowedBifurcationRow, FollowedCycleRow, LimitCycleRow, Result
-from engine.spec import Analysis, BlowOut, Line, Model, Span, Wind
+from engine.spec import AerodynamicLoad, AerodynamicModel, Analysis, BlowOut, Line, Model, Span, Wind
 from engine.studies.followed import followed
 from tests.builders import hybrid, only, run, source_line
 
@@ -140,3 +140,11 @@ def test_cycles_of_a_blown_out_span_are_read_back_from_vertical_and_horizontal()
         assert len(cycles) > 0
         for own, other in zip(cycles_of(result.followed_cycles), cycles_of(cycles), strict=True):
             assert own[:-1] == pytest.approx(other[:-1], rel=5e-4)  # four harmonics more
+
+
+def test_an_unexpanded_load_is_refused() -> None:
+    asked = Analysis(
+        aerodynamic_model=AerodynamicModel.RELATIVE_WIND, aerodynamic_load=AerodynamicLoad.UNEXPANDED, loops=(1,)
+    )
+    with pytest.raises(InvalidSpec, match="aerodynamic_load must be expanded"):
+        followed(with_tension, [24e3, 30e3], [], asked)

@@ -1,0 +1,132 @@
+"""Critical wind speeds of lines whose static state changes with the wind: a scan and a search for roots.
+
+Theory sections 6 and 14. A(U) = A_0 + U A_1 + U^2 A_2 at each wind speed of a grid is that about the static state
+there; between them the three matrices are interpolated linearly, so a state that does not move leaves no error.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
+
+import numpy as np
+
+from engine.arrays import FloatArray, IntArray, eigenvalues
+from engine.models.critical_wind_speeds import Crossings, StateMatrices, at_wind, state_matrices, unstable_pairs
+from engine.models.discretization import Discretization, in_wind, with_wind_twist
+from engine.models.reduced_model import ReducedModel
+
+STEPS = 30  # of the grid up to the limit
+TORSIONAL = 2
+CELLS = 8  # parts of a step of the grid that are searched for changes of stability
+HALVINGS = 40
+STATIC = 1e-9  # imaginary part over the largest eigenvalue, below which a growing motion does not oscillate
+
+
+def crossings_in_wind(
+    discretization: Discretization, limit: float, line: IntArray, model_of: Callable[[Discretization], ReducedModel]
+) -> Crossings:
+    """Return the critical wind speeds of models whose static state follows the wind, folds of that state among them.
+
+    Parameters
+    ----------
+    discretization : Discretization
+        In still air.
+    limit : float
+        Largest wind speed [m/s].
+    line : (members,)
+        Index of the line of each model.
+    model_of : callable
+        Makes the models of all lines about a static state.
+
+    Returns
+    -------
+    Crossings
+        Sorted by member and wind speed.
+    """
+    winds = np.linspace(0.0, limit, STEPS + 1)[1:]
+    followed = with_wind_twist(discretization, winds, further=False)
+    members = [model_of(in_wind(followed, i)) for i in range(winds.size)]
+    found = scanned_crossings(winds, [state_matrices(model) for model in members])
+    known = ~np.any([model.statically_unstable for model in members], axis=0)
+    twist = followed.wind_twist
+    assert twist is not None, "it was followed above"
+    member, fold = np.nonzero(line[:, None] == twist.fold_line)
+    torsional = int(np.flatnonzero(members[0].direction == TORSIONAL)[0])
+    folds = Crossings(
+        member=member,
+        wind_speed=twist.fold_wind_speed[fold],
+        angular_frequency=np.zeros(member.size),
+        onset=np.ones(member.size, dtype=np.bool_),
+        oscillation=np.zeros(member.size, dtype=np.bool_),
+        coordinate=np.full(member.size, torsional),
+        unstable_after=np.ones(member.size, dtype=np.intp),
+    )
+    parts = {field.name: np.concatenate([getattr(x, field.name) for x in (found, folds)]) for field in fields(found)}
+    order = np.lexsort((parts["wind_speed"], parts["member"]))
+    order = order[known[parts["member"][order]]]
+    return Crossings(**{name: values[order] for name, values in parts.items()})
+
+
+def scanned_crossings(wind_speeds: FloatArray, states: Sequence[StateMatrices]) -> Crossings:
+    """Return the crossings of the imaginary axis between the wind speeds of a grid.
+
+    Parameters
+    ----------
+    wind_speeds : (winds,)
+        In rising order [m/s].
+    states : sequence of StateMatrices
+        About the static state at each wind speed.
+
+    Returns
+    -------
+    Crossings
+    """
+    speeds = np.interp(
+        np.linspace(0.0, wind_speeds.size - 1.0, (wind_speeds.size - 1) * CELLS + 1),
+        np.arange(wind_speeds.size),
+        wind_speeds,
+    )
+    members = states[0].constant.shape[0]
+    every = np.repeat(np.arange(members), speeds.size)
+    counts = unstable_pairs(eigenvalues(_at(wind_speeds, states, every, np.tile(speeds, members))))
+    counts = counts.reshape(members, speeds.size)
+    member, cell = np.nonzero(counts[:, 1:] != counts[:, :-1])
+    low, high, before = speeds[cell], speeds[cell + 1], counts[member, cell]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        same = unstable_pairs(eigenvalues(_at(wind_speeds, states, member, middle))) == before
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    found = _described(_at(wind_speeds, states, member, high), member, high)
+    after = counts[member, cell + 1]
+    return replace(found, onset=after > before, unstable_after=after)
+
+
+def _at(wind_speeds: FloatArray, states: Sequence[StateMatrices], member: IntArray, speed: FloatArray) -> FloatArray:
+    """Return A(U) of members (k,) at wind speeds (k,) within the grid: (k, 2 m, 2 m)."""
+    left = np.clip(np.searchsorted(wind_speeds, speed, side="right") - 1, 0, wind_speeds.size - 2)
+    share = ((speed - wind_speeds[left]) / (wind_speeds[left + 1] - wind_speeds[left]))[:, None, None]
+
+    def between(name: str) -> FloatArray:
+        stack = np.stack([getattr(state, name) for state in states])
+        return np.asarray((1.0 - share) * stack[left, member] + share * stack[left + 1, member])
+
+    return at_wind(StateMatrices(between("constant"), between("linear"), between("quadratic")), speed)
+
+
+def _described(matrices: FloatArray, member: IntArray, wind_speed: FloatArray) -> Crossings:
+    """Return crossings, described by the state matrices (k, 2 m, 2 m) there: how they move, not what they begin."""
+    m = matrices.shape[-1] // 2
+    values, vectors = np.linalg.eig(matrices.astype(np.complex128))
+    size = np.abs(values).max(axis=-1, initial=0.0)
+    nearest = np.where(values.imag >= 0.0, np.abs(values.real), np.inf).argmin(axis=-1)
+    row = np.arange(member.size)
+    frequency = values.imag[row, nearest]
+    oscillation = frequency > STATIC * size
+    return Crossings(
+        member=member,
+        wind_speed=wind_speed,
+        angular_frequency=np.where(oscillation, frequency, 0.0),
+        onset=np.zeros(member.size, dtype=np.bool_),
+        oscillation=oscillation,
+        coordinate=np.abs(vectors[row, :m, nearest]).argmax(axis=-1),
+        unstable_after=np.zeros(member.size, dtype=np.intp),
+    )
