@@ -22,7 +22,7 @@ from engine.models.discretization import Discretization, discretize, fields_in_s
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_published_load
 from engine.models.reduced_model import ReducedModel, take
-from engine.models.scanned_wind_speeds import crossings_in_wind
+from engine.models.scanned_wind_speeds import Scan, crossings_in_wind, scan_of
 from engine.outcome import Fault, InvalidSpec
 from engine.progress import Progress
 from engine.report.device_effects import device_effects
@@ -37,11 +37,15 @@ from engine.tori.quasi_periodic import check_by_integration, quasi_periodic_moti
 
 @dataclass(frozen=True, slots=True)
 class _Discretized:
-    """What every later step reads: the discretization, its shapes and, where asked for, its full modes."""
+    """What every later step reads: the discretization, its shapes and, where asked for, its full modes.
+
+    scan: static states over the wind speed, where these follow it.
+    """
 
     discretization: Discretization
     shapes: DirectionalShapes
     modes: FullModes | None
+    scan: Scan | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +157,8 @@ def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
     twisted = analysis.static_twist is not StaticTwist.NEGLECTED and any(line.has_table for line in lines)
     if twisted or analysis.follows_twist:
         discretization = with_wind_twist(discretization, _winds(analysis))
-    return _with_modes(discretization, analysis)
+    scan = scan_of(discretization, analysis.critical_wind_limit) if analysis.follows_twist else None
+    return replace(_with_modes(discretization, analysis), scan=scan)
 
 
 def _with_modes(discretization: Discretization, analysis: Analysis) -> _Discretized:
@@ -222,8 +227,8 @@ def _crossings(
     model_of: Callable[[Discretization], ReducedModel],
 ) -> Crossings:
     """Return the critical wind speeds of a stack of models: by a scan in still air where the twist follows the wind."""
-    if analysis.follows_twist and not analysis.wind_speeds:  # see _in_each_wind
-        return crossings_in_wind(prepared.discretization, analysis.critical_wind_limit, line, model_of)
+    if prepared.scan is not None:
+        return crossings_in_wind(prepared.scan, line, model_of)
     return critical_wind_speeds(model, analysis.critical_wind_limit)
 
 

@@ -76,10 +76,11 @@ def local_curves(lines: Sequence[Line], profile: StaticProfile, section_points: 
     static = np.array([0.0 if one.measured is None else one.measured.static_angle for one in numbers])
     tabulated = np.array([one.measured is not None for one in numbers])
     angle = np.where(tabulated[which], static[which] + section_points.twist, 0.0)
-    return LocalCurves(coefficient_curves(list(numbers)), which, angle)
+    return LocalCurves(coefficient_curves(tuple(numbers)), which, angle)
 
 
-def coefficient_curves(sources: Sequence[Aerodynamics]) -> CoefficientCurves:
+@lru_cache
+def coefficient_curves(sources: tuple[Aerodynamics, ...]) -> CoefficientCurves:
     """Return the curves of some coefficients: the spline of the measured table where there is one, else the cubics."""
     parts = [_cubic_pieces(one) if one.measured is None else _table_pieces(one.measured) for one in sources]
     ends = [_ends(one) for one in sources]

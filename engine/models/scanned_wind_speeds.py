@@ -5,11 +5,12 @@ there; between them the three matrices are interpolated linearly, so a state tha
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, eigenvalues
+from engine.mechanics.wind_twist import WindTwist
 from engine.models.critical_wind_speeds import Crossings, StateMatrices, at_wind, state_matrices, unstable_pairs
 from engine.models.discretization import Discretization, in_wind, with_wind_twist
 from engine.models.reduced_model import ReducedModel
@@ -21,17 +22,32 @@ HALVINGS = 40
 STATIC = 1e-9  # imaginary part over the largest eigenvalue, below which a growing motion does not oscillate
 
 
-def crossings_in_wind(
-    discretization: Discretization, limit: float, line: IntArray, model_of: Callable[[Discretization], ReducedModel]
-) -> Crossings:
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """Static states of lines at the wind speeds of a grid.
+
+    wind_speeds: (winds,), in rising order [m/s]; states: the discretization about each; twist: as they were followed.
+    """
+
+    wind_speeds: FloatArray
+    states: tuple[Discretization, ...]
+    twist: WindTwist
+
+
+def scan_of(discretization: Discretization, limit: float) -> Scan:
+    """Follow the static state from still air to a wind speed [m/s], in steps of a thirtieth of it."""
+    winds = np.linspace(0.0, limit, STEPS + 1)[1:]
+    followed = with_wind_twist(discretization, winds, further=False)
+    assert followed.wind_twist is not None, "it was followed above"
+    return Scan(winds, tuple(in_wind(followed, i) for i in range(winds.size)), followed.wind_twist)
+
+
+def crossings_in_wind(scan: Scan, line: IntArray, model_of: Callable[[Discretization], ReducedModel]) -> Crossings:
     """Return the critical wind speeds of models whose static state follows the wind, folds of that state among them.
 
     Parameters
     ----------
-    discretization : Discretization
-        In still air.
-    limit : float
-        Largest wind speed [m/s].
+    scan : Scan
     line : (members,)
         Index of the line of each model.
     model_of : callable
@@ -42,18 +58,14 @@ def crossings_in_wind(
     Crossings
         Sorted by member and wind speed.
     """
-    winds = np.linspace(0.0, limit, STEPS + 1)[1:]
-    followed = with_wind_twist(discretization, winds, further=False)
-    members = [model_of(in_wind(followed, i)) for i in range(winds.size)]
-    found = scanned_crossings(winds, [state_matrices(model) for model in members])
+    members = [model_of(state) for state in scan.states]
+    found = scanned_crossings(scan.wind_speeds, [state_matrices(model) for model in members])
     known = ~np.any([model.statically_unstable for model in members], axis=0)
-    twist = followed.wind_twist
-    assert twist is not None, "it was followed above"
-    member, fold = np.nonzero(line[:, None] == twist.fold_line)
+    member, fold = np.nonzero(line[:, None] == scan.twist.fold_line)
     torsional = int(np.flatnonzero(members[0].direction == TORSIONAL)[0])
     folds = Crossings(
         member=member,
-        wind_speed=twist.fold_wind_speed[fold],
+        wind_speed=scan.twist.fold_wind_speed[fold],
         angular_frequency=np.zeros(member.size),
         onset=np.ones(member.size, dtype=np.bool_),
         oscillation=np.zeros(member.size, dtype=np.bool_),

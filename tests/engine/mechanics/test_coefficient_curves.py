@@ -35,7 +35,7 @@ def stretch(table: MeasuredCoefficients, low: float, high: float) -> MeasuredCoe
 
 
 def at(source: Aerodynamics, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    return evaluate(coefficient_curves([source]), np.zeros(angle.shape, dtype=np.intp), angle)
+    return evaluate(coefficient_curves((source,)), np.zeros(angle.shape, dtype=np.intp), angle)
 
 
 def test_a_spline_of_the_circle_follows_the_series_behind_it_over_several_turns() -> None:
@@ -65,14 +65,14 @@ def test_a_stretch_goes_on_straight_beyond_its_ends_and_says_so() -> None:
     there, slopes_there = at(source, beyond)
     assert there == pytest.approx(values + slopes * (beyond - ends)[:, None], rel=1e-12)
     assert slopes_there == pytest.approx(slopes, rel=1e-12)
-    curves = coefficient_curves([source, tabulated(0.0), AT_REST])
+    curves = coefficient_curves((source, tabulated(0.0), AT_REST))
     assert outside(curves, np.zeros(3, dtype=np.intp), np.radians([-60.1, 0.0, 45.1])).tolist() == [True, False, True]
     assert not outside(curves, np.ones(2, dtype=np.intp), np.array([-50.0, 50.0])).any()
     assert outside(curves, np.full(3, 2), np.array([-0.51, 0.49, 0.51])).tolist() == [True, False, True]
 
 
 def test_slopes_are_the_derivatives_of_the_values_for_every_kind_of_curve() -> None:
-    curves = coefficient_curves([tabulated(0.0), fit_measured(stretch(measured(0.0), -60.0, 45.0)), AT_REST])
+    curves = coefficient_curves((tabulated(0.0), fit_measured(stretch(measured(0.0), -60.0, 45.0)), AT_REST))
     generator = np.random.default_rng(1)
     which, angle = generator.integers(0, 3, 600), generator.uniform(-2.0, 2.0, 600)
     up, down = (evaluate(curves, which, angle + step)[0] for step in (1e-6, -1e-6))
@@ -91,7 +91,7 @@ def test_cubics_are_turned_from_the_section_to_the_wind(angle: float) -> None:
 
 def test_cubics_about_the_angle_of_the_source_are_the_sources() -> None:
     """The table has them by construction; a step of one degree leaves 5 % in the third derivative."""
-    found = cubics_about(coefficient_curves([tabulated(0.0)]), np.zeros(1, dtype=np.intp), np.zeros(1))[0]
+    found = cubics_about(coefficient_curves((tabulated(0.0),)), np.zeros(1, dtype=np.intp), np.zeros(1))[0]
     assert found[:, 0] == pytest.approx([0.0, 1.0, 0.0], abs=1e-9)
     for row, expected in zip(found, (ICE_AT_40.vertical, ICE_AT_40.horizontal, ICE_AT_40.torsional), strict=True):
         assert row[1] == pytest.approx(expected[0], abs=2e-3)
@@ -101,7 +101,7 @@ def test_cubics_about_the_angle_of_the_source_are_the_sources() -> None:
 
 @pytest.mark.parametrize("source", [tabulated(0.0), AT_REST])
 def test_fits_over_smaller_and_smaller_ranges_come_to_the_series(source: Aerodynamics) -> None:
-    curves = coefficient_curves([source])
+    curves = coefficient_curves((source,))
     which, angle = np.zeros(3, dtype=np.intp), np.array([-0.4, 0.1003, 0.7])
     exact = cubics_about(curves, which, angle)
     fitted = cubics_about(curves, which, angle, 1e-3)
@@ -111,7 +111,7 @@ def test_fits_over_smaller_and_smaller_ranges_come_to_the_series(source: Aerodyn
 
 def test_cubics_about_another_angle_give_the_same_forces_there() -> None:
     """A cubic of the section is developed about a twisted section: both give the same C_L and C_D nearby."""
-    curves = coefficient_curves([AT_REST, tabulated(0.0)])
+    curves = coefficient_curves((AT_REST, tabulated(0.0)))
     for which in (np.zeros(1, dtype=np.intp), np.ones(1, dtype=np.intp)):
         (row,) = cubics_about(curves, which, np.array([0.3005]))
         alpha = 1e-3
@@ -124,7 +124,7 @@ def test_cubics_about_another_angle_give_the_same_forces_there() -> None:
 
 
 def test_no_slope_of_the_moment_exceeds_the_largest() -> None:
-    curves = coefficient_curves([tabulated(0.0), fit_measured(stretch(measured(0.0), -60.0, 45.0)), AT_REST])
+    curves = coefficient_curves((tabulated(0.0), fit_measured(stretch(measured(0.0), -60.0, 45.0)), AT_REST))
     largest = largest_moment_slopes(curves)
     angle = np.linspace(-3.2, 3.2, 20001)
     for i in (0, 1):

@@ -11,7 +11,7 @@ from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds, 
 from engine.models.discretization import Discretization, discretize, in_wind, with_wind_twist
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import ReducedModel, take
-from engine.models.scanned_wind_speeds import crossings_in_wind, scanned_crossings
+from engine.models.scanned_wind_speeds import crossings_in_wind, scan_of, scanned_crossings
 from engine.spec import AerodynamicModel, Analysis, Line
 from tests.builders import hybrid, source_line
 from tests.engine.synthetic_table import measured, with_table
@@ -26,7 +26,7 @@ def one_loop(discretization: Discretization) -> ReducedModel:
 
 
 def scanned(*lines: Line) -> Crossings:
-    return crossings_in_wind(discretize(lines), LIMIT, np.arange(len(lines)), one_loop)
+    return crossings_in_wind(scan_of(discretize(lines), LIMIT), np.arange(len(lines)), one_loop)
 
 
 @pytest.mark.parametrize("subconductors", [1, 2, 3])
