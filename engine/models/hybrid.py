@@ -185,17 +185,21 @@ def _basis(nodal: FloatArray, relief: FloatArray | None) -> FloatArray:
 def _condensed(
     system: Matrices, basis: FloatArray, longitudinal: int, inertia: LongitudinalInertia
 ) -> tuple[FloatArray, FloatArray]:
-    """Project onto a basis (lines, groups, coordinates, freedoms) and condense its first ones, f_u, eqs. (18)-(20)."""
+    """Project onto a basis (lines, groups, coordinates, freedoms) and condense its first ones, f_u, eqs. (18)-(20).
+
+    Where their inertia counts, each vertical shape moves with its own f_u as in the mode that both come from; the
+    static condensation would be off by a third of a percent where longitudinal and vertical frequencies come close.
+    """
     stiffness = basis @ system.stiffness[:, None] @ basis.swapaxes(-1, -2)
     mass = basis @ system.mass[:, None] @ basis.swapaxes(-1, -2)
     along, across = slice(longitudinal), slice(longitudinal, None)
     follow = -np.linalg.solve(stiffness[..., along, along], stiffness[..., along, across])
-    condensed = stiffness[..., across, across] + stiffness[..., across, along] @ follow
     if inertia is LongitudinalInertia.NEGLECTED:
-        return mass[..., across, across], condensed
-    shared = mass[..., across, along] @ follow
-    kept = follow.swapaxes(-1, -2) @ mass[..., along, along] @ follow
-    return mass[..., across, across] + shared + shared.swapaxes(-1, -2) + kept, condensed
+        return mass[..., across, across], stiffness[..., across, across] + stiffness[..., across, along] @ follow
+    follow[..., along] = np.eye(longitudinal)
+    kept = follow.shape[-1]
+    moving = np.append(follow, np.broadcast_to(np.eye(kept), (*follow.shape[:-2], kept, kept)), axis=-2)
+    return moving.swapaxes(-1, -2) @ mass @ moving, moving.swapaxes(-1, -2) @ stiffness @ moving
 
 
 def _stretching(discretization: Discretization, moving: FloatArray, analysis: Analysis) -> StretchingForce | None:

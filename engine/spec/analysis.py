@@ -52,7 +52,7 @@ class AerodynamicLoad(StrEnum):
 
 
 class LongitudinalInertia(StrEnum):
-    """Whether the inertia of f_u is dropped, as in the source, or kept in m_11 (Guyan). Theory section 4."""
+    """Whether the inertia of f_u is dropped, as in the source, or kept in m_11. Theory section 4."""
 
     NEGLECTED = "neglected"
     CONDENSED = "condensed"

@@ -10,18 +10,22 @@ from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
 from engine.mechanics.modes import directional_shapes
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.hybrid import hybrid_model
+from engine.models.reduced_model import take
 from engine.spec import (
     Analysis,
     BlowOut,
     Closure,
     DampingModel,
     DetuningPendulum,
+    Ice,
     Line,
     LongitudinalInertia,
     Spacer,
+    Span,
+    Supports,
     Wind,
 )
-from tests.builders import discretized, finite_element, hybrid, source_line
+from tests.builders import ICE_AT_40, discretized, finite_element, hybrid, source_line
 
 RATIOS = np.array([0.000515, 0.000515, 0.308])
 
@@ -45,20 +49,40 @@ def equipped(subconductors: int) -> Line:
 @pytest.mark.parametrize("subconductors", [1, 2, 3])
 @pytest.mark.parametrize("loops", [1, 2, 3])
 @pytest.mark.parametrize("inertia", list(LongitudinalInertia))
-def test_condensation_is_static_elimination_of_f_u(
-    subconductors: int, loops: int, inertia: LongitudinalInertia
-) -> None:
+def test_condensation_eliminates_f_u(subconductors: int, loops: int, inertia: LongitudinalInertia) -> None:
     line = equipped(subconductors)
     columns, stiffness, mass = basis_of(line, loops)
     full_k, full_m = columns.T @ stiffness @ columns, columns.T @ mass @ columns
     follow = np.vstack([-full_k[:1, 1:] / full_k[0, 0], np.eye(3)])
     if inertia is LongitudinalInertia.NEGLECTED:
         full_m[0, :] = full_m[:, 0] = 0.0
+    else:
+        follow[0, 0] = 1.0  # the vertical shape keeps the f_u of its mode
     model = hybrid(line, loops, Analysis(longitudinal_inertia=inertia))
     size = np.abs(full_k).max()
     # K_vv and its condensation cancel to EA/T = 1e-3 of their size.
     assert model.stiffness[0] == pytest.approx(follow.T @ full_k @ follow, abs=1e-12 * size)
     assert model.mass[0] == pytest.approx(follow.T @ full_m @ follow, rel=1e-10, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("length", "sag", "stiffness"), [(126.0, 0.012, None), (800.0, 0.08, None), (800.0, 0.04, 2e3)]
+)
+def test_condensed_model_has_the_vertical_frequencies_of_the_finite_elements(
+    length: float, sag: float, stiffness: float | None
+) -> None:
+    """Also on slack spans with soft supports, where the longitudinal frequency comes close to that of two loops."""
+    line = replace(
+        source_line(2),
+        span=Span(length, sag=sag * length, elements=16),
+        supports=Supports(stiffness),
+        ice=Ice(ICE_AT_40),
+    )
+    discretization = discretized(line)
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, (1, 2, 3))
+    asked = Analysis(longitudinal_inertia=LongitudinalInertia.CONDENSED)
+    model = take(hybrid_model(discretization, shapes, (1, 2, 3), asked), 0)
+    assert np.sqrt(model.uncoupled_squares[:, 0]) == pytest.approx(shapes.angular_frequency[0, :, 0], rel=1e-6)
 
 
 @pytest.mark.parametrize("loops", [1, 2, 3])
