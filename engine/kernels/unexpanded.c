@@ -25,7 +25,7 @@ Unexpanded unexpanded_of(const Unexpanded *stack, int m, ptrdiff_t member)
 }
 
 /* Find the piece that holds a distance from the curve's origin: guess as if pieces were equally long, then walk. */
-static ptrdiff_t piece_at(const Unexpanded *load, ptrdiff_t curve, double reach)
+WITHIN ptrdiff_t piece_at(const Unexpanded *load, ptrdiff_t curve, double reach)
 {
     const ptrdiff_t first = load->first[curve], last = load->first[curve + 1] - 1;
     const double width = load->begins[last];
@@ -39,7 +39,7 @@ static ptrdiff_t piece_at(const Unexpanded *load, ptrdiff_t curve, double reach)
 }
 
 /* Evaluate C_L, C_D and C_M and their slopes at an angle. */
-static void evaluate(const Unexpanded *load, ptrdiff_t curve, double angle, double *values, double *slopes)
+WITHIN void evaluate(const Unexpanded *load, ptrdiff_t curve, double angle, double *values, double *slopes)
 {
     double reach = angle - load->origin[curve];
     if (load->periodic[curve])
@@ -60,7 +60,7 @@ static void evaluate(const Unexpanded *load, ptrdiff_t curve, double angle, doub
 
 /* Add F_y, F_z and the moment of one sub-conductor to `total` (3) and, if there are `rows` (3, 4), their slopes by Theta,
  * V'/U, W'/U and Theta'/U of the section to them. */
-static void add_subconductor(const Unexpanded *load, ptrdiff_t point, ptrdiff_t i, const double *motion, double *total,
+WITHIN void add_subconductor(const Unexpanded *load, ptrdiff_t point, ptrdiff_t i, const double *motion, double *total,
                              double (*rows)[4])
 {
     const double y = load->positions[(point * load->subconductors + i) * 2];
@@ -69,7 +69,8 @@ static void add_subconductor(const Unexpanded *load, ptrdiff_t point, ptrdiff_t 
     const double b = (motion[1] + lever * motion[3]) / phi, c = 1.0 - (motion[2] + y * motion[3]) / phi;
     const double square = b * b + c * c, r = sqrt(square);
     double values[COEFFICIENTS], slopes[COEFFICIENTS];
-    evaluate(load, load->which[point], load->rest_angle[point] + motion[0] - atan2(b, c), values, slopes);
+    const double wind = c > 0.0 ? atan(b / c) : atan2(b, c); /* atan is twice as fast, and c hardly ever changes its sign */
+    evaluate(load, load->which[point], load->rest_angle[point] + motion[0] - wind, values, slopes);
     const double lift = values[LIFT], drag = values[DRAG], moment = values[MOMENT];
     const double along = lift * c - drag * b, across = lift * b + drag * c;
     const double forces[3] = {r * along, r * across, d * square * moment};
@@ -97,7 +98,7 @@ static void add_subconductor(const Unexpanded *load, ptrdiff_t point, ptrdiff_t 
     }
 }
 
-void unexpanded_force(const Unexpanded *load, int m, const double *state, double *force, double *gradient)
+WIDE void unexpanded_force(const Unexpanded *load, int m, const double *state, double *force, double *gradient)
 {
     for (int j = 0; j < m; j++)
         force[j] = -load->at_rest[j];
