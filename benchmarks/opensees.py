@@ -115,6 +115,43 @@ def vertical_frequency(conductor: Conductor, section: Section, loops: int, count
     return max(modes, key=lambda mode: abs(mode.shape[:, 1] @ sine) / np.linalg.norm(mode.shape)).frequency
 
 
+def twin_torsional_frequency(conductor: Conductor, section: Section, loops: int, tied: str, bars: int = 160) -> float:
+    """Return the frequency [Hz] of a horizontal twin bundle's torsional mode that is nearest to sin(loops pi x/L).
+
+    Two chains side by side move across the line together. Their vertical motions stand for V and Theta: in a torsional
+    mode they are opposite. Bars have no torsional rigidity and no polar inertia, so the spacing does not matter.
+
+    Parameters
+    ----------
+    conductor : Conductor
+    section : Section
+        A single span.
+    loops : int
+    tied : str
+        Where both chains also move along the line together: `everywhere`, as in a rigid section, `at ends`, as between
+        held yokes, or `nowhere`.
+    bars : int
+        Bars per span.
+    """
+    with _model():
+        one = _chain(conductor, section, bars)
+        other = _chain(conductor, section, bars, first=len(one) + 1)
+        ends = {one[0]: section.end_stiffness[0], one[-1]: section.end_stiffness[1]}
+        for left, right in zip(one, other, strict=True):
+            along = tied == "everywhere" or (tied == "at ends" and left in ends)
+            directions = [1] * (along and ends.get(left, 0.0) < math.inf) + [3] * (left not in ends)
+            if directions:
+                ops.equalDOF(left.tag, right.tag, *directions)
+        _equilibrium(conductor, section, one, other)
+        eigenvalues = ops.eigen(8 * loops)
+        tags = [[node.tag for node in nodes] for nodes in (one, other)]
+        shapes = [[[ops.nodeEigenvector(tag, i + 1) for tag in row] for row in tags] for i in range(8 * loops)]
+    sine = np.sin(loops * math.pi * np.array([node.x for node in one]) / section.spans[0])
+    motion = np.array(shapes)  # (modes, chains, nodes, directions)
+    opposite = (motion[:, 0, :, 1] - motion[:, 1, :, 1]) @ sine / np.sqrt((motion**2).sum(axis=(1, 2, 3)))
+    return math.sqrt(eigenvalues[int(np.abs(opposite).argmax())]) / (2.0 * math.pi)
+
+
 @contextmanager
 def _model() -> Iterator[None]:
     """Open an empty model; OpenSees keeps one per process, so it is wiped before and after."""
@@ -126,14 +163,14 @@ def _model() -> Iterator[None]:
         ops.wipe()
 
 
-def _chain(conductor: Conductor, section: Section, bars: int) -> list[_Node]:
-    """Place bars along the catenaries, each with its local tension."""
-    nodes = [_Node(1, 0.0, 0.0)]
-    ops.node(1, 0.0, 0.0, 0.0)
+def _chain(conductor: Conductor, section: Section, bars: int, first: int = 1) -> list[_Node]:
+    """Place bars along the catenaries, each with its local tension; tags of nodes and bars begin with `first`."""
+    nodes = [_Node(first, 0.0, 0.0)]
+    ops.node(first, 0.0, 0.0, 0.0)
     for length in section.spans:
         start = nodes[-1]
         for x, y in _catenary(conductor, length, section.level_difference, bars):
-            node = _Node(len(nodes) + 1, start.x + x, start.y + y)
+            node = _Node(first + len(nodes), start.x + x, start.y + y)
             ops.node(node.tag, node.x, node.y, 0.0)
             _bar(conductor, nodes[-1], node)
             nodes.append(node)
@@ -158,11 +195,20 @@ def _bar(conductor: Conductor, left: _Node, right: _Node) -> None:
     ops.element("corotTruss", left.tag, left.tag, right.tag, 1.0, stressed)
 
 
-def _equilibrium(conductor: Conductor, section: Section, nodes: Sequence[_Node]) -> None:
-    """Fix the supports, apply the weight at the nodes, and solve for static equilibrium."""
+def _equilibrium(conductor: Conductor, section: Section, *chains: Sequence[_Node]) -> None:
+    """Support and load each chain, and solve for static equilibrium."""
+    springs = _Springs(sum(map(len, chains)))
+    ops.timeSeries("Constant", 1)
+    ops.pattern("Plain", 1, 1)
+    for nodes in chains:
+        _support_and_load(conductor, section, nodes, springs)
+    _solve()
+
+
+def _support_and_load(conductor: Conductor, section: Section, nodes: Sequence[_Node], springs: "_Springs") -> None:
+    """Fix the supports of a chain, and apply mass and weight at its nodes."""
     lengths = [math.dist((a.x, a.y), (b.x, b.y)) for a, b in itertools.pairwise(nodes)]
     shares = 0.5 * (np.array([0.0, *lengths]) + np.array([*lengths, 0.0]))
-    springs = _Springs(len(nodes))
     push = dict.fromkeys((node.tag for node in nodes), 0.0)
     for node, stiffness, sign in zip((nodes[0], nodes[-1]), section.end_stiffness, (-1.0, 1.0), strict=True):
         if math.isinf(stiffness):
@@ -180,12 +226,9 @@ def _equilibrium(conductor: Conductor, section: Section, nodes: Sequence[_Node])
         ops.fix(node.tag, 0, 1, 0)
         springs.hold(node, {1: stiffness, 3: stiffness})
         hung[node.tag] = string.weight / (3.0 * GRAVITY)  # a rigid rod's mass at its lower end
-    ops.timeSeries("Constant", 1)
-    ops.pattern("Plain", 1, 1)
     for node, share in zip(nodes, shares.tolist(), strict=True):
         ops.mass(node.tag, *[conductor.mass * share + hung[node.tag]] * 3)
         ops.load(node.tag, push[node.tag], -conductor.mass * GRAVITY * share, conductor.drag * share)
-    _solve()
 
 
 class _Springs:

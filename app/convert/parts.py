@@ -48,9 +48,11 @@ def conductor(part: schemas.Conductor) -> spec.Conductor:
 
 def bundle(part: schemas.Bundle) -> spec.Bundle:
     """Build the arrangement from positions or from a circle."""
+    section = spec.CrossSection(part.section) if part.section else None
     if part.positions is not None:
-        return spec.Bundle(tuple((y, z) for y, z in part.positions))
-    return spec.Bundle.regular(part.subconductors or 1, part.radius or 0.0, math.radians(part.orientation or 0.0))
+        return spec.Bundle(tuple((y, z) for y, z in part.positions), section)
+    orientation = math.radians(part.orientation or 0.0)
+    return spec.Bundle.regular(part.subconductors or 1, part.radius or 0.0, orientation, section)
 
 
 def span(part: schemas.Span) -> spec.Span:
@@ -67,7 +69,8 @@ def span(part: schemas.Span) -> spec.Span:
 
 def support(part: schemas.Support) -> spec.Support:
     """Build one end."""
-    return spec.Support(part.dead_end, part.adjacent_span, part.insulator_length, part.insulator_weight)
+    yoke = spec.Yoke(part.yoke) if part.yoke else None
+    return spec.Support(part.dead_end, part.adjacent_span, part.insulator_length, part.insulator_weight, yoke)
 
 
 def supports(part: schemas.Supports) -> spec.Supports:

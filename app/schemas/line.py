@@ -1,6 +1,6 @@
 """The line document: a utility's data of one span. Attributes have the engine's names, aliases the names in JSON."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -107,6 +107,12 @@ class Bundle(Document):
         examples=[[[0.0, -0.2], [0.0, 0.2]]],
         json_schema_extra={"unit": "m"},
     )
+    section: Literal["rigid", "free"] | None = Field(
+        default=None,
+        description="How sub-conductors move along the span: `rigid`, all alike, as if spacers could not yaw or pitch; "
+        "`free`, each by itself between the yokes at the ends, which lowers the torsional frequencies; if null, rigid",
+        examples=["free"],
+    )
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:
@@ -174,6 +180,12 @@ class Support(Document):
     )
     insulator_weight: float = quantity(
         "insulator_weight_n", "Weight of the string per sub-conductor", "N", (0.0, 1e5), 0.0, 0.0
+    )
+    yoke: Literal["held", "free"] | None = Field(
+        default=None,
+        description="Whether the yoke holds the sub-conductors of a free section together along the span, or turns "
+        "with them; if null, free at an insulator string and held elsewhere",
+        examples=["held"],
     )
 
 

@@ -9,6 +9,7 @@ from benchmarks.validation import (
     critical_wind_speeds,
     device_placement,
     direct_integration,
+    free_sections,
     frequencies,
     full_physics,
     internal_resonance,
@@ -34,6 +35,7 @@ the theory that this page names; [nomenclature](nomenclature.md) explains symbol
 
 SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "frequencies": frequencies.section,
+    "free_sections": free_sections.section,
     "internal_resonance": internal_resonance.section,
     "critical_wind_speeds": critical_wind_speeds.section,
     "limit_cycles": limit_cycles.section,

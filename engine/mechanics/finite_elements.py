@@ -1,8 +1,8 @@
 """Finite element matrices of the bundle on its reference curve. Theory section 3, paper section 3.
 
 Three-node isoparametric cable elements; four freedoms per node in the order U, V, W, Theta; node-major numbering. The
-cross-section is rigid, eq. (3), so the sums over sub-conductors are formed once and their number does not add to the
-cost.
+sub-conductors move by V, W and Theta of the cross-section, eq. (3), so sums over them are formed once and their number
+does not add to the cost. Along the span they move by the common U; `free_sections` says what own ones change.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,13 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
-from engine.mechanics.cross_sections import Sections, gauss_rule
-from engine.mechanics.static_profile import StaticProfile, arc_position, coordinates
+from engine.mechanics.cross_sections import Sections
+from engine.mechanics.free_sections import differences
+from engine.mechanics.interpolation import StrainPoints, element_nodes, shape_functions, strain_points
+from engine.mechanics.static_profile import StaticProfile, arc_position
 from engine.spec import GRAVITY, Line, PointDevice
 
 FIELDS = 4
 U, V, W, THETA = range(FIELDS)
-STIFFNESS_POINTS = 2  # three would lock the membrane strain of the curved element
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +59,8 @@ def matrices(lines: Sequence[Line], profile: StaticProfile, section_points: Sect
     density = elastic_density(lines, at, bundle_sums(lines)[:, :, None, None])
     stiffness = assemble(quadratic_form(at.slopes, at.weight, density))
     stiffness += assemble(quadratic_form(interpolation, weight, _ice_stiffness_density(lines, section_points)))
+    apart = differences(lines, profile, np.zeros((len(lines), stiffness.shape[-1] // FIELDS)))
+    stiffness[:, THETA::FIELDS, THETA::FIELDS] += apart.tangent
     for line, here, values, device in mounted(lines, profile):
         stiffness[line, here, here] += np.kron(np.outer(values, values), device.stiffness())
     add_end_springs(lines, profile, stiffness)
@@ -76,6 +79,9 @@ def mass_matrix(
     interpolation, weight = mass_points(lines, profile, section_points)
     sums = bundle_sums(lines)[:, :, None, None] if twist is None else turned_sums(lines, section_points.twist)
     mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, section_points, sums)))
+    apart = differences(lines, profile, np.zeros((len(lines), mass.shape[-1] // FIELDS)) if twist is None else twist)
+    along = mass[:, U::FIELDS, U::FIELDS] / bundle_sums(lines)[0][:, None, None]
+    mass[:, THETA::FIELDS, THETA::FIELDS] += apart.inertia(along)
     for line, here, values, device in mounted(lines, profile):
         turn = 0.0 if twist is None else float(values @ twist[line, here.start // FIELDS : here.stop // FIELDS])
         mass[line, here, here] += np.kron(np.outer(values, values), device.inertia(turn))
@@ -89,39 +95,6 @@ def mass_points(
     interpolation, derivative = shape_functions(section_points.local)
     metric = derivative @ element_nodes(profile, lines[0].span.elements)
     return interpolation, section_points.local_weight * np.linalg.norm(metric, axis=-1)
-
-
-@dataclass(frozen=True, slots=True)
-class StrainPoints:
-    """Quadrature points of the strain energy.
-
-    values: (points, 3) and slopes: (lines, elements, points, 3), shape functions and their derivatives by s; weight:
-    (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z'); tension: T [N] there.
-    """
-
-    values: FloatArray
-    slopes: FloatArray
-    weight: FloatArray
-    direction: FloatArray
-    tension: FloatArray
-
-
-def strain_points(lines: Sequence[Line], profile: StaticProfile) -> StrainPoints:
-    """Return the points at which the strain energy of lines with equal numbers of elements is integrated."""
-    abscissae, weights = gauss_rule(STIFFNESS_POINTS)
-    values, derivative = shape_functions(abscissae)
-    metric = derivative @ element_nodes(profile, lines[0].span.elements)
-    jacobian = np.linalg.norm(metric, axis=-1)
-    direction = metric / jacobian[..., None]
-    tension = profile.horizontal_tension[:, None, None] / direction[..., 0]
-    return StrainPoints(values, derivative / jacobian[..., None], weights * jacobian, direction, tension)
-
-
-def shape_functions(local: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return values and local derivatives of the quadratic shape functions, each local.shape + (3,)."""
-    values = [0.5 * local * (local - 1.0), 1.0 - local**2, 0.5 * local * (local + 1.0)]
-    slopes = [local - 0.5, -2.0 * local, local + 0.5]
-    return np.stack(values, axis=-1), np.stack(slopes, axis=-1)
 
 
 def bundle_sums(lines: Sequence[Line]) -> FloatArray:
@@ -141,13 +114,6 @@ def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
     y_y = c**2 * s_yy - 2.0 * c * s * s_yz + s**2 * s_zz
     y_z = c * s * (s_yy - s_zz) + (c**2 - s**2) * s_yz
     return np.stack([n * one, c * s_y - s * s_z, s * s_y + c * s_z, y_y, s_yy + s_zz - y_y, y_z])
-
-
-def element_nodes(profile: StaticProfile, elements: int) -> FloatArray:
-    """Return the node positions of each element [m]: (lines, elements, 3 nodes, 3 coordinates)."""
-    arc = profile.arc_length[:, None] * np.linspace(0.0, 1.0, 2 * elements + 1)
-    first = 2 * np.arange(elements)[:, None] + np.arange(3)
-    return coordinates(profile, arc)[:, first]
 
 
 def quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray) -> FloatArray:

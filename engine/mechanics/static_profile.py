@@ -1,7 +1,8 @@
 """Static profile of iced spans: catenary, tension, and the springs that restrain U at the ends. Theory section 2."""
 
+import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,7 +23,8 @@ class StaticProfile:
     arc_length L [m]; catenary_parameter c [m]; sag s_a from the chord, in the plane [m]; horizontal_tension: H along X
     per sub-conductor [N]; tilt of the plane of the sag [rad]; axes (lines, 3, 3): the axes of the plane in (X, Y, Z),
     along, up against the resultant load, and out of the plane; end_stiffness K_x per sub-conductor at the left and the
-    right end (lines, 2) [N/m], infinite at a dead end.
+    right end (lines, 2) [N/m], infinite at a dead end; yoke_stiffness: the same against moving along the span beyond
+    the others of a free section, infinite at a held yoke.
     """
 
     span_length: FloatArray
@@ -35,6 +37,7 @@ class StaticProfile:
     tilt: FloatArray
     axes: FloatArray
     end_stiffness: FloatArray
+    yoke_stiffness: FloatArray
 
 
 def static_profile(lines: Sequence[Line]) -> StaticProfile:
@@ -64,6 +67,7 @@ def static_profile(lines: Sequence[Line]) -> StaticProfile:
     weight = GRAVITY * np.array([mean_mass(line) for line in lines])
     still = np.array([_catenary_parameter(line, p) for line, p in zip(lines, weight, strict=True)])
     ends = np.array([_end_stiffness(*item) for item in zip(lines, weight, still, strict=True)]).reshape(len(lines), 2)
+    yokes = [_yoke_stiffness(*item) for item in zip(lines, weight, still, strict=True)]
     tilt = np.arctan(np.array([mean_drag(line) for line in lines]) / weight)
     rigidity = np.array([line.conductor.axial_rigidity for line in lines])
     hung = StillSpans(length, rise, weight, rigidity, still * weight, (1.0 / ends).sum(axis=1))
@@ -81,6 +85,7 @@ def static_profile(lines: Sequence[Line]) -> StaticProfile:
         tilt=tilt,
         axes=plane_axes(length, rise, tilt),
         end_stiffness=ends,
+        yoke_stiffness=np.array(yokes).reshape(len(lines), 2),
     )
 
 
@@ -164,6 +169,26 @@ def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, f
         np.inf if end.dead_end else _adjacent_stiffness(line, end, weight, catenary, own)
         for _, end, own in _ends(line, catenary)
     )
+    return left, right
+
+
+def _yoke_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, float]:
+    """Return what resists a sub-conductor of a free section beyond the mean of all, along both ends [N/m].
+
+    At a free yoke that is its own continuation in the adjacent span, without the string, which holds only the middle of
+    the yoke; at a dead end there is none.
+    """
+    given = line.supports.longitudinal_stiffness
+
+    def of_end(end: Support, own: float) -> float:
+        if end.holds_differences:
+            return math.inf
+        if given is not None:
+            return given
+        bare = replace(end, insulator_length=None)
+        return 0.0 if end.dead_end else _adjacent_stiffness(line, bare, weight, catenary, own)
+
+    left, right = (of_end(end, own) for _, end, own in _ends(line, catenary))
     return left, right
 
 

@@ -1,14 +1,14 @@
 """Static twist: the angle at which torsional stiffness balances the weight of eccentric ice and pendulums.
 
-The section is rigid and may turn by any angle: sub-conductor i stands at (eta_i, zeta_i), which is (y_i, z_i) rotated
-by Theta, so V_i' = V' - zeta_i Theta' and W_i' = W' + eta_i Theta'. The energy is that of theory section 3 with rotated
-positions,
+The section may turn by any angle: sub-conductor i stands at (eta_i, zeta_i), which is (y_i, z_i) rotated by Theta, so
+V_i' = V' - zeta_i Theta' and W_i' = W' + eta_i Theta'. The energy is that of theory section 3 with rotated positions,
 
     Pi = 1/2 int g^T D(Theta) g ds + end springs + n int m g (e_y cos Theta - e_z sin Theta) ds + energy of devices,
 
 g = (U', V', W', Theta'). The weight at the bare centres does no net work: the tension of the catenary cancels it, since
 (T y')' = m g. In D, T (V_i'^2 + W_i'^2) becomes T r_i^2 Theta'^2 at any twist. At zero twist the second
-derivative is K of section 3 with its gravity term -n m g e_y; as there, the strain is the linear part of (7).
+derivative is K of section 3 with its gravity term -n m g e_y; as there, the strain is the linear part of (7). Free
+sections add what `free_sections` says to Pi.
 """
 
 import math
@@ -31,9 +31,10 @@ from engine.mechanics.finite_elements import (
     mass_matrix,
     mass_points,
     mounted,
-    strain_points,
     turned_sums,
 )
+from engine.mechanics.free_sections import differences
+from engine.mechanics.interpolation import strain_points
 from engine.mechanics.static_profile import StaticProfile
 from engine.numerics.newton import NewtonOptions, newton, solve_systems
 from engine.spec import GRAVITY, Line
@@ -189,6 +190,9 @@ def energy_derivatives(
     moment, gravity = _ice_energy(lines, profile, section_points, displacement[:, THETA::FIELDS])
     gradient = (springs @ displacement[..., None])[..., 0] + force + moment
     tangent = springs + stiffness + gravity
+    apart = differences(lines, profile, displacement[:, THETA::FIELDS])
+    gradient[:, THETA::FIELDS] += apart.gradient
+    tangent[:, THETA::FIELDS, THETA::FIELDS] += apart.tangent
     for line, here, values, device in mounted(lines, profile):
         turn = float(values @ displacement[line, here][THETA::FIELDS])
         gradient[line, here] -= np.kron(values, device.load(turn))

@@ -13,7 +13,8 @@ from engine.arrays import FloatArray, IntArray
 from engine.mechanics.along_span import wind_factor
 from engine.mechanics.coefficient_curves import cubics_about, local_curves, reach
 from engine.mechanics.cross_sections import Sections, sections
-from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, matrices, shape_functions
+from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, matrices
+from engine.mechanics.interpolation import shape_functions
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
 from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state, twisted_where_large
 from engine.mechanics.torsional_elements import torsional_elements

@@ -17,7 +17,7 @@ import numpy as np
 
 from engine.arrays import FloatArray, merge_axes
 from engine.mechanics.cross_sections import Sections
-from engine.mechanics.finite_elements import element_nodes, shape_functions
+from engine.mechanics.interpolation import element_nodes, shape_functions
 from engine.mechanics.static_profile import StaticProfile
 from engine.numerics import polynomial
 from engine.spec import Line

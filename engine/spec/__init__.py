@@ -48,7 +48,7 @@ from engine.spec.environment import (
 from engine.spec.line import Line, ice_properties
 from engine.spec.physics import PhysicsRequest, with_physics
 from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
-from engine.spec.span import Bundle, Conductor, Span, Support, Supports
+from engine.spec.span import Bundle, Conductor, CrossSection, Span, Support, Supports, Yoke
 
 __all__ = [
     "CLOSED",
@@ -66,6 +66,7 @@ __all__ = [
     "Closure",
     "Coefficients",
     "Conductor",
+    "CrossSection",
     "Damping",
     "DampingModel",
     "DetuningPendulum",
@@ -95,6 +96,7 @@ __all__ = [
     "TorsionalDamper",
     "TorusSearch",
     "Wind",
+    "Yoke",
     "check_compatible",
     "check_placement",
     "ice_properties",

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 
 from engine.outcome import Fault, require
 from engine.spec.rules import finite, not_negative, positive
@@ -50,11 +51,29 @@ class Conductor:
         return None
 
 
+class CrossSection(StrEnum):
+    """How the sub-conductors of a bundle move along the span: all by one U, or each by its own. Theory section 12.2."""
+
+    RIGID = "rigid"
+    FREE = "free"
+
+
+class Yoke(StrEnum):
+    """Whether a yoke holds the sub-conductors of a free section together along the span, or yaws and pitches freely."""
+
+    HELD = "held"
+    FREE = "free"
+
+
 @dataclass(frozen=True, slots=True)
 class Bundle:
-    """Positions (y, z) [m] of the bare sub-conductor centres about the reference curve."""
+    """Positions (y, z) [m] of the bare sub-conductor centres about the reference curve, and how the section moves.
+
+    section: None for the default, which is rigid.
+    """
 
     positions: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
+    section: CrossSection | None = None
 
     def __post_init__(self) -> None:
         """Check that there is a sub-conductor and that positions are finite and distinct."""
@@ -71,7 +90,9 @@ class Bundle:
         )
 
     @classmethod
-    def regular(cls, subconductors: int, radius: float, orientation: float) -> "Bundle":
+    def regular(
+        cls, subconductors: int, radius: float, orientation: float, section: CrossSection | None = None
+    ) -> "Bundle":
         """Place sub-conductors on a circle at equal angles.
 
         Parameters
@@ -82,6 +103,8 @@ class Bundle:
             Distance r_i from the reference curve [m]; 0 for one sub-conductor, positive for more.
         orientation : float
             Angle theta_10 of the first, clockwise from straight up [rad]: y = r cos(theta), z = r sin(theta), eq. (3).
+        section : CrossSection or None
+            How the section moves.
 
         Raises
         ------
@@ -96,9 +119,9 @@ class Bundle:
             Fault("bundle.radius", radius, "must be 0 for one sub-conductor") if single and radius > 0.0 else None,
         )
         if single:
-            return cls()
+            return cls(section=section)
         angles = [orientation + 2.0 * math.pi * i / subconductors for i in range(subconductors)]
-        return cls(tuple((radius * math.cos(angle), radius * math.sin(angle)) for angle in angles))
+        return cls(tuple((radius * math.cos(angle), radius * math.sin(angle)) for angle in angles), section)
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,13 +166,14 @@ class Support:
     """One end of the span: a dead end fixes U; else the adjacent span and the insulator string hold it, eq. (A10).
 
     adjacent_span: its length [m], None for the length of this span; insulator_length L_i [m]; insulator_weight W_i per
-    sub-conductor [N].
+    sub-conductor [N]; yoke: None for free at a string and held elsewhere.
     """
 
     dead_end: bool = False
     adjacent_span: float | None = None
     insulator_length: float | None = None
     insulator_weight: float = 0.0
+    yoke: Yoke | None = None
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""
@@ -158,6 +182,13 @@ class Support:
             positive("insulator_length", self.insulator_length),
             not_negative("insulator_weight", self.insulator_weight),
         )
+
+    @property
+    def holds_differences(self) -> bool:
+        """Whether sub-conductors of a free section have a common U here."""
+        if self.yoke is None:
+            return self.dead_end or self.insulator_length is None
+        return self.yoke is Yoke.HELD
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,11 +22,17 @@ FULL_LINE: dict[str, Any] = {
         "polar_inertia_kg_m": 3.334e-4,
         "rated_strength_n": 140000.0,
     },
-    "bundle": {"subconductors": 2, "radius_m": 0.2355, "orientation_deg": 90.0},
+    "bundle": {"subconductors": 2, "radius_m": 0.2355, "orientation_deg": 90.0, "section": "free"},
     "span": {"length_m": 125.88, "horizontal_tension_n": 30000.0, "elements": 12, "level_difference_m": 3.0},
     "supports": {
         "longitudinal_stiffness_n_per_m": None,
-        "left": {"dead_end": True, "adjacent_span_m": None, "insulator_length_m": None, "insulator_weight_n": 0.0},
+        "left": {
+            "dead_end": True,
+            "adjacent_span_m": None,
+            "insulator_length_m": None,
+            "insulator_weight_n": 0.0,
+            "yoke": "free",
+        },
         "right": {"dead_end": False, "adjacent_span_m": 99.0, "insulator_length_m": 2.0, "insulator_weight_n": 300.0},
     },
     "ice": {

@@ -80,7 +80,8 @@ _CONDUCTOR = st.builds(
 _BUNDLE = st.one_of(
     st.just({"subconductors": 1}),
     st.fixed_dictionaries(
-        {"subconductors": st.integers(2, 4), "radius_m": near(0.24), "orientation_deg": st.floats(0.0, 360.0)}
+        {"subconductors": st.integers(2, 4), "radius_m": near(0.24), "orientation_deg": st.floats(0.0, 360.0)},
+        optional={"section": st.sampled_from(["rigid", "free"])},
     ),
     st.just({"positions_m": [[0.0, -0.2], [0.0, 0.2]]}),
 )
@@ -104,6 +105,7 @@ _END = st.fixed_dictionaries(
         "adjacent_span_m": st.none() | near(130.0),
         "insulator_length_m": st.none() | near(2.0),
         "insulator_weight_n": near(300.0),
+        "yoke": st.sampled_from(["held", "free"]),
     },
 )
 _SUPPORTS = st.fixed_dictionaries(
@@ -118,6 +120,13 @@ _SEGMENT = st.fixed_dictionaries(
         "mass_kg_per_m": near(2.4),
     },
 )
+
+
+def _one_rest(ice: Json) -> Json:
+    """Drop values at rest beside a table, which contains them."""
+    return {name: ice[name] for name in ice if name != "aerodynamics_at_rest" or "table" not in ice["aerodynamics"]}
+
+
 _ICE = st.fixed_dictionaries(
     {"aerodynamics": COEFFICIENTS},
     optional={
@@ -126,7 +135,7 @@ _ICE = st.fixed_dictionaries(
         "aerodynamics_at_rest": AT_REST,
         "segments": st.lists(_SEGMENT, max_size=1),
     },
-)
+).map(_one_rest)
 _PROFILE = [{"position_m": 0.0, "factor": 0.7}, {"position_m": 40.0, "factor": 1.3}]
 _WIND = st.fixed_dictionaries(
     {},

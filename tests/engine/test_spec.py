@@ -33,6 +33,7 @@ from engine.spec import (
     Support,
     Supports,
     Wind,
+    Yoke,
     check_compatible,
     ice_properties,
     with_physics,
@@ -275,3 +276,19 @@ def test_finite_element_loops_are_bounded_where_motions_are_asked_for() -> None:
         Analysis(finite_element_loops=many)
     assert Analysis(finite_element_loops=many, models=(Model.HYBRID,)).finite_element_loops == many
     assert Analysis(loops=many, finite_element_loops=()).loops == many
+
+
+@pytest.mark.parametrize(
+    ("end", "held"),
+    [
+        (Support(), True),
+        (Support(dead_end=True), True),
+        (Support(dead_end=True, insulator_length=2.0), True),  # a dead end has no suspension string
+        (Support(insulator_length=2.0), False),
+        (Support(yoke=Yoke.FREE), False),
+        (Support(dead_end=True, yoke=Yoke.FREE), False),
+        (Support(insulator_length=2.0, yoke=Yoke.HELD), True),
+    ],
+)
+def test_yokes_are_held_but_at_strings_unless_said_otherwise(end: Support, held: bool) -> None:
+    assert end.holds_differences is held

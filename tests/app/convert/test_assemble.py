@@ -29,12 +29,14 @@ def test_every_field_of_the_contract_arrives_in_the_engine_in_its_unit() -> None
     on_segment = spec.Aerodynamics(vertical, horizontal, torsional, at_rest=(0.3, 1.1, 0.4))
     assert line == spec.Line(
         conductor=spec.Conductor(0.0286, 28418105.8, 101.0, 2.379, 3.334e-4, 0.5, 140000.0),
-        bundle=spec.Bundle.regular(2, 0.2355, math.pi / 2),
+        bundle=spec.Bundle.regular(2, 0.2355, math.pi / 2, spec.CrossSection.FREE),
         span=spec.Span(125.88, horizontal_tension=30000.0, elements=12, level_difference=3.0),
         ice=spec.Ice(own, 2.05e-3, -0.63e-3, (spec.IceSegment(0.0, 62.94, on_segment, 1e-3, None, 2.3),)),
         wind=spec.Wind(1.2, ((0.0, 0.7), (125.88, 1.3)), spec.BlowOut(10.0, 1.1), math.pi / 6),
         damping=spec.Damping(0.000515, 0.0006, 0.308, spec.DampingModel.CONSTANT_RATIO),
-        supports=spec.Supports(None, spec.Support(dead_end=True), spec.Support(False, 99.0, 2.0, 300.0)),
+        supports=spec.Supports(
+            None, spec.Support(dead_end=True, yoke=spec.Yoke.FREE), spec.Support(False, 99.0, 2.0, 300.0)
+        ),
         devices=(
             spec.Spacer(25.0, 6.5, 0.4),
             spec.DetuningPendulum(62.94, 12.0, 0.35, math.pi / 6),
@@ -180,3 +182,12 @@ def test_area_and_modulus_make_the_rigidity() -> None:
 def test_positions_are_taken_as_they_stand() -> None:
     line = changed("bundle", {"positions_m": [[0.1, -0.2], [-0.1, 0]]})
     assert built(line)[0].bundle == spec.Bundle(((0.1, -0.2), (-0.1, 0.0)))
+
+
+@pytest.mark.parametrize("section", [None, *spec.CrossSection])
+def test_every_kind_of_section_and_yoke_arrives(section: spec.CrossSection | None) -> None:
+    line = changed("bundle.section", None if section is None else section.value)
+    assert built(line)[0].bundle.section is section
+    for yoke in (None, *spec.Yoke):
+        line = changed("supports.right.yoke", None if yoke is None else yoke.value)
+        assert built(line)[0].supports.right.yoke is yoke

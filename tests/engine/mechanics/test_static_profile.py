@@ -14,7 +14,7 @@ from engine.mechanics.static_profile import (
     static_profile,
 )
 from engine.outcome import InvalidSpec
-from engine.spec import BlowOut, Span, Support, Supports, Wind
+from engine.spec import BlowOut, Span, Support, Supports, Wind, Yoke
 from tests.builders import source_line
 
 WEIGHT = 2.379 * 9.81
@@ -164,3 +164,16 @@ def test_tension_at_the_steeper_end_follows_from_the_slope_of_the_curve() -> Non
     steps = np.diff(points, axis=2)[:, :, 0]
     steepness = np.linalg.norm(steps, axis=-1) / steps[..., 0]
     assert end_steepness(profile) == pytest.approx(steepness.max(axis=-1), rel=1e-5)
+
+
+def test_free_yoke_feels_the_adjacent_span_without_the_string() -> None:
+    loose = Support(dead_end=True, yoke=Yoke.FREE)
+    for left, right, expected in (
+        (Support(), Support(dead_end=True), [math.inf, math.inf]),
+        (Support(insulator_length=1.6, adjacent_span=200.0), loose, [by_hand(200.0), 0.0]),
+        (Support(yoke=Yoke.FREE), Support(insulator_length=1.6, yoke=Yoke.HELD), [by_hand(125.88), math.inf]),
+    ):
+        line = replace(source_line(2), supports=Supports(left=left, right=right))
+        assert static_profile((line,)).yoke_stiffness[0] == pytest.approx(expected, rel=1e-12)
+    line = replace(source_line(2), supports=Supports(7e4, Support(yoke=Yoke.FREE), Support()))
+    assert static_profile((line,)).yoke_stiffness[0].tolist() == [7e4, math.inf]

@@ -21,6 +21,7 @@ from engine.outcome import InvalidSpec, Outcome
 from engine.spec import (
     Analysis,
     Bundle,
+    CrossSection,
     DetuningPendulum,
     Ice,
     IceSegment,
@@ -56,14 +57,14 @@ def wave_number(line: Line, eccentricity: float) -> float:
 
 
 def eventful_line(seed: int) -> Line:
-    """Draw a line with coupling, bundle positions off the centre, partial ice and a pendulum."""
+    """Draw a line with coupling, free sections, positions off the centre, partial ice and a pendulum."""
     generator = np.random.default_rng(seed)
     line = random_line(generator)
     positions = tuple((float(y), float(z)) for y, z in generator.normal(scale=0.2, size=(3, 2)))
     return replace(
         line,
         conductor=replace(line.conductor, axial_torsional_coupling=500.0),
-        bundle=Bundle(positions),
+        bundle=Bundle(positions, CrossSection.FREE),
         ice=replace(line.ice, segments=(IceSegment(10.0, 33.0, eccentricity_y=-1e-3, eccentricity_z=1e-3),)),
         devices=(DetuningPendulum(40.0, 10.0, 0.4, 0.3),),
     )
