@@ -15,6 +15,7 @@ from engine.cycles.bifurcations import bifurcations
 from engine.cycles.harmonic_balance import Orbits, resized
 from engine.cycles.known_cycles import Starts, stacked
 from engine.cycles.search import Cycles, DirectIntegration, explicit_starts, find_cycles
+from engine.each_wind import analyse_lines
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds, no_crossings
@@ -97,9 +98,9 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
     if len({line.span.elements for line in lines}) != 1:
         raise InvalidSpec(Fault("span.elements", None, "must be equal within a stack of lines"))
     if analysis.device_effect is DeviceEffect.NEGLECTED:
-        return (yield from _analyse(lines, analysis))
+        return (yield from analyse_lines(lines, analysis, _analyse))
     without_devices = [replace(line, devices=()) for line in lines]
-    results = yield from _analyse([*lines, *without_devices], analysis)
+    results = yield from analyse_lines([*lines, *without_devices], analysis, _analyse)
     pairs = zip(results[len(lines) :], results, strict=False)
     return [
         replace(with_devices, device_effects=device_effects(without, with_devices)) for without, with_devices in pairs

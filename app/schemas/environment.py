@@ -131,7 +131,14 @@ class ProfilePoint(Document):
 class BlowOut(Document):
     """The mean drag that swings the plane of the sag downwind."""
 
-    wind_speed: float = quantity("wind_speed_m_per_s", "Reference wind speed", "m/s", (0.0, 100.0), 10.0)
+    wind_speed: float | None = quantity(
+        "wind_speed_m_per_s",
+        "Wind speed of the mean drag; if null, each wind speed of the analysis",
+        "m/s",
+        (0.0, 100.0),
+        10.0,
+        None,
+    )
     drag_coefficient: float | None = quantity(
         "drag_coefficient", "Mean drag coefficient; if null, the horizontal one at rest", "1", (0.0, 10.0), 1.0, None
     )

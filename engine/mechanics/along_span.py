@@ -56,10 +56,11 @@ def mean_mass(line: Line) -> float:
 def mean_drag(line: Line) -> float:
     """Return the drag per length of a sub-conductor in the wind of the blow-out, averaged over the span [N/m].
 
-    Zero without blow-out. Without a drag coefficient it is that at rest, C_z0, of each stretch.
+    Zero without blow-out, and where its wind speed is left to the analysis: that is the line in still air. Without a
+    drag coefficient it is that at rest, C_z0, of each stretch.
     """
     blow_out = line.wind.blow_out
-    if blow_out is None:
+    if blow_out is None or blow_out.wind_speed is None:
         return 0.0
     marks = np.array([0.0, *boundaries(line), line.span.length])
     width = np.diff(marks)

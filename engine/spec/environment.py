@@ -131,10 +131,10 @@ class Ice:
 class BlowOut:
     """Mean drag at wind_speed [m/s] that turns the plane of the sag. Theory section 15.
 
-    drag_coefficient: None takes the coefficients C_z0 at rest.
+    wind_speed: None means each wind speed of an analysis; drag_coefficient: None takes the coefficients C_z0 at rest.
     """
 
-    wind_speed: float
+    wind_speed: float | None
     drag_coefficient: float | None = None
 
     def __post_init__(self) -> None:

@@ -66,6 +66,17 @@ class Line:
                 for fault in owner.measured.curve_faults():
                     yield replace(fault, field=f"{path}.aerodynamics.{fault.field}")
 
+    @property
+    def follows_wind(self) -> bool:
+        """Whether the blow-out is that of each wind speed, so that the static state depends on it."""
+        return self.wind.blow_out is not None and self.wind.blow_out.wind_speed is None
+
+    def blown_out_at(self, wind_speed: float) -> "Line":
+        """Return the line with its blow-out at a given wind speed [m/s]."""
+        if self.wind.blow_out is None:
+            return self
+        return replace(self, wind=replace(self.wind, blow_out=replace(self.wind.blow_out, wind_speed=wind_speed)))
+
     def _stretches_by_field(self) -> Iterator[tuple[str, float, float]]:
         for i, device in enumerate(self.devices):
             yield from ((f"devices.{i}", part.start, part.stop) for part in device.stretches)

@@ -52,6 +52,9 @@ def followed(line_at: LineAt, values: Sequence[float], results: Sequence[Result]
     """
     rule = "must be expanded, and the model no table, in a study that follows its cycles"
     require(Fault("aerodynamic_load", analysis.aerodynamic_load.value, rule) if analysis.load_stands else None)
+    rule = "must be given where cycles are followed over a field"
+    moving = any(line_at(value).follows_wind for value in values)
+    require(Fault("wind.blow_out.wind_speed", None, rule) if moving else None)
     study = _Study(line_at, np.array(values, dtype=np.float64), analysis)
     discretization, grid = study.models_of([line_at(value) for value in values])
     known = study.starts(discretization, grid, results)

@@ -45,6 +45,12 @@ def test_every_field_of_the_contract_arrives_in_the_engine_in_its_unit() -> None
     )
 
 
+def test_blow_out_may_follow_the_wind_with_the_drag_at_rest() -> None:
+    line, _ = built(changed("wind.blow_out", {"wind_speed_m_per_s": None}))
+    assert line.wind.blow_out == spec.BlowOut(None, None)
+    assert line.follows_wind
+
+
 def test_a_torsional_damper_arrives_and_its_damping_may_be_studied() -> None:
     damper = {"type": "torsional_damper", "position_m": 62.94, "mass_kg": 20.0, "polar_inertia_kg_m2": 0.8}
     line = changed("devices", [{**damper, "damping_n_m_s": 15.0}])
