@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, linearized, resized, select
+from engine.cycles.harmonic_balance import Orbits, balance, basis, half_peak_to_peak, linearized, resized, select
 from engine.cycles.search import Cycles
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.reduced_model import ReducedModel, diagonals, take
+from engine.models.stretching import restoring_force, take_stretching
 from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.spec import Check
@@ -29,8 +30,9 @@ class Confidence:
 
     residual: largest residual of the equations relative to the largest elastic force; truncation: relative change of
     the largest amplitude with one more harmonic; detuning: of its relative changes if the horizontal frequencies rise
-    and if they fall by 0.1 % the one of larger size, NaN if one of the shifts leaves no such cycle; direct: its
-    relative change in 50 periods of direct integration, NaN if that was not asked for or the cycle is unstable.
+    or fall by 0.1 %, or fall by as much as stretching raises them, the one of largest size, NaN if one of the shifts
+    leaves no such cycle; direct: its relative change in 50 periods of direct integration, NaN if that was not asked for
+    or the cycle is unstable.
     """
 
     residual: FloatArray
@@ -91,8 +93,9 @@ def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArr
 def _largest_change(
     model: ReducedModel, member: IntArray, orbits: Orbits, change: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
-    """Return the larger of the changes under higher and under lower horizontal frequencies, NaN where a cycle is lost.
+    """Return the largest of the changes under shifted horizontal frequencies, NaN where one shift leaves no such cycle.
 
+    They rise and fall by DETUNING; where stretching raises them by more over the cycle, they fall by that much, too.
     change: returns the relative change of the amplitudes of coefficients (cycles, m, 2 H + 1).
     """
     # Near a resonance even 0.1 % of detuning is nonlinear, so a single linear step would not be enough.
@@ -105,8 +108,33 @@ def _largest_change(
     solved, second = balance(_detuned(model, -DETUNING), member[soft], start, COARSE)
     lower[soft] = np.where(second.converged[:, None, None], solved.coefficients, np.nan)
     fall = change(lower)
-    # Where one of the two is NaN, the comparison is false and the sum is NaN.
-    return np.where(np.abs(rise) >= np.abs(fall), rise, fall + 0.0 * rise)
+    relaxed = orbits.coefficients.copy()
+    shift = stretching_shift(model, member, orbits)
+    far = np.flatnonzero(shift > DETUNING)
+    if far.size:
+        own = _detuned(take(model, member[far]), -shift[far])
+        solved, third = balance(own, np.arange(far.size), select(orbits, far), COARSE)
+        relaxed[far] = np.where(third.converged[:, None, None], solved.coefficients, np.nan)
+    changes = np.stack([rise, fall, change(relaxed)])
+    # argmax takes NaN for the largest.
+    return np.asarray(changes[np.abs(changes).argmax(axis=0), np.arange(member.size)])
+
+
+def stretching_shift(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
+    """Return by what share of itself stretching raises the horizontal frequency over each cycle: (cycles,).
+
+    Half of the mean work of stretching on the horizontal coordinates over that of their stiffness, which is exact to
+    first order in the stretching.
+    """
+    stretching = take_stretching(model.stretching, member)
+    if stretching is None:
+        return np.zeros(member.size)
+    harmonics = orbits.coefficients.shape[-1] // 2
+    q = (orbits.coefficients @ basis(harmonics).values.T).swapaxes(-1, -2)
+    horizontal = model.direction == HORIZONTAL
+    work = (restoring_force(stretching, q) * q)[..., horizontal].sum(axis=(1, 2))
+    elastic = (diagonals(model.stiffness)[member, None] * q**2)[..., horizontal].sum(axis=(1, 2))
+    return np.asarray(0.5 * work / np.where(elastic > 0.0, elastic, np.inf))
 
 
 def integration_drift(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
@@ -124,7 +152,10 @@ def _amplitude_drift(model: ReducedModel, orbit: Orbits) -> float:
     return float(amplitude_after_periods(model, orbit, PERIODS)[main] / own[main] - 1.0)
 
 
-def _detuned(model: ReducedModel, shift: float) -> ReducedModel:
-    """Change the stiffness of the horizontal coordinates so that their frequencies shift by a share of themselves."""
-    factor = np.where(model.direction == HORIZONTAL, 1.0 + shift, 1.0)
-    return replace(model, stiffness=model.stiffness * factor[:, None] * factor)
+def _detuned(model: ReducedModel, shift: float | FloatArray) -> ReducedModel:
+    """Change the stiffness of the horizontal coordinates so that their frequencies shift by a share of themselves.
+
+    shift: of all members, or (members,).
+    """
+    factor = np.where(model.direction == HORIZONTAL, 1.0 + np.asarray(shift)[..., None], 1.0)
+    return replace(model, stiffness=model.stiffness * factor[..., :, None] * factor[..., None, :])

@@ -19,10 +19,12 @@ from engine.progress import driven
 
 FINER_STEPS = (4, 16)  # factors on the number of steps of Floquet's integration, where its error leaves doubt
 DOUBTFUL = 1e-6  # error of the multipliers, below which finer steps would not settle an unknown stability
+INACCURATE = 1e-4  # error of the multipliers over the largest, above which finer steps are used in any case
 LIGHT = -1.0  # real part of an exponent below which a mode decays within a period and no resonance is sharp
 FAR = 0.3  # rad, the farthest that an exponent may move between two points
 SHARE = 0.5  # of its distance from 0 and i pi that an exponent may move between two points
 SHARPEST = 2e-3  # smallest distance in that rule: sharper resonances than by a damping of 0.03 % are not resolved
+ROUNDING = 1e-10  # share of the largest multiplier below which another one is lost in rounding
 SHORTEST = 1e-3  # scaled length of a segment that is not divided again
 PARTS = 4  # most parts into which a segment is divided at once
 ROUNDS = 12
@@ -30,11 +32,14 @@ LONGEST = 40  # most points that replace a segment
 
 
 def judged_points(problem: CycleProblem, points: BranchPoints) -> Floquet:
-    """Return the multipliers of points on branches, with finer steps where their error leaves the stability unknown."""
+    """Return the multipliers of points on branches, with finer steps where they are inaccurate or leave doubt."""
     result = floquet(*problem.models(points.z, points.branch), problem.orbits(points.z, points.branch))
     for fineness in FINER_STEPS:
-        doubt = (result.stability == Stability.UNKNOWN) & (result.trivial_error > DOUBTFUL)
-        index = np.flatnonzero(np.asarray(doubt, dtype=np.bool_))
+        unknown = np.asarray(result.stability == Stability.UNKNOWN, dtype=np.bool_)
+        largest = np.abs(result.multipliers).max(axis=-1, initial=1.0)
+        index = np.flatnonzero(
+            (unknown & (result.trivial_error > DOUBTFUL)) | (result.trivial_error > INACCURATE * largest)
+        )
         if index.size == 0:
             break
         some = points.select(index)
@@ -205,7 +210,8 @@ def signed_exponents(branch_set: BranchSet, index: IntArray) -> dict[int, Comple
     values, vectors = np.linalg.eig(np.nan_to_num(matrices))
     q, p = vectors[:, :m], vectors[:, m:]
     signature = np.einsum("kin,kij,kjn->kn", q.conj(), model.mass[member], p).imag
-    kept = ((signature > 0.0) | (values.imag == 0.0)) & (values != 0.0)
+    size = np.abs(values)
+    kept = ((signature > 0.0) | (values.imag == 0.0)) & (size > ROUNDING * size.max(axis=-1, keepdims=True))
     trivial = np.abs(values - 1.0).argmin(axis=-1)
     kept[np.arange(index.size), trivial] = False
     with np.errstate(divide="ignore"):

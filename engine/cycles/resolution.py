@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from engine.cycles.branch_set import BranchSet
 from engine.cycles.floquet import Floquet, floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.models.aerodynamic_load import force_gradient
@@ -12,6 +13,7 @@ from engine.models.reduced_model import ReducedModel, diagonals, lowest_frequenc
 
 LARGEST_TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which a cycle is refined
 MOST_HARMONICS = 12
+COARSE = 1e-3  # share of the last harmonics, and error of the multipliers, above which a branch needs more harmonics
 MOST_FOLLOWED = 8  # harmonics of a branch: those beyond the sixth multiple of the lowest frequency are hardly driven
 LIGHT = 0.15  # growth rate over the lowest natural frequency, below which a resonance is sharp
 SUPERHARMONIC = 1.5  # ratio of a natural frequency to the lowest one, above which a multiple of it can be met
@@ -44,6 +46,16 @@ def harmonics_needed(model: ReducedModel, wind_speeds: FloatArray, asked: int) -
     # A model without stiffness has no frequencies, and no branches either.
     order = np.where(np.isfinite(order), order, 0.0).astype(np.intp)
     return np.where(order > 0, np.maximum(asked, np.minimum(order + 2, MOST_FOLLOWED)), asked)
+
+
+def unresolved_members(model: ReducedModel, branch_sets: Sequence[BranchSet]) -> BoolArray:
+    """Return which members have points on followed branches whose last harmonics do not fall off: (members,)."""
+    coarse = np.zeros(model.mass.shape[0], dtype=np.bool_)
+    for branch_set in branch_sets:
+        moving = np.flatnonzero(branch_set.floquet.trivial_error > COARSE)
+        member = branch_set.member[moving]
+        coarse[member[_tail(model, member, select(branch_set.orbits, moving)) > COARSE]] = True
+    return coarse
 
 
 def resolved_in_groups(

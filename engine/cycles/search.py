@@ -27,7 +27,7 @@ from engine.cycles.first_harmonic import (
 from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.cycles.known_cycles import KnownCycles, Starts
-from engine.cycles.resolution import harmonics_needed, resolved_in_groups
+from engine.cycles.resolution import MOST_HARMONICS, harmonics_needed, resolved_in_groups, unresolved_members
 from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
 from engine.models.reduced_model import ReducedModel, lowest_frequency, take
 from engine.outcome import Stability
@@ -141,10 +141,11 @@ def find_cycles(
     if wind_speeds.size == 0:
         return _sorted_cycles(model, known, ())
     needed = harmonics_needed(model, wind_speeds, harmonics)
-    branch_sets: list[BranchSet] = []
-    for count in np.unique(needed).tolist():
-        own = np.isin(crossings.member, np.flatnonzero(needed == count))
-        branch_sets += _branches_from_hopf_points(model, crossings, own, wind_speeds, count)
+    branch_sets = _branches_in_groups(model, crossings, wind_speeds, needed)
+    coarse = (needed > harmonics) & unresolved_members(model, branch_sets)
+    if coarse.any():
+        needed = np.where(coarse, MOST_HARMONICS, needed)
+        branch_sets = _branches_in_groups(model, crossings, wind_speeds, needed)
     for branch_set in branch_sets:
         _add_cycles_on(known, branch_set, wind_speeds, "hopf_branch")
     _add_solutions(known, known.new_starts(starts), needed, "explicit")
@@ -201,6 +202,17 @@ def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: Flo
     values = eigenvalues(at_wind(state_matrices(take(model, member)), wind_speeds[wind]))
     unstable = unstable_pairs(values) > 0
     return member[unstable], wind[unstable]
+
+
+def _branches_in_groups(
+    model: ReducedModel, crossings: Crossings, winds: FloatArray, needed: IntArray
+) -> list[BranchSet]:
+    """Follow the branches from all Hopf points, each with the number of harmonics of its member (members,)."""
+    branch_sets: list[BranchSet] = []
+    for count in np.unique(needed).tolist():
+        own = np.isin(crossings.member, np.flatnonzero(needed == count))
+        branch_sets += _branches_from_hopf_points(model, crossings, own, winds, count)
+    return branch_sets
 
 
 def _branches_from_hopf_points(

@@ -13,10 +13,12 @@ import numpy as np
 
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from engine.cycles.branch_set import BranchSet
-from engine.cycles.refinement import divided
+from engine.cycles.harmonic_balance import total_size
+from engine.cycles.refinement import ROUNDING, divided
 
 ROUNDS = 4  # of dividing segments
 PARTS = 4
+TINY = 0.02  # share of a branch's reference size below which a cycle counts as the equilibrium
 MARGIN = 3.0  # on the error of the multipliers
 SHORTEST = 1e-6  # relative distance of two wind speeds between which nothing is divided any more
 
@@ -149,13 +151,21 @@ def _changes(branch_set: BranchSet) -> tuple[IntArray, list[tuple[Kind, ...]], I
 
 
 def _decided(branch_set: BranchSet) -> BoolArray:
-    """Return at which points every multiplier is off the unit circle by more than its error, with some margin."""
+    """Return at which points every multiplier is off the unit circle by more than its error, with some margin.
+
+    Near the equilibrium a cycle has no direction that tells whether its branch turns or ends.
+    """
     points, judged = branch_set.points, branch_set.floquet
     branch = points.branch
     first = np.append(True, branch[1:] != branch[:-1])[: branch.size]
     at_equilibrium = first & np.isfinite(branch_set.hopf_wind_speed[branch])
-    off = np.abs(np.abs(judged.multipliers[:, 1:]) - 1.0).min(axis=-1, initial=np.inf)
-    return np.asarray(~at_equilibrium & (off > MARGIN * judged.trivial_error))
+    size = np.abs(judged.multipliers)
+    off = np.abs(size[:, 1:] - 1.0).min(axis=-1, initial=np.inf)
+    error = np.maximum(judged.trivial_error, ROUNDING * size.max(axis=-1, initial=0.0))
+    problem = branch_set.problem
+    amplitude = total_size(problem.model, branch_set.member, branch_set.orbits.coefficients)
+    at_equilibrium |= amplitude < TINY * problem.reference[branch]
+    return np.asarray(~at_equilibrium & (off > MARGIN * error))
 
 
 def product_of(factors: ComplexArray) -> FloatArray:

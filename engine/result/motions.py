@@ -85,8 +85,8 @@ class LimitCycleRow:
     detuning_sensitivity: Annotated[
         float | None,
         Column(
-            "Relative change of the amplitude if the horizontal frequency shifts by 0.1 %, up or down, whichever "
-            "changes it more; null if the cycle does not survive one of the two",
+            "Largest relative change of the amplitude if the horizontal frequency rises or falls by 0.1 %, or falls by "
+            "as much as stretching raises it; null if the cycle does not survive one of these shifts",
             -0.0031,
             unit="1",
         ),

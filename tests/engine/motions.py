@@ -40,9 +40,11 @@ def resonant_line() -> Line:
     return replace(line, span=Span(115.59664153237746, horizontal_tension=27144.507347366452))
 
 
-def bifurcations_between(line: Line, loops: int, winds: FloatArray) -> tuple[Cycles, Bifurcations]:
+def bifurcations_between(
+    line: Line, loops: int, winds: FloatArray, analysis: Analysis | None = None
+) -> tuple[Cycles, Bifurcations]:
     """Return the cycles of a hybrid model at wind speeds, and the bifurcations on their branches."""
-    model = hybrid(line, loops)
+    model = hybrid(line, loops, analysis)
     crossings = critical_wind_speeds(model, 30.0)
     cycles = find_cycles(model, crossings, winds, energy_starts(model, winds, 5), 5)
     return cycles, bifurcations(cycles.branch_sets, cycles.followed, model, crossings)

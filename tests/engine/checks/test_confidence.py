@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from engine.arrays import FloatArray
-from engine.checks.confidence import DETUNING, confidence
-from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized
+from engine.checks.confidence import DETUNING, confidence, stretching_shift
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select
 from engine.cycles.search import Cycles, energy_starts, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel
 from engine.numerics.newton import NewtonOptions
-from engine.spec import Check
+from engine.spec import Analysis, Check, Stretching
 from tests.builders import hybrid, source_line
 
 WINDS = np.array([4.0, 6.0])
@@ -40,7 +40,7 @@ def test_truncation_is_what_one_harmonic_more_changes() -> None:
 
 
 def detuned(model: ReducedModel, shift: float) -> ReducedModel:
-    factor = np.array([1.0, 1.0 + shift, 1.0])
+    factor = np.where(model.direction == 1, 1.0 + shift, 1.0)
     return replace(model, stiffness=model.stiffness * factor[:, None] * factor)
 
 
@@ -57,6 +57,33 @@ def test_detuning_is_the_larger_change_of_a_higher_and_a_lower_horizontal_freque
     assert measured == pytest.approx(np.where(np.abs(rise) > np.abs(fall), rise, fall), rel=1e-4)
     assert (np.abs(measured) > 0.02).all()  # the close resonance of two loops is soft
     assert (rise * fall < 0.0).all()
+
+
+def test_the_shift_of_stretching_is_that_of_the_theory() -> None:
+    # Theory section 12.1, C11: two horizontal loops of 0.36 m are raised by 0.635 % if nothing else moves.
+    model = hybrid(source_line(2), 2, Analysis(stretching=Stretching.INCLUDED))
+    coefficients = np.zeros((1, model.mass.shape[-1], 11))
+    coefficients[0, 1, 1] = 0.36 / np.abs(model.shapes[0, 1, 1]).max()
+    orbit = Orbits(coefficients, np.array([5.6]), np.array([4.0]))
+    assert stretching_shift(model, np.zeros(1, dtype=np.intp), orbit) == pytest.approx([0.00635], rel=0.01)
+    assert stretching_shift(hybrid(source_line(2), 2), np.zeros(1, dtype=np.intp), orbit) == pytest.approx([0.0])
+
+
+def test_detuning_looks_back_over_the_shift_that_stretching_causes() -> None:
+    model = hybrid(source_line(2), 2, Analysis(stretching=Stretching.INCLUDED))
+    cycles = cycles_of(model, 5)
+    shift = stretching_shift(model, cycles.member, cycles.orbits)
+    assert (shift > DETUNING).all()
+    start = select(cycles.orbits, np.zeros(1, dtype=np.intp))
+    before = half_peak_to_peak(start.coefficients)
+    main = int((before[0] * np.sqrt(model.modal_masses)).argmax())
+    changes = []
+    for relative in (DETUNING, -DETUNING, -float(shift[0])):
+        orbit, solution = balance(detuned(model, relative), cycles.member[:1], start)
+        assert solution.converged.all()
+        changes.append(float(half_peak_to_peak(orbit.coefficients)[0, main] / before[0, main] - 1.0))
+    assert confidence(model, cycles, Check.NONE).detuning[0] == pytest.approx(max(changes, key=abs), rel=1e-3)
+    assert max(changes, key=abs) == changes[2]
 
 
 def test_residual_is_that_of_rounding_and_direct_integration_agrees() -> None:

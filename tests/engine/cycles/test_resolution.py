@@ -3,9 +3,16 @@
 import numpy as np
 import pytest
 
+from engine.cycles.branches import follow_from_cycles
 from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select
-from engine.cycles.resolution import LARGEST_TAIL, MOST_HARMONICS, harmonics_needed, resolved_stability
+from engine.cycles.resolution import (
+    LARGEST_TAIL,
+    MOST_HARMONICS,
+    harmonics_needed,
+    resolved_stability,
+    unresolved_members,
+)
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Stability
 from tests.builders import Oscillators, hand_made, hybrid, source_line
@@ -58,3 +65,15 @@ def test_harmonics_follow_the_resonance_of_a_lightly_damped_mode_and_nothing_els
     assert np.sqrt(lightly.uncoupled_squares / lightly.uncoupled_squares.min()).max() == pytest.approx(4.41, abs=0.01)
     assert [harmonics_needed(model, winds, 5).tolist() for model in (strongly, lightly, bundle)] == [[5], [7], [5]]
     assert harmonics_needed(lightly, winds, 9).tolist() == [9]
+
+
+def test_branches_whose_last_harmonics_do_not_fall_off_are_told_from_smooth_ones() -> None:
+    smooth, sharp = (van_der_pol(mu) for mu in (0.01, 2.0))
+    coarse = []
+    for model in (smooth, sharp):
+        start = cycle(van_der_pol(0.5), 3) if model is sharp else cycle(model, 3)
+        for mu in (1.0, 1.5, 2.0) if model is sharp else ():
+            start, _ = balance(van_der_pol(mu), ONE, start)
+        branch_set = follow_from_cycles(model, ONE, start, np.array([1.0, 1.1]))
+        coarse.append(unresolved_members(model, [branch_set]).tolist())
+    assert coarse == [[False], [True]]

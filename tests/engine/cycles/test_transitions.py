@@ -1,6 +1,7 @@
 """Every change of stability on a branch has its bifurcation, and none depends on the wind speeds asked for."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,10 +11,15 @@ from engine.cycles.bifurcations import Bifurcations
 from engine.cycles.search import Cycles
 from engine.cycles.transitions import FACTORS, Kind
 from engine.outcome import Stability
-from engine.spec import Line
+from engine.spec import AerodynamicModel, Analysis, Line, LongitudinalInertia, Stretching
 from tests.builders import lightly_damped_line
 from tests.engine.motions import bifurcations_between, resonant_line
 
+FULL = Analysis(
+    aerodynamic_model=AerodynamicModel.RELATIVE_WIND,
+    longitudinal_inertia=LongitudinalInertia.CONDENSED,
+    stretching=Stretching.INCLUDED,
+)
 FEW, MANY = np.linspace(3.0, 13.0, 6), np.linspace(3.0, 13.0, 21)
 SAME = 1e-4  # relative difference of two wind speeds that are the same bifurcation
 
@@ -49,10 +55,9 @@ def within(found: Bifurcations, kind: Kind) -> FloatArray:
     return np.sort(found.parameter[inside & np.array([k is kind for k in found.kind], dtype=np.bool_)])
 
 
-@pytest.mark.parametrize("line", LINES, ids=["resonant", *map(str, range(5))])
-@pytest.mark.parametrize("loops", [1, 2])
-def test_every_change_of_stability_has_its_row_whatever_wind_speeds_are_asked_for(line: Line, loops: int) -> None:
-    few, many = (bifurcations_between(line, loops, winds) for winds in (FEW, MANY))
+def assert_independent(line: Line, loops: int, analysis: Analysis) -> None:
+    """Compare bifurcations and stable cycles for two sets of wind speeds, and look for changes without a row."""
+    few, many = (bifurcations_between(line, loops, winds, analysis) for winds in (FEW, MANY))
     for cycles, found in (few, many):
         assert unexplained(cycles, found) == []
         assert Kind.UNRESOLVED not in found.kind.tolist()
@@ -61,6 +66,20 @@ def test_every_change_of_stability_has_its_row_whatever_wind_speeds_are_asked_fo
     stable = [cycles.floquet.stability == Stability.STABLE for cycles, _ in (few, many)]
     counts = [np.bincount(cycles.wind[at], minlength=21) for (cycles, _), at in zip((few, many), stable, strict=True)]
     assert counts[0][:6].tolist() == counts[1][::4].tolist()
+
+
+@pytest.mark.parametrize("line", LINES, ids=["resonant", *map(str, range(5))])
+@pytest.mark.parametrize("loops", [1, 2])
+def test_every_change_of_stability_has_its_row_whatever_wind_speeds_are_asked_for(line: Line, loops: int) -> None:
+    assert_independent(line, loops, Analysis())
+
+
+@pytest.mark.parametrize("number", [3, 4, 8])
+@pytest.mark.parametrize("loops", [1, 2])
+def test_the_same_holds_under_full_physics(number: int, loops: int) -> None:
+    line = drawn(number)
+    at_rest = replace(line.ice.aerodynamics, at_rest=(0.0, 1.0, 0.0))
+    assert_independent(replace(line, ice=replace(line.ice, aerodynamics=at_rest)), loops, FULL)
 
 
 def test_multipliers_beyond_all_numbers_cross_nothing_and_warn_of_nothing() -> None:
