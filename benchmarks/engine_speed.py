@@ -19,7 +19,8 @@ from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
 from engine.cycles.floquet import Floquet, floquet
 from engine.cycles.harmonic_balance import balance, half_peak_to_peak, select, states
-from engine.cycles.search import Cycles, explicit_starts, find_cycles
+from engine.cycles.search import Cycles, find_cycles
+from engine.cycles.starts import explicit_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.progress import finished

@@ -14,7 +14,8 @@ from engine.checks.direct_starts import direct_starts
 from engine.cycles.bifurcations import bifurcations
 from engine.cycles.harmonic_balance import Orbits, resized
 from engine.cycles.known_cycles import Starts, stacked
-from engine.cycles.search import Cycles, DirectIntegration, explicit_starts, find_cycles
+from engine.cycles.search import Cycles, DirectIntegration, find_cycles
+from engine.cycles.starts import explicit_starts
 from engine.each_wind import analyse_lines
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes

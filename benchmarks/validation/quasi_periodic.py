@@ -13,7 +13,8 @@ from benchmarks.models import discretized, hybrid_models
 from benchmarks.validation.common import table
 from engine.arrays import FloatArray
 from engine.cycles.bifurcations import bifurcations
-from engine.cycles.search import explicit_starts, find_cycles
+from engine.cycles.search import find_cycles
+from engine.cycles.starts import explicit_starts
 from engine.cycles.transitions import Kind
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take

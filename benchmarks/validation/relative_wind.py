@@ -11,7 +11,8 @@ from benchmarks.models import discretized
 from benchmarks.validation.common import SUBCONDUCTORS, WINDS, percent, result, table
 from engine.arrays import FloatArray
 from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select, states
-from engine.cycles.search import explicit_starts, find_cycles
+from engine.cycles.search import find_cycles
+from engine.cycles.starts import explicit_starts
 from engine.mechanics.modes import at_points, directional_shapes
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.discretization import Discretization, observation

@@ -18,16 +18,11 @@ from engine.cycles.branches import (
     follow_from_hopf_points,
     guessed_cycles,
 )
-from engine.cycles.first_harmonic import (
-    FirstHarmonic,
-    energy_balance_cycles,
-    explicit_cycles,
-    stiffened_frequencies,
-)
 from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.cycles.known_cycles import KnownCycles, Starts
 from engine.cycles.resolution import MOST_HARMONICS, harmonics_needed, resolved_in_groups, unresolved_members
+from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
 from engine.models.reduced_model import ReducedModel, lowest_frequency, take
 from engine.outcome import Stability
@@ -81,30 +76,6 @@ class DirectIntegration:
 
     starts: Starts | None = None
     settle: Callable[[IntArray, IntArray], Settled] | None = None
-
-
-def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Return starts along every unstable mode at every wind speed [m/s], by the balance of energy over one period."""
-    member, wind = _grid_points(model, wind_speeds)
-    guess = energy_balance_cycles(take(model, member), wind_speeds[wind])
-    return _starts(guess, member, wind, wind_speeds, harmonics)
-
-
-def explicit_starts(published: ReducedModel, model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
-    """Return the explicit cycles of the published closure as starts, for members that are statically stable.
-
-    published: the models with the load of that closure, three coordinates each; model: the same models as they are,
-    whose further coordinates start at rest and whose stretching raises the frequency.
-    """
-    member, wind = _grid_points(published, wind_speeds)
-    guess = explicit_cycles(take(published, member), wind_speeds[wind])
-    further = model.mass.shape[-1] - published.mass.shape[-1]
-    amplitude = np.pad(guess.amplitude, ((0, 0), (0, further)))
-    frequency = stiffened_frequencies(model, member[guess.member], guess.angular_frequency, amplitude)
-    guess = replace(
-        guess, mean=np.pad(guess.mean, ((0, 0), (0, further))), amplitude=amplitude, angular_frequency=frequency
-    )
-    return _starts(guess, member, wind, wind_speeds, harmonics)
 
 
 def find_cycles(
@@ -237,24 +208,6 @@ def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray,
     numbers = known.add(starts, good, found_by)
     known.link(followed[branch[good]], numbers[good])
     return followed
-
-
-def _grid_points(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
-    usable = np.flatnonzero(~model.statically_unstable)
-    return np.repeat(usable, wind_speeds.size), np.tile(np.arange(wind_speeds.size), usable.size)
-
-
-def _starts(
-    guess: FirstHarmonic,
-    member: IntArray,
-    wind: IntArray,
-    wind_speeds: FloatArray,
-    harmonics: int,
-) -> Starts:
-    """Convert first-harmonic cycles at points of the grid to starts with H harmonics."""
-    first = np.stack([guess.mean, guess.amplitude.real, -guess.amplitude.imag], axis=-1)
-    orbits = Orbits(first, guess.angular_frequency, wind_speeds[wind[guess.member]])
-    return Starts(member[guess.member], wind[guess.member], resized(orbits, harmonics))
 
 
 def solve_starts(model: ReducedModel, starts: Starts) -> tuple[Starts, BoolArray]:

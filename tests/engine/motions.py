@@ -13,7 +13,8 @@ from engine.cycles.harmonic_balance import (
     balance,
     resized,
 )
-from engine.cycles.search import Cycles, energy_starts, find_cycles
+from engine.cycles.search import Cycles, find_cycles
+from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.spec import AerodynamicLoad, AerodynamicModel, Analysis, Line, Span, Stretching

@@ -10,7 +10,8 @@ import pytest
 
 from benchmarks.validation.quasi_periodic import SEED, drawn
 from engine.cycles.bifurcations import bifurcations
-from engine.cycles.search import energy_starts, find_cycles
+from engine.cycles.search import find_cycles
+from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability

@@ -8,7 +8,8 @@ import pytest
 from engine.arrays import FloatArray
 from engine.checks.confidence import DETUNING, confidence, stretching_shift
 from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select
-from engine.cycles.search import Cycles, energy_starts, find_cycles
+from engine.cycles.search import Cycles, find_cycles
+from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel
 from engine.numerics.newton import NewtonOptions

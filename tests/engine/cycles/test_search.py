@@ -5,7 +5,8 @@ import pytest
 
 from engine.arrays import ComplexArray, FloatArray
 from engine.cycles.harmonic_balance import half_peak_to_peak, residual
-from engine.cycles.search import Cycles, energy_starts, find_cycles
+from engine.cycles.search import Cycles, find_cycles
+from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability

@@ -13,7 +13,8 @@ from engine.checks.settled_motion import SettledMotions, integrate_until_settled
 from engine.cycles.first_harmonic import explicit_cycles
 from engine.cycles.floquet import floquet, monodromy
 from engine.cycles.harmonic_balance import Orbits, balance, linearized
-from engine.cycles.search import Cycles, energy_starts, find_cycles
+from engine.cycles.search import Cycles, find_cycles
+from engine.cycles.starts import energy_starts
 from engine.kernels import compiled
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take

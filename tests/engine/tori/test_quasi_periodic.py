@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from engine.cycles.bifurcations import bifurcations
-from engine.cycles.search import energy_starts, find_cycles
+from engine.cycles.search import find_cycles
+from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.outcome import Outcome, Stability
 from engine.result import LimitCycleRow
