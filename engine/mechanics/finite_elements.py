@@ -13,7 +13,7 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.cross_sections import Sections
 from engine.mechanics.free_sections import differences
-from engine.mechanics.interpolation import StrainPoints, element_nodes, shape_functions, strain_points
+from engine.mechanics.interpolation import StrainPoints, chords, element_nodes, shape_functions, strain_points
 from engine.mechanics.static_profile import StaticProfile, arc_position
 from engine.spec import GRAVITY, Line, PointDevice
 
@@ -128,15 +128,17 @@ def quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray) 
 def elastic_density(lines: Sequence[Line], at: StrainPoints, sums: FloatArray) -> FloatArray:
     """Return D of the strain energy density 1/2 g^T D g, g = (U', V', W', Theta'): (lines, elements, points, 4, 4).
 
-    The strain of sub-conductor i is b.(U', V', W') + (z' y_i - y' z_i) Theta' with b = (x', y', z'), eqs. (3), (7). D
-    is linear in the sums, which are those of `bundle_sums` with axes for elements and points.
+    The strain of sub-conductor i is b.(U', V', W') + (z' y_i - y' z_i) Theta' with b = (x', y', z'), eqs. (3), (7), in
+    the second term with y' and z' of `section_slopes`. D is linear in the sums, which are those of `bundle_sums` with
+    axes for elements and points.
     """
     n, s_y, s_z, s_yy, s_zz, s_yz = sums
     slopes, tension = at.direction, at.tension
     rigidity = _per_line(lines, [line.conductor.axial_rigidity for line in lines])
     coupling = _per_line(lines, [line.conductor.axial_torsional_coupling for line in lines])
     torsional = _per_line(lines, [line.conductor.torsional_rigidity for line in lines])
-    y, z = slopes[..., 1], slopes[..., 2]
+    y, z = np.moveaxis(at.section_slopes, -1, 0)
+    cosine, sine = chords(lines)
     lever = z * s_y - y * s_z
     density = np.zeros((*tension.shape, FIELDS, FIELDS))
     density[..., :THETA, :THETA] = (n * rigidity)[..., None, None] * slopes[..., :, None] * slopes[..., None, :]
@@ -145,7 +147,8 @@ def elastic_density(lines: Sequence[Line], at: StrainPoints, sums: FloatArray) -
     density[..., THETA, THETA] += 2.0 * coupling * lever + n * torsional + tension * (s_yy + s_zz)
     for translation in (U, V, W):
         density[..., translation, translation] += n * tension
-    density[..., V, THETA] -= tension * s_z
+    density[..., U, THETA] += sine * tension * s_z
+    density[..., V, THETA] -= cosine * tension * s_z
     density[..., W, THETA] += tension * s_y
     density[..., THETA, :THETA] = density[..., :THETA, THETA]
     return density
@@ -163,7 +166,9 @@ def _mass_density(lines: Sequence[Line], section_points: Sections, bundle: Float
     density = np.zeros((*mass.shape, FIELDS, FIELDS))
     for translation in (U, V, W):
         density[..., translation, translation] = n * mass
-    density[..., V, THETA] = density[..., THETA, V] = -(mass * s_z + n * moment_z)
+    cosine, sine = chords(lines)
+    density[..., U, THETA] = density[..., THETA, U] = sine * (mass * s_z + n * moment_z)
+    density[..., V, THETA] = density[..., THETA, V] = -cosine * (mass * s_z + n * moment_z)
     density[..., W, THETA] = density[..., THETA, W] = mass * s_y + n * moment_y
     density[..., THETA, THETA] = mass * (s_yy + s_zz) + 2.0 * (moment_y * s_y + moment_z * s_z) + n * inertia
     return density

@@ -5,9 +5,10 @@ V, W and Theta stay common, eq. (3); U becomes the mean of the sub-conductors' o
 
     1/2 sum_i int EA (x' u_i' + l_i Theta')^2 + T u_i'^2 ds + springs on u_i at both ends,   l_i = z' eta_i - y' zeta_i,
 
-and nothing else: sum_i u_i = sum_i l_i = 0, so their products with the mean strain and with B_T vanish. A rigid section
-has u_i = 0. Static condensation makes u_i a linear form of the position of sub-conductor i. So two scalar fields, with
-the shape functions of U, serve any number of sub-conductors: u_i of the positions (1, 0) and (0, 1).
+with y' and z' of `section_slopes`, and nothing else: sum_i u_i = sum_i l_i = 0, so their products with the mean strain
+and with B_T vanish. A rigid section has u_i = 0. Static condensation makes u_i a linear form of the position of
+sub-conductor i. So two scalar fields, with the shape functions of U, serve any number of sub-conductors: u_i of the
+positions (1, 0) and (0, 1).
 """
 
 from collections.abc import Sequence
@@ -118,7 +119,7 @@ def _readers(at: StrainPoints) -> tuple[FloatArray, FloatArray]:
 
 def _levers(at: StrainPoints, turn: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return l_i of the positions (1, 0) and (0, 1), and its derivative by the turn: (lines, 2, points, 1)."""
-    y, z = _flat(at.direction[..., 1]), _flat(at.direction[..., 2])
+    y, z = _flat(at.section_slopes[..., 0]), _flat(at.section_slopes[..., 1])
     c, s = np.cos(turn), np.sin(turn)
     above, beside = z * c - y * s, -z * s - y * c
     return np.stack([above, beside], axis=1)[..., None], np.stack([beside, -above], axis=1)[..., None]

@@ -18,13 +18,15 @@ class StrainPoints:
     """Quadrature points of the strain energy.
 
     values: (points, 3) and slopes: (lines, elements, points, 3), shape functions and their derivatives by s; weight:
-    (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z'); tension: T [N] there.
+    (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z'); section_slopes:
+    (lines, elements, points, 2), as the function of this name returns them; tension: T [N] there.
     """
 
     values: FloatArray
     slopes: FloatArray
     weight: FloatArray
     direction: FloatArray
+    section_slopes: FloatArray
     tension: FloatArray
 
 
@@ -36,7 +38,33 @@ def strain_points(lines: Sequence[Line], profile: StaticProfile) -> StrainPoints
     jacobian = np.linalg.norm(metric, axis=-1)
     direction = metric / jacobian[..., None]
     tension = profile.horizontal_tension[:, None, None] / direction[..., 0]
-    return StrainPoints(values, derivative / jacobian[..., None], weights * jacobian, direction, tension)
+    return StrainPoints(
+        values,
+        derivative / jacobian[..., None],
+        weights * jacobian,
+        direction,
+        section_slopes(lines, direction),
+        tension,
+    )
+
+
+def chords(lines: Sequence[Line]) -> FloatArray:
+    """Return cosine and sine of the slope of each line's chord: (2, lines, 1, 1)."""
+    along, up = (
+        np.array(values) for values in zip(*((x.span.length, x.span.level_difference) for x in lines), strict=True)
+    )
+    return np.asarray(np.stack([along, up]) / np.hypot(along, up))[..., None, None]
+
+
+def section_slopes(lines: Sequence[Line], direction: FloatArray) -> FloatArray:
+    """Return the slopes of the curve against the normal of the cross-section, up and out: (lines, ..., 2).
+
+    Cross-sections stand across the chord and turn about it: sub-conductor i moves along, up and out by Theta (z_i sin,
+    -z_i cos, y_i) of the chord's slope. On a level span the slopes are y' and z'.
+    """
+    cosine, sine = chords(lines)
+    up = cosine * direction[..., 1] - sine * direction[..., 0]
+    return np.stack([up, direction[..., 2]], axis=-1)
 
 
 def shape_functions(local: FloatArray) -> tuple[FloatArray, FloatArray]:

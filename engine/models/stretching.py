@@ -17,7 +17,7 @@ import numpy as np
 
 from engine.arrays import FloatArray, merge_axes
 from engine.mechanics.cross_sections import Sections
-from engine.mechanics.interpolation import element_nodes, shape_functions
+from engine.mechanics.interpolation import element_nodes, section_slopes, shape_functions
 from engine.mechanics.static_profile import StaticProfile
 from engine.numerics import polynomial
 from engine.spec import Line
@@ -47,12 +47,14 @@ class SlopePoints:
     """The points of `Sections`, for integrals of slopes along the span.
 
     slopes: (lines, elements, points, 3), derivatives by s of the element's shape functions [1/m]; weight:
-    (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z').
+    (lines, elements, points) = ds [m]; direction: (lines, elements, points, 3) = (x', y', z'); section_slopes:
+    (lines, elements, points, 2), the slopes against the normal of the cross-section.
     """
 
     slopes: FloatArray
     weight: FloatArray
     direction: FloatArray
+    section_slopes: FloatArray
 
 
 def slope_points(lines: Sequence[Line], profile: StaticProfile, section_points: Sections) -> SlopePoints:
@@ -60,8 +62,12 @@ def slope_points(lines: Sequence[Line], profile: StaticProfile, section_points: 
     _, derivative = shape_functions(section_points.local)
     metric = derivative @ element_nodes(profile, lines[0].span.elements)
     jacobian = np.linalg.norm(metric, axis=-1)
+    direction = metric / jacobian[..., None]
     return SlopePoints(
-        derivative / jacobian[..., None], section_points.local_weight * jacobian, metric / jacobian[..., None]
+        derivative / jacobian[..., None],
+        section_points.local_weight * jacobian,
+        direction,
+        section_slopes(lines, direction),
     )
 
 
@@ -174,7 +180,8 @@ def _stretches(at: SlopePoints, slopes: FloatArray, offsets: list[FloatArray]) -
     mean = np.stack([offset.mean(axis=1) for offset in offsets])  # (lines, points, 3)
     weight = merge_axes(at.weight / at.direction[..., 0], -2)
     curve = merge_axes(at.direction[..., 1:], -3, -2)
-    row = np.concatenate([curve, (curve * mean[..., :TWIST]).sum(axis=-1, keepdims=True)], axis=-1)
+    levers = merge_axes(at.section_slopes, -3, -2)
+    row = np.concatenate([curve, (levers * mean[..., :TWIST]).sum(axis=-1, keepdims=True)], axis=-1)
     linear = np.einsum("lgmfp,lpf,lp->lgm", slopes, row, weight, optimize=True)
     metric = np.zeros((*weight.shape, SLOPES, SLOPES))
     metric[...] = np.eye(SLOPES)
@@ -199,8 +206,8 @@ def _local_table(lines: Sequence[Line], at: SlopePoints, slopes: FloatArray, off
     rigidity = np.array([line.conductor.axial_rigidity for line in lines])
     deviation = [offset - offset.mean(axis=1, keepdims=True) for offset in offsets]
     products = np.stack([d.swapaxes(-1, -2) @ d for d in deviation])  # (lines, points, 3, 3)
-    curve = merge_axes(at.direction[..., 1:], -3, -2)
-    pull = 2.0 * (products[..., :TWIST] @ curve[..., None])[..., 0]
+    levers = merge_axes(at.section_slopes, -3, -2)
+    pull = 2.0 * (products[..., :TWIST] @ levers[..., None])[..., 0]
     strength = (rigidity[:, None] * merge_axes(at.weight, -2))[..., None, None]
     local = strength * _local_polynomials(pull, products)
     forms = np.moveaxis(slopes, -1, 2)  # (lines, groups, points, m, 3)
