@@ -188,7 +188,6 @@ ANALYSES = st.fixed_dictionaries(
         "closure": st.sampled_from(["exact", "published"]),
         "physics": st.sampled_from(["source", "full", None]),
         "aerodynamic_model": st.sampled_from(["published", "relative_wind"]),
-        "aerodynamic_load": st.sampled_from(["expanded", "unexpanded"]),
         "longitudinal_inertia": st.sampled_from(["neglected", "condensed"]),
         "stretching": st.sampled_from(["neglected", "included"]),
         "critical_wind_limit_m_per_s": st.floats(1.0, 60.0),
