@@ -21,6 +21,7 @@ from engine.report.tensions import tension_rows
 from engine.report.warnings import (
     dropped_warnings,
     fit_warnings,
+    free_section_warnings,
     line_warnings,
     longitudinal_warnings,
     motion_warnings,
@@ -87,7 +88,7 @@ def line_results(
         cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
         about_line = line_warnings(line) + physics_warnings(line, analysis) + twist_warnings(discretization, i)
         about_line += longitudinal_warnings(shapes.loops, longitudinal[i], analysis)
-        about_line += relief_warnings(analysis, float(relieved[i]))
+        about_line += relief_warnings(analysis, float(relieved[i])) + free_section_warnings(line, analysis)
         about_line += neglected[i] + wind_twist_warnings(discretization, i)
         own_frequencies = tuple(row for table in frequencies for row in table[i])
         results.append(
