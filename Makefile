@@ -25,7 +25,7 @@ test: setup
 # Kills and restarts processes for some seven minutes and prints the figures; `make reliability` writes them into
 # docs/reliability.md.
 test-faults: setup
-	$(BIN)/python -m pytest --timeout 840 tests/faults
+	$(BIN)/python -m pytest --timeout 2400 tests/faults
 	$(BIN)/python -m tests.faults.report
 
 reliability: test-faults
