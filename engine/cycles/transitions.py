@@ -18,6 +18,7 @@ from engine.cycles.refinement import ROUNDING, divided
 
 ROUNDS = 4  # of dividing segments
 PARTS = 4
+MOST_POINTS = 600  # of a branch, beyond which its changes are left unresolved: such a branch crosses a region of many
 TINY = 0.02  # share of a branch's reference size below which a cycle counts as the equilibrium
 MARGIN = 3.0  # on the error of the multipliers
 SHORTEST = 1e-6  # relative distance of two wind speeds between which nothing is divided any more
@@ -93,7 +94,8 @@ def transitions(branch_set: BranchSet) -> tuple[BranchSet, Transitions]:
         far = np.abs(np.diff(speed[pairs], axis=-1)[:, 0]) > SHORTEST * speed[pairs[:, 0]]
         divisible = np.flatnonzero(unclear.astype(np.bool_) & far)
         segment = np.concatenate([np.arange(*pairs[i]) for i in divisible] or [np.zeros(0, dtype=np.intp)])
-        segment = segment[~left_alone[segment]]
+        points = np.bincount(branch_set.points.branch, minlength=1)[branch_set.points.branch[segment]]
+        segment = segment[~left_alone[segment] & (points < MOST_POINTS)]
         if turn == ROUNDS or segment.size == 0:
             break
         branch_set, left_alone, _ = divided(branch_set, segment, np.full(segment.size, PARTS), left_alone)
