@@ -3,7 +3,7 @@
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.checks.direct_starts import integrated_to_limit, settled_cycles, spread_starts
+from engine.checks.direct_starts import fitted_cycles, integrated_to_limit, spread_starts
 from engine.cycles.known_cycles import Starts
 from engine.cycles.search import Settled
 from engine.models.reduced_model import ReducedModel
@@ -37,28 +37,29 @@ def bounded_motions(
     state = spread_starts(model, member, wind_speeds[wind], LEVELS, np.random.default_rng(SEED))
     place = np.repeat(np.arange(member.size), state.shape[1])
     state = state.reshape(place.size, -1)
-    diverged = _diverged(model, member[place], wind_speeds[wind[place]], state, place)
-    bounded = np.flatnonzero(~diverged)
-    own = place[bounded]
-    index, orbits = settled_cycles(model, member[own], wind_speeds[wind[own]], state[bounded], harmonics)
-    everywhere = np.bincount(own, minlength=member.size) == 0
+    diverged, at_rest = _ends(model, member[place], wind_speeds[wind[place]], state, place)
+    moving = np.flatnonzero(~diverged & ~at_rest)
+    own = place[moving]
+    index, orbits = fitted_cycles(model, member[own], wind_speeds[wind[own]], state[moving], harmonics)
+    everywhere = np.bincount(place[~diverged], minlength=member.size) == 0
     return Settled(Starts(member[own[index]], wind[own[index]], orbits), np.stack([member, wind], axis=-1)[everywhere])
 
 
-def _diverged(
+def _ends(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, state: FloatArray, place: IntArray
-) -> BoolArray:
-    """Return which starts (starts, 2 m) diverge; leave the last state of the others in their place.
+) -> tuple[BoolArray, BoolArray]:
+    """Return which starts (starts, 2 m) diverge, and which come to rest; leave the last states in their place.
 
     Where some starts of a place diverge, those that still change at the end are integrated for further rounds.
     """
-    diverged, active = np.zeros(place.size, dtype=np.bool_), np.arange(place.size)
+    diverged, at_rest = np.zeros((2, place.size), dtype=np.bool_)
+    active = np.arange(place.size)
     for _ in range(ROUNDS):
         if active.size == 0:
             break
         runs = integrated_to_limit(model, member[active], wind_speed[active], state[active])
         state[active] = runs.state
-        diverged[active] = runs.outcome == Outcome.NO_CONVERGENCE
+        diverged[active], at_rest[active] = runs.outcome == Outcome.NO_CONVERGENCE, runs.at_rest
         changing = active[np.asarray(runs.outcome == Outcome.LIMIT_REACHED, dtype=np.bool_)]
         active = changing[np.isin(place[changing], place[diverged])]
-    return diverged
+    return diverged, at_rest

@@ -126,23 +126,39 @@ def settled_cycles(
 def _settled_group(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, harmonics: int
 ) -> tuple[IntArray, Orbits]:
-    ratio, blocks = _lengths(model, member)
-    runs = integrate_until_settled(model, member, wind_speed, start, blocks, STEPS)
+    runs = integrated_to_limit(model, member, wind_speed, start)
     kept = np.flatnonzero(~runs.at_rest & (runs.outcome != Outcome.NO_CONVERGENCE))
-    equations = lawson_equations(model, member[kept], wind_speed[kept], STEPS)
-    state, history = runs.state[kept].T, []
-    weight = np.sqrt(model.modal_masses)[member[kept]]
+    moving, orbits = fitted_cycles(model, member[kept], wind_speed[kept], runs.state[kept], harmonics)
+    return kept[moving], orbits
+
+
+def fitted_cycles(
+    model: ReducedModel, member: IntArray, wind_speed: FloatArray, start: FloatArray, harmonics: int
+) -> tuple[IntArray, Orbits]:
+    """Fit Fourier series to a few periods from states (starts, 2 m) on motions that have settled, or nearly.
+
+    Returns
+    -------
+    (cycles,), Orbits
+        Indices of the states whose motion is periodic enough, and the cycles.
+    """
+    ratio, _ = _lengths(model, member)
+    equations = lawson_equations(model, member, wind_speed, STEPS)
+    state, history = start.T, []
+    weight = np.sqrt(model.modal_masses)[member]
     with np.errstate(over="ignore", invalid="ignore"):  # a motion may diverge here as well; no cycle is fitted then
-        for _ in range(int(np.ceil(SAMPLED * STEPS * ratio[kept].max(initial=0.0)))):
+        for _ in range(int(np.ceil(SAMPLED * STEPS * ratio.max(initial=0.0)))):
             state = lawson_step(equations, state)
             history.append(state[: model.mass.shape[-1]])
         series = np.stack(history, axis=-1) if history else np.zeros((weight.shape[1], 0, 1))
-        fitted = [_fitted_cycle(series[:, i], weight[i], float(equations.step[i]), harmonics) for i in range(kept.size)]
+        fitted = [
+            _fitted_cycle(series[:, i], weight[i], float(equations.step[i]), harmonics) for i in range(member.size)
+        ]
     moving = np.array([i for i, cycles in enumerate(fitted) if cycles is not None], dtype=np.intp)
     cycles = [item for item in fitted if item is not None]
     shape = (len(cycles), weight.shape[1], 2 * harmonics + 1)
     coefficients = np.array([item[0] for item in cycles]).reshape(shape)
-    return kept[moving], Orbits(coefficients, np.array([item[1] for item in cycles]), wind_speed[kept[moving]])
+    return moving, Orbits(coefficients, np.array([item[1] for item in cycles]), wind_speed[moving])
 
 
 def integrated_to_limit(
