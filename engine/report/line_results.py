@@ -1,5 +1,9 @@
 """The result of each line, assembled from the tables of all its lines and models."""
 
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
 import numpy as np
 
 from engine import ENGINE_VERSION
@@ -65,58 +69,73 @@ def line_results(
     lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
     frequencies = [frequency_rows(table, analysis.loops) for table in natural_frequencies]
     longitudinal = longitudinal_share(discretization.matrices, shapes)
-    relieved = relieved_share(*discretization.parts[:3])
-    critical = [critical_wind_speed_rows(model_findings, shapes.loops, longitudinal) for model_findings in findings]
-    bifurcations = [bifurcation_rows(model_findings) for model_findings in findings]
-    tensions = [tension_rows(discretization, model_findings) for model_findings in findings]
-    motions = [limit_cycle_rows(discretization, model_findings, analysis, lowest) for model_findings in findings]
+    motions = [limit_cycle_rows(discretization, one, analysis, lowest) for one in findings]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
-    curves = [amplitude_curve_rows(discretization, model_findings) for model_findings in reported]
-    physics = PhysicsRow(
-        analysis.physics,
-        analysis.aerodynamic_model,
-        analysis.aerodynamic_load,
-        analysis.longitudinal_inertia,
-        analysis.stretching,
-        analysis.static_twist,
-    )
-    dropped = [dropped_warnings(model_findings, len(discretization.lines)) for model_findings in findings]
-    neglected = neglected_twist_warnings(discretization, _statically_unstable(findings, len(discretization.lines)))
+    tables: dict[str, list[Any]] = {
+        "critical_wind_speeds": [critical_wind_speed_rows(one, shapes.loops, longitudinal) for one in findings],
+        "tensions": [tension_rows(discretization, one) for one in findings],
+        "bifurcations": [bifurcation_rows(one) for one in findings],
+        "amplitude_curves": [amplitude_curve_rows(discretization, one) for one in reported],
+    }
+    about_lines = _warnings_about_lines(discretization, shapes, findings, analysis)
+    dropped = [dropped_warnings(one, len(discretization.lines)) for one in findings]
     equilibria = static_equilibrium_rows(discretization, np.unique(analysis.wind_speeds))
     results = []
-    for i, line in enumerate(discretization.lines):
-        cycles, orbits = _cycles_and_orbits([motion for table in motions for motion in table[i]])
-        about_line = line_warnings(line) + physics_warnings(line, analysis) + twist_warnings(discretization, i)
-        about_line += longitudinal_warnings(shapes.loops, longitudinal[i], analysis)
-        about_line += relief_warnings(analysis, float(relieved[i])) + free_section_warnings(line, analysis)
-        about_line += neglected[i] + wind_twist_warnings(discretization, i)
-        own_frequencies = tuple(row for table in frequencies for row in table[i])
+    for i in range(len(discretization.lines)):
+        cycles, orbits = _cycles_and_orbits(_of_line(motions, i))
+        own_frequencies = tuple(_of_line(frequencies, i))
+        about_motions = fit_warnings(cycles, analysis) + motion_warnings(cycles)
+        own: dict[str, Any] = {name: tuple(_of_line(parts, i)) for name, parts in tables.items()}
         results.append(
             Result(
                 static=_static_state(discretization, i),
                 den_hartog=_den_hartog(discretization, i),
-                physics=(physics,),
+                physics=(_physics(analysis),),
                 frequencies=own_frequencies,
                 internal_resonances=internal_resonance_rows(own_frequencies),
-                critical_wind_speeds=tuple(row for table in critical for row in table[i]),
                 static_equilibria=tuple(equilibria[i]),
                 limit_cycles=cycles,
-                tensions=tuple(row for table in tensions for row in table[i]),
-                bifurcations=tuple(row for table in bifurcations for row in table[i]),
-                amplitude_curves=tuple(row for table in curves for row in table[i]),
                 model_comparisons=model_comparisons(cycles),
                 loop_competitions=tuple(competitions[i]),
                 orbits=orbits,
-                warnings=(
-                    *about_line,
-                    *fit_warnings(cycles, analysis),
-                    *motion_warnings(cycles),
-                    *(text for table in dropped for text in table[i]),
-                ),
+                warnings=(*about_lines[i], *about_motions, *_of_line(dropped, i)),
                 engine_version=ENGINE_VERSION,
+                **own,
             )
         )
     return results
+
+
+def _of_line(parts: Sequence[Sequence[Sequence[Any]]], line: int) -> list[Any]:
+    """Join what each part holds for a line."""
+    return [item for part in parts for item in part[line]]
+
+
+def _physics(analysis: Analysis) -> PhysicsRow:
+    return PhysicsRow(**{field.name: getattr(analysis, field.name) for field in fields(PhysicsRow)})
+
+
+def _warnings_about_lines(
+    discretization: Discretization,
+    shapes: DirectionalShapes,
+    findings: tuple[ModelFindings, ...],
+    analysis: Analysis,
+) -> list[list[str]]:
+    """Return the warnings about each line, whatever its motions."""
+    longitudinal = longitudinal_share(discretization.matrices, shapes)
+    relieved = relieved_share(*discretization.parts[:3])
+    neglected = neglected_twist_warnings(discretization, _statically_unstable(findings, len(discretization.lines)))
+    return [
+        line_warnings(line)
+        + physics_warnings(line, analysis)
+        + twist_warnings(discretization, i)
+        + longitudinal_warnings(shapes.loops, longitudinal[i], analysis)
+        + relief_warnings(analysis, float(relieved[i]))
+        + free_section_warnings(line, analysis)
+        + neglected[i]
+        + wind_twist_warnings(discretization, i)
+        for i, line in enumerate(discretization.lines)
+    ]
 
 
 def _statically_unstable(findings: tuple[ModelFindings, ...], lines: int) -> BoolArray:
