@@ -28,9 +28,11 @@ Unexpanded unexpanded_of(const Unexpanded *stack, int m, ptrdiff_t member)
 WITHIN ptrdiff_t piece_at(const Unexpanded *load, ptrdiff_t curve, double reach)
 {
     const ptrdiff_t first = load->first[curve], last = load->first[curve + 1] - 1;
+    if (!(reach > load->begins[first])) /* before the curve, or NaN where a motion has diverged */
+        return first;
     const double width = load->begins[last];
     const double share = width > 0.0 ? reach / width : 0.0;
-    ptrdiff_t piece = first + (ptrdiff_t)((share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share) * (double)(last - first));
+    ptrdiff_t piece = first + (ptrdiff_t)((share > 1.0 ? 1.0 : share) * (double)(last - first));
     while (piece < last && load->begins[piece + 1] <= reach)
         piece++;
     while (piece > first && load->begins[piece] > reach)

@@ -203,6 +203,16 @@ def test_a_block_of_direct_integration_is_that_of_the_numpy_form(name: str, both
     assert found.outcome.tolist() == expected.outcome.tolist()
 
 
+@pytest.mark.parametrize("name", ["hybrid, table and stretching", "finite element, table", "hybrid, stretching"])
+def test_states_without_a_number_are_noticed(name: str) -> None:
+    model = MODELS[name]()
+    start = np.full((3, 2 * model.mass.shape[-1]), 1e-3)
+    start[0], start[1] = np.inf, np.nan
+    runs = integrate_until_settled(model, np.zeros(3, dtype=np.intp), np.full(3, 5.0), start, 1, 8)
+    assert runs.outcome.tolist()[:2] == [Outcome.NO_CONVERGENCE] * 2
+    assert runs.outcome[2] is not Outcome.NO_CONVERGENCE
+
+
 def test_direct_integration_that_diverges_is_noticed_by_both_forms(both: pytest.MonkeyPatch) -> None:
     model, wind = hybrid(source_line(1), 1), np.array([9.0, 9.0])
     member = np.zeros(2, dtype=np.intp)
