@@ -12,6 +12,7 @@ import numpy as np
 from engine.arrays import FloatArray
 from engine.mechanics.coefficients import fit_measured
 from engine.spec import Aerodynamics, Line, MeasuredCoefficients
+from tests.builders import source_line
 
 PATH = Path(__file__).parent / "data" / "table_c11_like.json"
 
@@ -48,3 +49,15 @@ def series(name: str, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
     cosine, sine = np.cos(order * angle[..., None]), np.sin(order * angle[..., None])
     value = terms["mean"] + cosine @ terms["cos"] + sine @ terms["sin"]
     return value, (order * cosine) @ terms["sin"] - (order * sine) @ terms["cos"]
+
+
+def overturning_line() -> Line:
+    """Return a line without eccentricity whose moment grows with the twist and turns it over near 19 m/s."""
+    line = source_line(1)
+    angle = np.radians(np.arange(-180.0, 181.0, 2.0))
+    moment = 0.1 + 0.5 * (1.0 - np.cos(angle))
+    none, one = (0.0,) * angle.size, (1.0,) * angle.size
+    table = replace(measured(0.0), angle=tuple(angle.tolist()), lift=none, drag=one, moment=tuple(moment.tolist()))
+    return replace(
+        line, ice=replace(line.ice, eccentricity_y=0.0, eccentricity_z=0.0, aerodynamics=fit_measured(table))
+    )

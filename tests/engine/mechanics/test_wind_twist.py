@@ -8,13 +8,12 @@ import pytest
 from scipy.integrate import quad, solve_bvp
 
 from engine.arrays import FloatArray
-from engine.mechanics.coefficients import fit_measured
 from engine.mechanics.torsional_elements import TorsionalElements, torsional_elements
 from engine.mechanics.wind_twist import WindTwist, equilibria, wind_twist
 from engine.outcome import Outcome
 from engine.spec import Bundle, DetuningPendulum, Line
 from tests.builders import discretized, source_line
-from tests.engine.synthetic_table import measured, series, with_table
+from tests.engine.synthetic_table import overturning_line, series, with_table
 
 RISING = np.array([4.0, 10.0, 20.0])
 
@@ -118,18 +117,6 @@ def test_lines_that_are_not_asked_for_are_left_out() -> None:
     assert np.isnan(one.angle[0]).all()
     assert one.angle[1] == pytest.approx(both.angle[1], abs=1e-10)
     assert set(one.further_line.tolist()) <= {1}
-
-
-def overturning_line() -> Line:
-    """Return a line without eccentricity whose moment grows with the twist until it turns the section over."""
-    line = source_line(1)
-    angle = np.radians(np.arange(-180.0, 181.0, 2.0))
-    moment = 0.1 + 0.5 * (1.0 - np.cos(angle))
-    none, one = (0.0,) * angle.size, (1.0,) * angle.size
-    table = replace(measured(0.0), angle=tuple(angle.tolist()), lift=none, drag=one, moment=tuple(moment.tolist()))
-    return replace(
-        line, ice=replace(line.ice, eccentricity_y=0.0, eccentricity_z=0.0, aerodynamics=fit_measured(table))
-    )
 
 
 def test_a_state_that_ends_in_a_fold_is_left_for_another_one_and_the_fold_is_reported() -> None:

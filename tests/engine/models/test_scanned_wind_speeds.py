@@ -1,11 +1,8 @@
 """Critical wind speeds by a scan against those by the polynomial, and over a static state that follows the wind."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from engine.mechanics.coefficients import fit_measured
 from engine.mechanics.modes import directional_shapes
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds, state_matrices
 from engine.models.discretization import Discretization, discretize, in_wind, with_wind_twist
@@ -14,7 +11,7 @@ from engine.models.reduced_model import ReducedModel, take
 from engine.models.scanned_wind_speeds import crossings_in_wind, scan_of, scanned_crossings
 from engine.spec import AerodynamicModel, Analysis, Line
 from tests.builders import hybrid, source_line
-from tests.engine.synthetic_table import measured, with_table
+from tests.engine.synthetic_table import overturning_line, with_table
 
 TABLE = Analysis(aerodynamic_model=AerodynamicModel.TABLE)
 LIMIT = 30.0
@@ -56,20 +53,8 @@ def test_the_onset_of_a_twisting_line_is_that_of_its_state_there() -> None:
         assert np.abs(frozen.wind_speed / speed - 1.0).min() < 3e-3
 
 
-def overturning() -> Line:
-    """Return a line whose moment grows with the twist until it turns the section over near 19 m/s."""
-    line = source_line(1)
-    angle = np.radians(np.arange(-180.0, 181.0, 2.0))
-    moment = 0.1 + 0.5 * (1.0 - np.cos(angle))
-    none, one = (0.0,) * angle.size, (1.0,) * angle.size
-    table = replace(measured(0.0), angle=tuple(angle.tolist()), lift=none, drag=one, moment=tuple(moment.tolist()))
-    return replace(
-        line, ice=replace(line.ice, eccentricity_y=0.0, eccentricity_z=0.0, aerodynamics=fit_measured(table))
-    )
-
-
 def test_a_fold_of_the_static_state_is_a_divergence() -> None:
-    found = scanned(overturning())
+    found = scanned(overturning_line())
     divergences = np.flatnonzero(~found.oscillation)
     assert divergences.size >= 1
     assert 17.0 < found.wind_speed[divergences[0]] < 21.0
