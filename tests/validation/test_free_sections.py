@@ -1,8 +1,6 @@
 """Torsional frequencies of bundles whose sub-conductors move along the span by themselves. Theory section 12.2."""
 
-import ctypes.util
 import math
-import os
 from dataclasses import replace
 from types import ModuleType
 
@@ -79,16 +77,6 @@ def test_even_loops_of_a_free_section_are_those_of_the_textbook(loops: int) -> N
     stiffness, inertia = 30_000.0 * square + 101.0, 2.379 * square + 3.334e-4
     expected = loops / (2.0 * 125.88) * math.sqrt(stiffness / inertia)
     assert torsional(line, loops, Model.FINITE_ELEMENT) == pytest.approx(expected, rel=2e-3)
-
-
-@pytest.fixture(scope="module")
-def peer() -> ModuleType:
-    """Give the outside code; without its system libraries the tests are skipped, and under CI they fail."""
-    if os.environ.get("CI") != "true" and ctypes.util.find_library("lapack") is None:
-        pytest.skip("OpenSees needs the system's BLAS and LAPACK (libblas3, liblapack3)")
-    from benchmarks import opensees  # noqa: PLC0415 - it loads the outside code
-
-    return opensees
 
 
 @pytest.mark.parametrize("loops", [1, 2])

@@ -1,7 +1,5 @@
 """The two-loop vertical frequency against OpenSees, from taut to slack spans. Theory section 12."""
 
-import ctypes.util
-import os
 from dataclasses import replace
 from types import ModuleType
 
@@ -11,16 +9,6 @@ from engine.spec import Analysis, Line, LongitudinalInertia, Model
 from tests.builders import run, source_line
 
 SAG_SHARES = (0.005, 0.01, 0.02, 0.04, 0.08)
-
-
-@pytest.fixture(scope="module")
-def peer() -> ModuleType:
-    """Give the outside code; without its system libraries the tests are skipped, and under CI they fail."""
-    if os.environ.get("CI") != "true" and ctypes.util.find_library("lapack") is None:
-        pytest.skip("OpenSees needs the system's BLAS and LAPACK (libblas3, liblapack3)")
-    from benchmarks import opensees  # noqa: PLC0415 - it loads the outside code
-
-    return opensees
 
 
 def hung_span(sag_share: float, dead_ends: bool) -> Line:

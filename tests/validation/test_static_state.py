@@ -1,8 +1,6 @@
 """Static state under wind and level differences: the theory page's figures (sections 15 and 16), and OpenSees."""
 
-import ctypes.util
 import math
-import os
 from dataclasses import replace
 from types import ModuleType
 
@@ -24,16 +22,6 @@ SPANS = [
     ((300.0, 30e3, 0.0, 120.0), [0.18028, 0.35651, 0.36040, 0.36836]),
 ]
 Hung = tuple[float, float, float, float]
-
-
-@pytest.fixture(scope="module")
-def peer() -> ModuleType:
-    """Give the outside code; without its system libraries the tests are skipped, and under CI they fail."""
-    if os.environ.get("CI") != "true" and ctypes.util.find_library("lapack") is None:
-        pytest.skip("OpenSees needs the system's BLAS and LAPACK (libblas3, liblapack3)")
-    from benchmarks import opensees  # noqa: PLC0415 - it loads the outside code
-
-    return opensees
 
 
 def hung_line(length: float, tension: float, wind_speed: float, rise: float) -> Line:

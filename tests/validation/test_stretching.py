@@ -1,7 +1,5 @@
 """The frequency of large free vibrations against exact chains of bars. Theory section 12.1."""
 
-import ctypes.util
-import os
 from types import ModuleType
 
 import pytest
@@ -26,19 +24,9 @@ def test_the_finite_element_model_relieves_in_its_symmetric_modes() -> None:
     assert 100.0 * finite_element_shift(SPANS[name], amplitude) == pytest.approx(exact, rel=0.015)
 
 
-def test_opensees_swings_at_the_same_frequency() -> None:
-    peer = outside_code()
+def test_opensees_swings_at_the_same_frequency(peer: ModuleType) -> None:
     line = SPANS["source's line, springs"]
     conductor = peer.Conductor(line.conductor.axial_rigidity, line.conductor.mass, 30e3)
     section = peer.Section((125.88,), end_stiffness=(1.285e5, 1.285e5))
     small, large = (peer.swinging_frequency(conductor, section, 2, size) for size in (1e-3, 0.95))
     assert hybrid_shift(line, 0.95) == pytest.approx(large / small - 1.0, rel=0.02)
-
-
-def outside_code() -> ModuleType:
-    """Return the module that calls OpenSees; without its system libraries skip, and under CI fail."""
-    if os.environ.get("CI") != "true" and ctypes.util.find_library("lapack") is None:
-        pytest.skip("OpenSees needs the system's BLAS and LAPACK (libblas3, liblapack3)")
-    from benchmarks import opensees  # noqa: PLC0415 - it loads the outside code
-
-    return opensees
