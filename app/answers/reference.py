@@ -8,20 +8,31 @@ Number = float | None
 
 
 class ConductorRow(Answer):
-    """A bare conductor; a line's `conductor` takes diameter, area and modulus unchanged, mass with the ice added."""
+    """A bare conductor; a line's `conductor` takes diameter, area, modulus and strength unchanged, mass with ice."""
 
     name: str = described("Code word or usual name", "Drake")
     designation: str = described("Designation of its standard", "795 kcmil 26/7")
-    type: Literal["ACSR", "AACSR", "AAC"] = described(
-        "Aluminium (AAC), with steel core (ACSR), or aluminium alloy with steel core (AACSR)", "ACSR"
+    standard: str = described("Standard that describes it", "ASTM B232")
+    type: Literal["ACSR", "AACSR", "AAC", "AAAC"] = described(
+        "Aluminium (AAC), alloy (AAAC), with steel core (ACSR), or alloy with steel core (AACSR)", "ACSR"
     )
     stranding: str = described("Wires of aluminium / of steel", "26/7")
-    area_m2: float = described("Area of all wires [m2]", 4.685e-4)
-    diameter_m: float = described("Overall diameter [m]", 0.02811)
-    mass_kg_per_m: float = described("Mass per length, bare [kg/m]", 1.628)
-    rated_strength_n: Number = described("Rated tensile strength; null where the source has none [N]", 140100.0)
-    youngs_modulus_pa: Number = described("Final modulus; null where the source has none [Pa]", 7.4e10)
-    source: str = described("Source of the figures", "Aluminum Association values for ACSR")
+    aluminium_wire_diameter_m: Number = described(
+        "Diameter of a wire of aluminium; null where the source has none [m]", None
+    )
+    steel_wire_diameter_m: Number = described("Diameter of a wire of steel; null where the source has none [m]", None)
+    aluminium_area_m2: Number = described("Area of the wires of aluminium [m2]", 4.028e-4)
+    area_m2: float = described("Area of all wires [m2]", 4.6864e-4)
+    diameter_m: float = described("Overall diameter [m]", 0.02814)
+    mass_kg_per_m: float = described("Mass per length, bare [kg/m]", 1.6281)
+    rated_strength_n: Number = described("Rated tensile strength; null where the source has none [N]", 140120.0)
+    youngs_modulus_pa: Number = described("Final modulus; null where the source has none [Pa]", 6.964e10)
+    thermal_expansion_per_k: Number = described("Thermal expansion; null where the source has none [1/K]", 1.882e-5)
+    source: str = described("Source of the figures", "ASTM B232/B232M-11, Table 1")
+    source_address: str = described(
+        "Where the source was read", "https://github.com/OverheadTransmissionLineSoftware/SpanAnalyzer"
+    )
+    licence: str = described("Licence under which the source gives its figures", "Unlicense (public domain)")
 
 
 class ConductorList(Answer):

@@ -2,7 +2,7 @@
 
 import typer
 
-from app.cli import keys, lines, operate, service
+from app.cli import catalogue, keys, lines, operate, service
 
 app = typer.Typer(
     help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
@@ -19,6 +19,7 @@ for command in (
     service.submit,
     lines.example,
     lines.ellipse,
+    catalogue.conductors,
     operate.status,
     operate.prune,
     operate.audit,

@@ -1,48 +1,79 @@
-"""The catalogue of bare conductors: published figures as printed, each row with its source (app/data)."""
+"""The catalogue of bare conductors that ships with the service: published figures as printed, with their sources."""
 
 import csv
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any
 
-# Published unit -> SI.
+from app.reference.catalogue_row import CatalogueRow
+
+# Field -> published column and factor to SI.
 _NUMBERS: Mapping[str, tuple[str, float]] = {
+    "aluminium_wire_diameter_m": ("aluminium_wire_mm", 1e-3),
+    "steel_wire_diameter_m": ("steel_wire_mm", 1e-3),
+    "aluminium_area_m2": ("aluminium_area_mm2", 1e-6),
     "area_m2": ("area_mm2", 1e-6),
     "diameter_m": ("diameter_mm", 1e-3),
     "mass_kg_per_m": ("mass_kg_per_km", 1e-3),
     "rated_strength_n": ("rated_strength_kn", 1e3),
     "youngs_modulus_pa": ("modulus_gpa", 1e9),
+    "thermal_expansion_per_k": ("expansion_per_mk", 1e-6),
 }
-_TEXTS = ("name", "designation", "type", "stranding")
 
 
-def search(text: str) -> list[dict[str, Any]]:
+def search(text: str) -> list[CatalogueRow]:
     """Return the conductors whose name, designation, type or stranding contain every word of a text, ignoring case."""
     words = text.casefold().split()
-    return [row for row in _rows() if all(word in _searched(row) for word in words)]
+    return [row for row in shipped() if all(word in _searched(row) for word in words)]
 
 
-def _searched(row: Mapping[str, Any]) -> str:
-    return "\n".join(str(row[name]) for name in _TEXTS).casefold()
+def named(name: str) -> list[CatalogueRow]:
+    """Return the conductors of a designation, or if there are none, of a whole name, ignoring case; several may be."""
+    wanted = " ".join(name.casefold().split())
+    for key in ("designation", "name"):
+        found = [row for row in shipped() if getattr(row, key).casefold() == wanted]
+        if found:
+            return found
+    return []
+
+
+def _searched(row: CatalogueRow) -> str:
+    return "\n".join((row.name, row.designation, row.type, row.stranding or "")).casefold()
 
 
 @cache
-def _rows() -> tuple[dict[str, Any], ...]:
-    text = (files("app") / "data" / "conductors.csv").read_text(encoding="utf-8")
-    return tuple(_row(printed) for printed in csv.DictReader(text.splitlines()))
+def shipped() -> tuple[CatalogueRow, ...]:
+    """Return every conductor that ships with the service."""
+    sources = {source["id"]: source for source in _table("conductor_sources.csv")}
+    return tuple(_row(printed, sources[printed["source"]]) for printed in _table("conductors.csv"))
 
 
-def _row(printed: Mapping[str, str]) -> dict[str, Any]:
-    numbers = {
-        name: float(printed[column]) * factor if printed[column] else None
-        for name, (column, factor) in _NUMBERS.items()
-    }
-    return {
-        "name": printed["name"],
-        "designation": printed["designation"],
-        "type": printed["type"],
-        "stranding": f"{printed['aluminium_wires']}/{printed['steel_wires']}",
-        **{name: None if value is None else float(f"{value:.6g}") for name, value in numbers.items()},
-        "source": printed["source"],
-    }
+def _table(name: str) -> list[dict[str, str]]:
+    text = (files("app") / "data" / name).read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
+
+
+def _row(printed: Mapping[str, str], source: Mapping[str, str]) -> CatalogueRow:
+    numbers = {name: _si(printed[column], factor) for name, (column, factor) in _NUMBERS.items()}
+    diameter, mass = numbers.pop("diameter_m"), numbers.pop("mass_kg_per_m")
+    assert diameter is not None, f"{printed['designation']} has no diameter"
+    assert mass is not None, f"{printed['designation']} has no mass"
+    return CatalogueRow(
+        name=printed["name"],
+        designation=printed["designation"],
+        standard=printed["standard"],
+        type=printed["type"],
+        aluminium_wires=int(printed["aluminium_wires"]),
+        steel_wires=int(printed["steel_wires"]),
+        diameter_m=diameter,
+        mass_kg_per_m=mass,
+        source=source["title"],
+        source_address=source["address"],
+        licence=source["licence"],
+        **numbers,
+    )
+
+
+def _si(printed: str, factor: float) -> float | None:
+    # Six digits are more than any source prints; they hide what the factor adds in the last place.
+    return float(f"{float(printed) * factor:.6g}") if printed else None

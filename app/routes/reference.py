@@ -31,7 +31,7 @@ def list_conductors(
     ] = "",
 ) -> JSONResponse:
     """List bare conductors of the catalogue with published figures; each row names its source."""
-    return JSONResponse({"conductors": conductors.search(search)})
+    return JSONResponse({"conductors": [row.listed() for row in conductors.search(search)]})
 
 
 @router.get(

@@ -9,7 +9,7 @@ def test_conductors_are_sought_by_words(shared_client: httpx.Client) -> None:
     answer = shared_client.get("/v1/conductors", params={"search": "acsr drake"})
     assert answer.status_code == 200
     (row,) = ConductorList.model_validate_json(answer.content).conductors
-    assert row.diameter_m == 0.02811
+    assert row.diameter_m == 0.02814
     assert len(shared_client.get("/v1/conductors").json()["conductors"]) > 50
     assert shared_client.get("/v1/conductors", params={"search": "x" * 101}).status_code == 400
 
