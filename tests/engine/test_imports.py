@@ -10,7 +10,19 @@ import engine
 
 ROOT = Path(engine.__file__).parent
 ALLOWED = frozenset(
-    {"collections", "dataclasses", "engine", "enum", "functools", "itertools", "math", "numpy", "scipy", "typing"}
+    {
+        "cmath",
+        "collections",
+        "dataclasses",
+        "engine",
+        "enum",
+        "functools",
+        "itertools",
+        "math",
+        "numpy",
+        "scipy",
+        "typing",
+    }
 )
 
 
