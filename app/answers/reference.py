@@ -1,4 +1,4 @@
-"""Answers with reference data: the conductor catalogue, the fields of a request, and the tables of a result."""
+"""Answers with reference data: conductors, ice shapes, the fields of a request, and the tables of a result."""
 
 from typing import Any, Literal
 
@@ -39,6 +39,48 @@ class ConductorList(Answer):
     """Conductors of the catalogue."""
 
     conductors: list[ConductorRow] = described("The rows found", [example_of(ConductorRow)])
+
+
+class ShapeCoefficients(Answer):
+    """Cubic coefficients over the angle of attack in radians, as a line's `aerodynamics` takes them."""
+
+    vertical: list[float] = described("a_y1, a_y2, a_y3 [1/rad, 1/rad2, 1/rad3]", [-0.1667, -4.0547, 8.3581])
+    horizontal: list[float] = described("a_z1, a_z2, a_z3 [1/rad, 1/rad2, 1/rad3]", [0.8605, 0.8325, 1.7815])
+    torsional: list[float] = described(
+        "a_theta1, a_theta2, a_theta3 [1/rad, 1/rad2, 1/rad3]", [-0.7272, 0.2935, 5.9704]
+    )
+
+
+class ShapeAtRest(Answer):
+    """Coefficients at the static angle, as a line's `aerodynamics_at_rest` takes them."""
+
+    vertical: float = described("a_y0 [1]", 0.0)
+    horizontal: float = described("a_z0 [1]", 1.0)
+    torsional: float = described("a_theta0 [1]", 0.0)
+
+
+class IceShapeRow(Answer):
+    """An ice shape with the aerodynamic coefficients of one iced sub-conductor, as its source gives them."""
+
+    name: str = described('Name for `{"catalogue": name}` in a line\'s `aerodynamics`', "c11-40")
+    title: str = described("What the shape is", "C11, natural glaze from freezing rain, at 40 degrees")
+    static_angle_deg: float = described("Angle of the ice at which the coefficients hold [deg]", 40.0)
+    aerodynamics: ShapeCoefficients = described("Coefficients, slopes per radian", example_of(ShapeCoefficients))
+    aerodynamics_at_rest: ShapeAtRest | None = described("Coefficients at rest; null if the source has none", None)
+    fitted_range_deg: Number = described("Largest angle of attack of the fit; null if not stated [deg]", None)
+    reynolds_number: Number = described("Reynolds number of the measurement; null if not stated [1]", None)
+    reference_diameter_m: float = described("Diameter over which forces are taken, moments over its square [m]", 0.0286)
+    reference: Literal["bare", "iced"] = described(
+        "Whether that is the diameter of the bare or the iced section", "bare"
+    )
+    source: str = described("Where the coefficients were read", "Galloping of bundle conductor, Table 3")
+    caveats: list[str] = described("What to bear in mind", ["Other ice has other coefficients."])
+
+
+class IceShapeList(Answer):
+    """Every ice shape whose coefficients were read in a named source."""
+
+    ice_shapes: list[IceShapeRow] = described("The shapes", [example_of(IceShapeRow)])
 
 
 class FieldRow(Answer):

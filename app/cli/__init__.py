@@ -20,6 +20,7 @@ for command in (
     lines.example,
     lines.ellipse,
     catalogue.conductors,
+    catalogue.ice_shapes,
     operate.status,
     operate.prune,
     operate.audit,

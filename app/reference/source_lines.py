@@ -17,8 +17,10 @@ EXAMPLE_NAMES = tuple(_ARRANGEMENTS)
 _AXIAL_RIGIDITY_N = 4.78033e10 * 594.48e-6
 
 
+DIAMETER_M = 0.0286
+"""Diameter of the bare conductor, over which the coefficients are taken [m]."""
 _ECCENTRICITY_M = (2.05e-3, -0.63e-3)
-_COEFFICIENTS: dict[int, dict[str, list[float]]] = {
+COEFFICIENTS: dict[int, dict[str, list[float]]] = {
     40: {
         "vertical": [-0.1667, -4.0547, 8.3581],
         "horizontal": [0.8605, 0.8325, 1.7815],
@@ -30,6 +32,7 @@ _COEFFICIENTS: dict[int, dict[str, list[float]]] = {
         "torsional": [-0.8567, 0.9026, -0.2353],
     },
 }
+"""Aerodynamic coefficients of one iced sub-conductor by angle of the ice [deg] (paper Table 3), per radian."""
 
 
 def example(name: str, static_angle_deg: int = 40) -> dict[str, Any]:
@@ -51,7 +54,7 @@ def example(name: str, static_angle_deg: int = 40) -> dict[str, Any]:
         "name": title,
         "tags": {"source": "c11"},
         "conductor": {
-            "diameter_m": 0.0286,
+            "diameter_m": DIAMETER_M,
             "axial_rigidity_n": _AXIAL_RIGIDITY_N,
             "torsional_rigidity_n_m2": 101.0,
             "mass_kg_per_m": 2.379,
@@ -77,5 +80,5 @@ def _ice(static_angle_deg: int) -> dict[str, Any]:
     return {
         "eccentricity_y_m": up * math.cos(turn) - downwind * math.sin(turn),
         "eccentricity_z_m": up * math.sin(turn) + downwind * math.cos(turn),
-        "aerodynamics": {direction: list(row) for direction, row in _COEFFICIENTS[static_angle_deg].items()},
+        "aerodynamics": {direction: list(row) for direction, row in COEFFICIENTS[static_angle_deg].items()},
     }

@@ -1,14 +1,15 @@
-"""Reference data for requests and results: the conductor catalogue, the input fields and the result tables."""
+"""Reference data for requests and results: conductors, ice shapes, the input fields and the result tables."""
 
 from typing import Annotated
 
 from fastapi import APIRouter, Query
 from fastapi.responses import JSONResponse
 
-from app.answers.reference import ConductorList, FieldList, TableList
+from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList
 from app.export.columns import all_tables
 from app.http.problems import ProblemKind
 from app.reference import conductors
+from app.reference.ice_shapes import ICE_SHAPES
 from app.routes import documentation, reference_documentation
 from app.routes.dependencies import PREFIX
 from app.schemas import field_table
@@ -32,6 +33,17 @@ def list_conductors(
 ) -> JSONResponse:
     """List bare conductors of the catalogue with published figures; each row names its source."""
     return JSONResponse({"conductors": [row.listed() for row in conductors.search(search)]})
+
+
+@router.get(
+    "/ice-shapes",
+    summary="List the ice shapes with known coefficients",
+    response_model=IceShapeList,
+    responses={200: documentation.body("The shapes", ("application/json", reference_documentation.ICE_SHAPES))},
+)
+def list_ice_shapes() -> JSONResponse:
+    """List the ice shapes whose aerodynamic coefficients were read in a named source, with its gaps and caveats."""
+    return JSONResponse({"ice_shapes": [shape.listed() for shape in ICE_SHAPES]})
 
 
 @router.get(

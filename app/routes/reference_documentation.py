@@ -1,8 +1,8 @@
-"""OpenAPI examples of fits, conductors and input fields."""
+"""OpenAPI examples of fits, conductors, ice shapes and input fields."""
 
 from typing import Any
 
-from app.answers.reference import ConductorRow, FieldRow, TableRow
+from app.answers.reference import ConductorRow, FieldRow, IceShapeRow, TableRow
 from app.schemas.fields import example_of
 
 _MEASURED = (
@@ -49,6 +49,7 @@ FIT: dict[str, Any] = {
     ],
 }
 CONDUCTORS: dict[str, Any] = {"conductors": [example_of(ConductorRow)]}
+ICE_SHAPES: dict[str, Any] = {"ice_shapes": [example_of(IceShapeRow)]}
 FIELDS: dict[str, Any] = {
     "fields": [example_of(FieldRow) | {"fewest_items": None, "most_items": None, "choices": None}],
 }

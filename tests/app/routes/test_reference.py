@@ -1,7 +1,7 @@
 import httpx
 
 from app import convert
-from app.answers.reference import ConductorList, FieldList, TableList
+from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList
 from app.schemas.field_table import input_fields
 
 
@@ -12,6 +12,12 @@ def test_conductors_are_sought_by_words(shared_client: httpx.Client) -> None:
     assert row.diameter_m == 0.02814
     assert len(shared_client.get("/v1/conductors").json()["conductors"]) > 50
     assert shared_client.get("/v1/conductors", params={"search": "x" * 101}).status_code == 400
+
+
+def test_ice_shapes_are_listed_with_source_and_caveats(shared_client: httpx.Client) -> None:
+    shapes = IceShapeList.model_validate_json(shared_client.get("/v1/ice-shapes").content).ice_shapes
+    assert [shape.name for shape in shapes] == ["c11-40", "c11-270"]
+    assert all(shape.source and shape.caveats for shape in shapes)
 
 
 def test_fields_are_the_table_of_the_schemas(shared_client: httpx.Client) -> None:
