@@ -1,10 +1,12 @@
 """A bundle as chains of bars, one for each sub-conductor, with common V, W and Theta at every joint.
 
 It shares no elements, shapes or bundle sums with the engine. Every sub-conductor moves along the span by itself, and
-with its inertia.
+with its inertia. Besides small vibrations it gives the energy and the tensions of large motion, with the exact lengths
+of all bars.
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh, null_space
@@ -45,6 +47,101 @@ def torsional_frequency(
     values, vectors = eigh(stiffness, mass, subset_by_index=[0, 12 * loops])
     overlap = np.abs(twist.ravel() @ free @ mass @ vectors)
     return math.sqrt(values[int(overlap.argmax())]) / (2.0 * math.pi)
+
+
+@dataclass(frozen=True, slots=True)
+class Stretched:
+    """A chain that large motion has stretched.
+
+    energy: of all bars and end springs beyond the work of the dead load that balances them at rest [J]; tension: (n,),
+    mean over the bars of each sub-conductor of what its horizontal component has gained [N].
+    """
+
+    energy: float
+    tension: FloatArray
+
+
+def stretched(
+    line: Line,
+    end_stiffness: tuple[float, float],
+    motion: FloatArray,
+    tied: str,
+    twist: FloatArray | None = None,
+) -> Stretched:
+    """Move a bundle across the line, while its joints find their places along the line by least energy.
+
+    Parameters
+    ----------
+    line, end_stiffness, tied
+        As in `torsional_frequency`.
+    motion : (joints, 3)
+        V, W [m] and Theta [rad] of joints at equal arc lengths.
+    twist : (joints,), optional
+        Angle by which the cross-sections are turned at rest [rad].
+
+    Raises
+    ------
+    RuntimeError
+        If Newton's method does not settle.
+    """
+    assert line.span.horizontal_tension is not None
+    bars, n = len(motion) - 1, len(line.bundle.positions)
+    rest = np.diff(_joints(line, line.span.horizontal_tension, bars), axis=0)
+    rest = np.append(rest, np.zeros((bars, 1)), axis=1)[:, None]  # (bars, 1, 3)
+    across = np.diff(_displacements(line, motion, np.zeros(bars + 1) if twist is None else twist), axis=0)
+    free = _free_motions(bars, n, end_stiffness, tied).reshape(bars + 1, n + 3, -1)[:, :n]
+    free = free[..., np.abs(free).max(axis=(0, 1)) > 0.0]
+    pull = np.diff(free, axis=0)
+    springs = np.where(np.isinf(end_stiffness), 0.0, end_stiffness)
+    held = np.einsum("e,enx,eny->xy", springs, free[[0, -1]], free[[0, -1]])
+    places = np.zeros(free.shape[-1])
+    for _ in range(30):
+        bar = _bars(line, rest, across + np.stack([pull @ places, *np.zeros((2, bars, n))], axis=-1))
+        gradient = np.einsum("bn,bnx->x", bar.gained, pull) + held @ places
+        hessian = np.einsum("bn,bnx,bny->xy", bar.stiffness, pull, pull, optimize=True) + held
+        step = np.linalg.lstsq(hessian, gradient, rcond=1e-13)[0]
+        places = places - step
+        if np.abs(step).max() < 1e-13 * line.span.length:
+            return Stretched(bar.energy + 0.5 * float(places @ held @ places), bar.gained.mean(axis=0))
+    raise RuntimeError("the joints found no places along the line")
+
+
+def _displacements(line: Line, motion: FloatArray, twist: FloatArray) -> FloatArray:
+    """Return the displacements across the line of sub-conductors by V, W and Theta, eq. (3): (joints, n, 3)."""
+    n, moved = len(line.bundle.positions), []
+    for row, angle in zip(motion, twist.tolist(), strict=True):
+        c, s = math.cos(angle), math.sin(angle)
+        moves = [_moves(i, n, c * y - s * z, s * y + c * z) for i, (y, z) in enumerate(line.bundle.positions)]
+        moved.append([move[:, n:] @ row for move in moves])
+    return np.array(moved)
+
+
+@dataclass(frozen=True, slots=True)
+class _Bars:
+    """Energy [J], gain in horizontal tension and its derivative by the bar's horizontal extent, both (bars, n)."""
+
+    energy: float
+    gained: FloatArray
+    stiffness: FloatArray
+
+
+def _bars(line: Line, rest: FloatArray, change: FloatArray) -> _Bars:
+    """Stretch bars with vectors at rest (bars, 1, 3) by changes of these (bars, n, 3)."""
+    length = np.linalg.norm(rest, axis=-1)
+    tension = (line.span.horizontal_tension or math.nan) * length / rest[..., 0]
+    work = (rest * change).sum(axis=-1)
+    now = rest + change
+    longer = np.linalg.norm(now, axis=-1)
+    stretch = (2.0 * work + (change**2).sum(axis=-1)) / (longer + length)
+    rigidity = line.conductor.axial_rigidity / length
+    force = tension + rigidity * stretch
+    energy = tension * (stretch - work / length) + 0.5 * rigidity * stretch**2
+    cosine = now[..., 0] / longer
+    return _Bars(
+        float(energy.sum()),
+        force * cosine - tension * rest[..., 0] / length,
+        rigidity * cosine**2 + force / longer * (1.0 - cosine**2),
+    )
 
 
 def _joints(line: Line, tension: float, bars: int) -> FloatArray:

@@ -1,9 +1,28 @@
-"""The frequency of large free vibrations beside exact chains of bars. Theory section 12.1."""
+"""Large free vibrations beside exact chains of bars: frequency, and energy and tensions of free sections.
+
+Theory sections 12.1 and 12.2.
+"""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
+import numpy as np
+
+from benchmarks.bundle_chain import stretched
 from benchmarks.free_vibration import EXACT_SHIFTS, SPANS, finite_element_shift, hybrid_shift
-from benchmarks.validation.common import table
+from benchmarks.lines import source_line
+from benchmarks.models import discretized
+from benchmarks.validation.common import percent, table
+from engine.arrays import FloatArray
+from engine.models.stretching import dynamic_tension, restoring_force, stretching_of, take_stretching
+from engine.spec import CrossSection, Line, Support, Supports, Yoke
+
+BARS, ELEMENTS = 100, 20
+MOTIONS = (  # amplitudes of V, W [m] and Theta [rad] in one loop, then in two
+    (0.6, 0.3, 0.3, 0.2, 0.2, -0.2),
+    (0.2, 0.1, 0.1, 0.05, 0.05, -0.1),
+)
+SMALL = 1e-3
 
 
 def section() -> Iterator[str]:
@@ -20,3 +39,52 @@ def section() -> Iterator[str]:
         "more shapes than one: there the hybrid model is some 4 % off in the shift.\n"
     )
     yield table(["span", "A m", "exact %", "hybrid %", "finite element %"], rows)
+    yield (
+        "\nFree sections (theory section 12.2): a bundle between dead ends is moved across the line, in one and in\n"
+        "two loops together, by V and W in m and Theta in rad. P is the energy beyond that of the linear stiffness,\n"
+        "N_i what each sub-conductor's horizontal tension gains. The chains of bars (benchmarks/bundle_chain.py) have\n"
+        "exact lengths; their joints find their places along the line by least energy, each sub-conductor by itself.\n"
+    )
+    head = ["n", "yokes", "V W Theta, one loop", "two loops", "P, J", "chains", "%", "N_i, N", "chains"]
+    yield table(head, [row for n in (2, 3, 4) for yoke in Yoke for row in _beside_chains(n, yoke)])
+
+
+def _beside_chains(subconductors: int, yoke: Yoke) -> Iterator[list[object]]:
+    end = Support(dead_end=True, yoke=yoke)
+    line = source_line(subconductors)
+    bundle = replace(line.bundle, section=CrossSection.FREE)
+    span = replace(line.span, elements=ELEMENTS)
+    line = replace(line, bundle=bundle, span=span, supports=Supports(left=end, right=end))
+    for motion in MOTIONS:
+        amplitudes = np.array(motion)
+        (own, own_tension), (chain, chain_tension) = _own(line, amplitudes), _chains(line, amplitudes)
+        cells = [" ".join(f"{x:g}" for x in part) for part in (motion[:3], motion[3:])]
+        tensions = [" ".join(f"{x:.0f}" for x in part) for part in (own_tension, chain_tension)]
+        energies = f"{own:.4g}", f"{chain:.4g}", percent(own, chain)
+        yield [subconductors, yoke, *cells, *energies, *tensions]
+
+
+def _waves(places: int) -> FloatArray:
+    """Return V, W and Theta of each amplitude of a motion: (6, 3, places)."""
+    sines = np.sin(np.pi * np.outer((1, 2), np.linspace(0.0, 1.0, places)))
+    return np.asarray(np.einsum("kp,df->kdfp", sines, np.eye(3)).reshape(6, 3, places))
+
+
+def _own(line: Line, amplitudes: FloatArray) -> tuple[float, FloatArray]:
+    """Return P [J] and N_i [N]; P from its derivative, whose parts are of degree two and three."""
+    stretching = take_stretching(
+        stretching_of(discretized([line]), _waves(2 * line.span.elements + 1)[None, None]), (0, 0)
+    )
+    assert stretching is not None
+    forward, backward = (restoring_force(stretching, sign * amplitudes[None])[0] for sign in (1.0, -1.0))
+    energy = amplitudes @ ((forward + backward) / 6.0 + (forward - backward) / 8.0)
+    return float(energy), dynamic_tension(stretching, amplitudes[None])[0]
+
+
+def _chains(line: Line, amplitudes: FloatArray) -> tuple[float, FloatArray]:
+    """Return the same of chains of bars; the quadratic part of their energy is that of small motion."""
+    motion = np.tensordot(amplitudes, _waves(BARS + 1), axes=1).T
+    tied = "at ends" if line.supports.left.yoke is Yoke.HELD else "nowhere"
+    ends = (np.inf, np.inf)
+    large, *small = (stretched(line, ends, scale * motion, tied) for scale in (1.0, SMALL, -SMALL))
+    return large.energy - 0.5 * sum(x.energy for x in small) / SMALL**2, large.tension

@@ -40,7 +40,7 @@ def finite_element_model(
         analysis.aerodynamic_model,
     )
     included = analysis.stretching is Stretching.INCLUDED
-    geometry = (discretization.lines, discretization.profile, discretization.sections)
+    stretching = stretching_of(discretization, nodal[:, None]) if included else None
     unstable = np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
     return ReducedModel(
         mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
@@ -51,7 +51,7 @@ def finite_element_model(
         shapes=nodal,
         direction=np.repeat(np.arange(3), len(modes.loops)),
         statically_unstable=unstable,
-        stretching=take_stretching(stretching_of(*geometry, nodal[:, None]), (slice(None), 0)) if included else None,
+        stretching=take_stretching(stretching, (slice(None), 0)),
         unexpanded=take_unexpanded(load_as_it_stands(discretization, at[:, None], analysis), (slice(None), 0)),
     )
 

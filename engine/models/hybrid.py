@@ -206,7 +206,7 @@ def _stretching(discretization: Discretization, moving: FloatArray, analysis: An
     """Return the stretching of coordinates that move as (lines, groups, m, 3, nodes), None where it is neglected."""
     if analysis.stretching is Stretching.NEGLECTED:
         return None
-    return stretching_of(discretization.lines, discretization.profile, discretization.sections, moving)
+    return stretching_of(discretization, moving)
 
 
 def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: Analysis) -> PolynomialLoad:

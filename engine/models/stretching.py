@@ -2,9 +2,10 @@
 
 Paper eq. (7) has the squares of the slopes, which (A5) drops. The dynamic tension N is uniform along a span because
 longitudinal waves are much faster than galloping; what differs between the sub-conductors of a rigid section strains
-them locally. The energy beyond that of the linear stiffness,
+them locally, and those of a free section have a tension each. The energy beyond that of the linear stiffness,
 
-    P = n k/2 [(e + h)^2 - e^2] + EA/2 sum_i int (D_i^2 - D_i,lin^2) ds,
+    P = n k/2 [(e + h)^2 - e^2] + EA/2 sum_i int (D_i^2 - D_i,lin^2) ds          (rigid)
+                                + k_d/2 sum_i (J_i^2 - J_i,lin^2)                (free, see `free_stretching`),
 
 is a polynomial of third and fourth degree in the generalized coordinates, integrated once per line.
 """
@@ -15,10 +16,22 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import FloatArray, merge_axes
+from engine.arrays import FloatArray, IntArray, merge_axes
 from engine.mechanics.cross_sections import Sections
 from engine.mechanics.interpolation import element_nodes, section_slopes, shape_functions
 from engine.mechanics.static_profile import StaticProfile
+from engine.models.discretization import Discretization
+from engine.models.free_stretching import (
+    TensionForms,
+    TurningSlopes,
+    has_own_tensions,
+    own_stiffness,
+    own_stretches,
+    principal_stretches,
+    shares,
+    tension_forms,
+    with_own,
+)
 from engine.numerics import polynomial
 from engine.spec import Line
 
@@ -28,16 +41,16 @@ TWIST = 2  # index of Theta' among them
 
 @dataclass(frozen=True, slots=True)
 class StretchingForce:
-    """The force g(q) = dP/dq of a stack of models with m generalized coordinates, and the dynamic tension.
+    """The force g(q) = dP/dq of a stack of models with m generalized coordinates, and the dynamic tensions.
 
     table: (..., m, monomials of degree 1 to 3), coefficients of g, those of the first degree zero; slopes:
-    (..., m, m, lower monomials), derivatives of the table; stiffness: (...,), k per sub-conductor [N/m]; linear:
-    (..., m), e = linear . q [m]; square: (..., m, m), h = q . square q / 2 [m].
+    (..., m, m, lower monomials), derivatives of the table; linear: (..., n, m) and square: (..., n, m, m), dynamic
+    tensions N_i = linear_i . q + q . square_i q / 2 [N] of the sub-conductors, or n = 1 where all share that of the
+    mean.
     """
 
     table: FloatArray
     slopes: FloatArray
-    stiffness: FloatArray
     linear: FloatArray
     square: FloatArray
 
@@ -71,17 +84,13 @@ def slope_points(lines: Sequence[Line], profile: StaticProfile, section_points: 
     )
 
 
-def stretching_of(
-    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, nodal: FloatArray
-) -> StretchingForce:
+def stretching_of(discretization: Discretization, nodal: FloatArray) -> StretchingForce:
     """Return the stretching of coordinates with given shapes.
 
     Parameters
     ----------
-    lines : sequence of Line
-    profile : StaticProfile
-    section_points : Sections
-        With the static twist of the sections, if there is one.
+    discretization : Discretization
+        Of lines with equal numbers of elements.
     nodal : (lines, groups, m, 3, nodes)
         V, W and Theta of each generalized coordinate.
 
@@ -90,28 +99,36 @@ def stretching_of(
     StretchingForce
         With leading axes (lines, groups).
     """
+    lines, profile, section_points, _ = discretization.parts
     at = slope_points(lines, profile, section_points)
     slopes = merge_axes(_slopes_at(at, nodal), -2)  # (lines, groups, m, 3, points)
     offsets = [_offsets(line, turn) for line, turn in zip(lines, section_points.twist, strict=True)]
-    stiffness = span_stiffness(lines, profile, at)
+    stiffness = span_stiffness(lines, profile, at)[:, None, None, None]
     linear, square = _stretches(at, slopes, offsets)
     count = np.array([len(line.bundle.positions) for line in lines])
-    table = (count * stiffness)[:, None, None, None] * _mean_table(linear, square)
-    table = table + _local_table(lines, at, slopes, offsets)
-    return StretchingForce(
-        table,
-        polynomial.slopes(table),
-        np.broadcast_to(stiffness[:, None], linear.shape[:-1]),
-        linear,
-        square,
-    )
+    table = count[:, None, None, None] * stiffness * _mean_table(linear, square)
+    tension = TensionForms(stiffness * linear[:, :, None], stiffness[..., None] * square[:, :, None])
+    free = np.array([has_own_tensions(line) for line in lines])
+    rigid = np.flatnonzero((count > 1) & ~free)
+    if rigid.size:
+        some, here = [lines[i] for i in rigid], [offsets[i] for i in rigid]
+        table[rigid] += _local_table(some, _take_points(at, rigid), slopes[rigid], here)
+    if free.any():
+        own, forms = _own_stretching(discretization, np.flatnonzero(free), at, nodal)
+        table[free] += own
+        tension = with_own(tension, forms, free)
+    return StretchingForce(table, polynomial.slopes(table), tension.linear, tension.square)
 
 
 def span_stiffness(lines: Sequence[Line], profile: StaticProfile, at: SlopePoints) -> FloatArray:
     """Return k of a sub-conductor between its end springs, 1/k = L_e/EA + 1/K_left + 1/K_right: (lines,) [N/m]."""
     rigidity = np.array([line.conductor.axial_rigidity for line in lines])
-    effective_length = (at.weight / at.direction[..., 0] ** 2).sum(axis=(1, 2))
-    return np.asarray(1.0 / (effective_length / rigidity + (1.0 / profile.end_stiffness).sum(axis=1)))
+    return np.asarray(1.0 / (_effective_length(at) / rigidity + (1.0 / profile.end_stiffness).sum(axis=1)))
+
+
+def _effective_length(at: SlopePoints) -> FloatArray:
+    """Return L_e = int ds/x'^2: (lines,) [m]."""
+    return np.asarray((at.weight / at.direction[..., 0] ** 2).sum(axis=(1, 2)))
 
 
 def relieved_share(lines: Sequence[Line], profile: StaticProfile, section_points: Sections) -> FloatArray:
@@ -141,10 +158,19 @@ def restoring_gradient(stretching: StretchingForce, q: FloatArray) -> FloatArray
 
 
 def dynamic_tension(stretching: StretchingForce, q: FloatArray) -> FloatArray:
-    """Return N = k (e + h), the horizontal component per sub-conductor, at (..., samples, m): (..., samples) [N]."""
-    linear = (q @ stretching.linear[..., None])[..., 0]
-    square = 0.5 * ((q @ stretching.square) * q).sum(axis=-1)
-    return np.asarray(stretching.stiffness[..., None] * (linear + square))
+    """Return N_i, horizontal components of the sub-conductors, at (..., samples, m): (..., samples, n) [N].
+
+    n is 1 where no line of the stack has free sections; all sub-conductors then have that tension.
+    """
+    linear = q @ np.swapaxes(stretching.linear, -1, -2)
+    square = 0.5 * ((q[..., None, :, :] @ stretching.square) * q[..., None, :, :]).sum(axis=-1)
+    return np.asarray(linear + np.swapaxes(square, -1, -2))
+
+
+def tension_range(stretching: StretchingForce, q: FloatArray) -> FloatArray:
+    """Return the smallest and the largest N_i of all sub-conductors and samples q (..., samples, m): (..., 2) [N]."""
+    tension = dynamic_tension(stretching, q)
+    return np.stack([tension.min(axis=(-2, -1)), tension.max(axis=(-2, -1))], axis=-1)
 
 
 def take_stretching(stretching: StretchingForce | None, index: Any) -> StretchingForce | None:
@@ -190,6 +216,37 @@ def _stretches(at: SlopePoints, slopes: FloatArray, offsets: list[FloatArray]) -
     metric *= weight[..., None, None]
     square = np.einsum("lgafp,lpfh,lgbhp->lgab", slopes, metric, slopes, optimize=True)
     return np.asarray(linear), np.asarray(square)
+
+
+def _take_points(at: SlopePoints, lines: IntArray) -> SlopePoints:
+    return SlopePoints(*(getattr(at, field.name)[lines] for field in fields(at)))
+
+
+def _own_stretching(
+    discretization: Discretization, free: IntArray, at: SlopePoints, nodal: FloatArray
+) -> tuple[FloatArray, TensionForms]:
+    """Return the table of the stretches beyond the mean of lines with free sections, and their parts of the tensions.
+
+    free: which lines; the table has the shape (free lines, groups, m, monomials).
+    """
+    lines, points, moved = [discretization.lines[i] for i in free], _take_points(at, free), nodal[free]
+    angle = np.zeros(nodal.shape[-1]) if discretization.twist is None else discretization.twist.angle[free, None, None]
+    twist, turn = moved[..., TWIST, :], np.nan_to_num(angle)
+    turning = np.stack([np.cos(turn) * twist, np.sin(turn) * twist], axis=-2)
+    stretches = own_stretches(
+        TurningSlopes(
+            translation=merge_axes(_slopes_at(points, moved[..., :TWIST, :]), -2),
+            turning=merge_axes(_slopes_at(points, turning), -2),
+            curve=merge_axes(points.section_slopes, -3, -2),
+            weight=merge_axes(points.weight / points.direction[..., 0], -2),
+        )
+    )
+    share = shares(lines)
+    stiffness = own_stiffness(lines, discretization.profile.yoke_stiffness[free], _effective_length(points))
+    weight, principal = principal_stretches(stretches, share)
+    each = _mean_table(principal.linear, principal.square)
+    table = np.einsum("l,lr,lgrmk->lgmk", stiffness, weight, each, optimize=True)
+    return table, tension_forms(stretches, stiffness[:, None, None] * share)
 
 
 def _mean_table(linear: FloatArray, square: FloatArray) -> FloatArray:

@@ -25,7 +25,6 @@ from engine.report.tensions import tension_rows
 from engine.report.warnings import (
     dropped_warnings,
     fit_warnings,
-    free_section_warnings,
     line_warnings,
     longitudinal_warnings,
     motion_warnings,
@@ -131,7 +130,6 @@ def _warnings_about_lines(
         + twist_warnings(discretization, i)
         + longitudinal_warnings(shapes.loops, longitudinal[i], analysis)
         + relief_warnings(analysis, float(relieved[i]))
-        + free_section_warnings(line, analysis)
         + neglected[i]
         + wind_twist_warnings(discretization, i)
         for i, line in enumerate(discretization.lines)

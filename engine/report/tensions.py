@@ -1,4 +1,4 @@
-"""The table of dynamic tensions. Theory section 12.1."""
+"""The table of dynamic tensions: extremes over the sub-conductors and over time. Theory sections 12.1 and 12.2."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from engine.cycles.harmonic_balance import states
 from engine.mechanics.static_profile import end_steepness
 from engine.models.discretization import Discretization
 from engine.models.reduced_model import take
-from engine.models.stretching import dynamic_tension
+from engine.models.stretching import tension_range
 from engine.outcome import Outcome
 from engine.report.cells import lists_by_line
 from engine.report.findings import ModelFindings, cycle_loops, torus_loops
@@ -46,14 +46,14 @@ def tension_rows(discretization: Discretization, findings: ModelFindings) -> lis
 
 
 def cycle_tensions(discretization: Discretization, findings: ModelFindings) -> FloatArray:
-    """Return the smallest and the largest H + N of each cycle: (cycles, 2) [N], infinite without stretching."""
+    """Return the smallest and the largest H + N_i of each cycle: (cycles, 2) [N], infinite without stretching."""
     cycles = findings.cycles
     phases = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
     return _ranges(discretization, findings, cycles.member, states(cycles.orbits, phases))
 
 
 def torus_tensions(discretization: Discretization, findings: ModelFindings) -> FloatArray:
-    """Return the smallest and the largest H + N of each quasi-periodic motion: (tori, 2) [N], as `cycle_tensions`."""
+    """Return the smallest and the largest H + N_i of each quasi-periodic motion: (tori, 2) [N], as `cycle_tensions`."""
     known = findings.quasi_periodic
     return _ranges(discretization, findings, known.member, sampled_states(known.tori))
 
@@ -62,13 +62,12 @@ def _ranges(discretization: Discretization, findings: ModelFindings, member: Int
     model = take(findings.model, member)
     if model.stretching is None:
         return np.full((member.size, 2), np.inf)
-    tension = dynamic_tension(model.stretching, state[..., : model.mass.shape[-1]])
-    ends = np.stack([tension.min(axis=-1), tension.max(axis=-1)], axis=-1)
+    ends = tension_range(model.stretching, state[..., : model.mass.shape[-1]])
     return np.asarray(discretization.profile.horizontal_tension[findings.line[member], None] + ends)
 
 
 def _forces(line: Line, horizontal: FloatArray, steepness: float) -> tuple[Any, ...]:
-    """Return the range of H + N, that of the tension at the higher support, and its share of the rated strength."""
+    """Return the range of H + N_i, that of the tension at the higher support, and its share of the rated strength."""
     strength = line.conductor.rated_strength
     at_support = steepness * horizontal
     return (*horizontal.tolist(), *at_support.tolist(), None if strength is None else float(at_support[1] / strength))

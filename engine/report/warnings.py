@@ -18,7 +18,6 @@ from engine.spec import (
     AerodynamicModel,
     Aerodynamics,
     Analysis,
-    CrossSection,
     Ice,
     IceSegment,
     Line,
@@ -116,17 +115,6 @@ def relief_warnings(analysis: Analysis, relieved: float) -> list[str]:
         "coordinate is some 5 % off in the rise of frequency by stretching at moderate amplitudes, and up to 40 % "
         "at large ones, in two and more loops of the hybrid model. The finite element model with "
         "finite_element_loops 1, 2, 3 and 5 is better."
-    ]
-
-
-def free_section_warnings(line: Line, analysis: Analysis) -> list[str]:
-    """Return a sentence if the sections are free, while stretching takes them as rigid. Theory section 12.2."""
-    single = len(line.bundle.positions) == 1
-    if single or line.bundle.section is not CrossSection.FREE or analysis.stretching is Stretching.NEGLECTED:
-        return []
-    return [
-        "The sections are free, but their stretching by large motion is that of rigid sections: large torsional motion "
-        "is taken as too stiff. Neglect stretching, or compare with rigid sections."
     ]
 
 

@@ -123,9 +123,9 @@ class BifurcationRow:
 
 @dataclass(frozen=True, slots=True)
 class TensionRow:
-    """The range of a sub-conductor's tension over a motion, static and dynamic part together.
+    """The range of tension over a motion, static and dynamic part together, over all sub-conductors of free sections.
 
-    Theory section 12.1. No numbers where the conductor would go slack.
+    Theory sections 12.1 and 12.2. No numbers where a conductor would go slack.
     """
 
     model: ModelColumn

@@ -17,7 +17,7 @@ from engine.cycles.search import Cycles, find_cycles
 from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
-from engine.spec import AerodynamicLoad, AerodynamicModel, Analysis, Line, Span, Stretching
+from engine.spec import AerodynamicLoad, AerodynamicModel, Analysis, CrossSection, Line, Span, Stretching
 from tests.builders import finite_element, hybrid, source_line
 from tests.engine.synthetic_table import with_table
 
@@ -62,6 +62,11 @@ def relative_line(subconductors: int) -> Line:
     return replace(line, ice=replace(line.ice, aerodynamics=aerodynamics))
 
 
+def free_sections(line: Line) -> Line:
+    """Return a line whose sub-conductors move along the span by themselves."""
+    return replace(line, bundle=replace(line.bundle, section=CrossSection.FREE))
+
+
 UNEXPANDED = replace(RELATIVE, aerodynamic_load=AerodynamicLoad.UNEXPANDED)
 TABLE = Analysis(aerodynamic_model=AerodynamicModel.TABLE, stretching=Stretching.INCLUDED)
 
@@ -79,6 +84,7 @@ MODELS = {
     "hybrid, relative wind": lambda: hybrid(relative_line(2), 2, RELATIVE),
     "hybrid, stretching": lambda: hybrid(relative_line(2), 2, STRETCHING),
     "one loop, stretching": lambda: hybrid(relative_line(3), 1, STRETCHING),
+    "free sections, stretching": lambda: hybrid(free_sections(relative_line(2)), 1, STRETCHING),
     "finite element, stretching": lambda: finite_element(source_line(2), (1, 2), STRETCHING),
     "finite element": lambda: finite_element(source_line(2)),
     "finite element, relative wind": lambda: finite_element(relative_line(1), (1, 2), RELATIVE),

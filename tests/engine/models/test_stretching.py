@@ -8,6 +8,7 @@ import pytest
 
 from engine.arrays import FloatArray
 from engine.models.stretching import (
+    StretchingForce,
     dynamic_tension,
     relieved_share,
     restoring_force,
@@ -16,6 +17,7 @@ from engine.models.stretching import (
     span_stiffness,
     stretching_of,
     take_stretching,
+    tension_range,
 )
 from engine.spec import Bundle, Line, Support, Supports
 from tests.builders import discretized, source_line
@@ -66,7 +68,7 @@ def energy(line: Line, nodal: FloatArray, q: FloatArray) -> float:
 def test_the_force_is_the_slope_of_the_energy(name: str) -> None:
     line = CASES[name]
     made, nodal = discretized(line), shapes(line)
-    stretching = take_stretching(stretching_of((line,), made.profile, made.sections, nodal), (0, 0))
+    stretching = take_stretching(stretching_of(made, nodal), (0, 0))
     assert stretching is not None
     q = np.array([0.4, -0.3, 0.8, 0.2])
     step = 1e-4
@@ -82,7 +84,7 @@ def test_the_force_is_the_slope_of_the_energy(name: str) -> None:
 def test_it_has_no_linear_part() -> None:
     line = source_line(2)
     made = discretized(line)
-    stretching = stretching_of((line,), made.profile, made.sections, shapes(line))
+    stretching = stretching_of(made, shapes(line))
     assert not stretching.table[..., :4].any()
     assert stretching.table[..., 4:].any()
 
@@ -92,14 +94,21 @@ def test_upward_motion_slackens_and_sideways_motion_tightens() -> None:
     made = discretized(line)
     nodal = np.zeros((1, 1, 2, 3, 2 * line.span.elements + 1))
     nodal[0, 0, 0, 0] = nodal[0, 0, 1, 1] = np.sin(np.pi * np.linspace(0.0, 1.0, nodal.shape[-1]))
-    stretching = take_stretching(stretching_of((line,), made.profile, made.sections, nodal), (0, 0))
+    stretching = take_stretching(stretching_of(made, nodal), (0, 0))
     assert stretching is not None
-    up, down, sideways = dynamic_tension(stretching, np.array([[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1]]))
+    up, down, sideways = dynamic_tension(stretching, np.array([[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1]]))[:, 0]
     assert up < 0.0 < sideways < down
     parameter, arc = made.profile.catenary_parameter[0], made.profile.arc_length[0]
     # a_v = -(p/H) int f ds of the level catenary, and B of a sine, up to the sag's share of the slopes
-    assert stretching.linear[0] == pytest.approx(-2.0 * arc / math.pi / parameter, rel=1e-4)
-    assert stretching.square[1, 1] == pytest.approx(0.5 * math.pi**2 / arc, rel=1e-3)
+    stiffness = span_stiffness((line,), made.profile, slope_points((line,), made.profile, made.sections))[0]
+    assert stretching.linear[0, 0] == pytest.approx(-2.0 * stiffness * arc / math.pi / parameter, rel=1e-4)
+    assert stretching.square[0, 1, 1] == pytest.approx(0.5 * stiffness * math.pi**2 / arc, rel=1e-3)
+
+
+def test_the_range_of_tension_is_over_sub_conductors_and_samples() -> None:
+    linear = np.array([[[2.0, 0.0], [0.0, -3.0]]])
+    stretching = StretchingForce(np.zeros(0), np.zeros(0), linear, np.zeros((1, 2, 2, 2)))
+    assert tension_range(stretching, np.array([[[1.0, 2.0], [-4.0, 1.0]]])) == pytest.approx(np.array([[-8.0, 2.0]]))
 
 
 def test_the_sag_relieves_a_parabola_by_its_slopes() -> None:

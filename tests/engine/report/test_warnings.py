@@ -7,7 +7,6 @@ from engine.spec import (
     AerodynamicModel,
     AirflowSpoiler,
     Analysis,
-    CrossSection,
     DetuningPendulum,
     IceSegment,
     Line,
@@ -125,16 +124,6 @@ def test_a_span_that_relieves_in_more_shapes_than_one_points_at_the_finite_eleme
     for other in (replace(asked, loops=(1,)), replace(asked, stretching=Stretching.NEGLECTED)):
         assert not [text for text in run(line, other).warnings if "relief coordinate" in text]
     assert not [text for text in run(source_line(1), asked).warnings if "relief coordinate" in text]
-
-
-def test_stretching_that_takes_a_free_section_as_rigid_is_named() -> None:
-    line = source_line(2)
-    free = replace(line, bundle=replace(line.bundle, section=CrossSection.FREE))
-    asked = Analysis(loops=(1,), wind_speeds=(), models=(Model.HYBRID,), stretching=Stretching.INCLUDED)
-    (said,) = run(free, asked).warnings
-    assert "that of rigid sections" in said
-    assert run(line, asked).warnings == ()
-    assert run(free, replace(asked, stretching=Stretching.NEGLECTED)).warnings == ()
 
 
 def test_vertical_motion_that_is_partly_longitudinal_is_named() -> None:
