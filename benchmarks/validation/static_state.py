@@ -1,4 +1,4 @@
-"""Static state under wind and level differences, against OpenSees. Theory sections 15 and 16."""
+"""Static state under wind and level differences, against OpenSees and mechaphlowers. Theory sections 15 and 16."""
 
 import math
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks import opensees
+from benchmarks import mechaphlowers, opensees
 from benchmarks.lines import source_line
 from benchmarks.validation.common import percent, table
 from engine.arrays import FloatArray
@@ -53,10 +53,11 @@ def section() -> Iterator[str]:
     yield "## Static state under wind, and level differences\n"
     yield (
         "The source's conductor without offset of its ice, drag coefficient 1, twenty elements; OpenSees has 160 "
-        "corotational bars a span. Horizontal tension of a blown-out span, between dead ends and between springs with "
-        "the stiffness (A10) of the adjacent spans in still air:\n"
+        "corotational bars a span, mechaphlowers has elastic catenaries between dead ends. Horizontal tension of a "
+        "blown-out span, between dead ends and between springs with the stiffness (A10) of the adjacent spans in still "
+        "air:\n"
     )
-    head = ["span m", "H in still air N", "ends", "wind m/s", "H", "OpenSees", "difference %"]
+    head = ["span m", "H in still air N", "ends", "wind m/s", "H", "OpenSees", "difference %", "mechaphlowers"]
     yield table(head, [row for length, tension in TENSIONS for row in _tension_rows(length, tension)])
     yield (
         "\nNatural frequencies of one and two loops between dead ends, in rising order. In wind they are those in and "
@@ -76,7 +77,20 @@ def _tension_rows(length: float, tension: float) -> Iterator[list[object]]:
             found = float(discretize([line]).profile.horizontal_tension[0])
             expected = opensees.tension_in_wind(*peer(line))
             cells = [f"{length:g}", f"{tension:.0f}", name, f"{speed:g}"]
-            yield [*cells, f"{found:.0f}", f"{expected:.0f}", percent(found, expected)]
+            second = f"{_tension_of_catenary(line):.1f}" if name == "dead" else "-"
+            yield [*cells, f"{found:.1f}", f"{expected:.1f}", percent(found, expected), second]
+
+
+def _tension_of_catenary(line: Line) -> float:
+    tension, conductor, blow_out = line.span.horizontal_tension, line.conductor, line.wind.blow_out
+    assert tension is not None
+    assert blow_out is not None
+    assert blow_out.wind_speed is not None
+    cable = mechaphlowers.HungCable(
+        conductor.diameter, conductor.axial_rigidity, conductor.mass, line.span.length, tension
+    )
+    pressure = 0.5 * line.wind.air_density * blow_out.wind_speed**2
+    return mechaphlowers.horizontal_tension(cable, mechaphlowers.Weather(wind_pressure=pressure))
 
 
 def _frequency_row(line: Line) -> list[object]:

@@ -7,6 +7,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from benchmarks.mechaphlowers import HungCable, Weather, horizontal_tension
 from engine.arrays import FloatArray
 from engine.mechanics.along_span import mean_drag
 from engine.mechanics.modes import full_modes
@@ -62,3 +63,13 @@ def test_the_hybrid_model_has_the_frequency_out_of_the_plane() -> None:
     # Sought in global axes it was 8.8 % too high.
     model = hybrid(hung_line(300.0, 30e3, 20.0, 0.0))
     assert math.sqrt(model.uncoupled_squares[0, 1]) / (2.0 * math.pi) == pytest.approx(0.1907, rel=4e-4)
+
+
+@pytest.mark.parametrize("rise", [0.0, 60.0, -120.0])
+@pytest.mark.parametrize("wind_speed", [10.0, 30.0])
+def test_a_blown_out_span_is_that_of_mechaphlowers(wind_speed: float, rise: float) -> None:
+    line = hung_line(300.0, 30e3, wind_speed, rise)
+    conductor = line.conductor
+    cable = HungCable(conductor.diameter, conductor.axial_rigidity, conductor.mass, 300.0, 30e3, rise)
+    expected = horizontal_tension(cable, Weather(wind_pressure=0.5 * 1.2929 * wind_speed**2))
+    assert discretize((line,)).profile.horizontal_tension[0] == pytest.approx(expected, rel=1e-5)
