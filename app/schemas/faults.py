@@ -8,6 +8,9 @@ from typing import Any
 
 from pydantic_core import from_json
 
+from app.schemas.meant import meant
+from app.schemas.units import WrongUnit
+
 MOST_FAULTS = 1000
 _MOST_CHARACTERS = 200
 _MOST_SHOWN = 80
@@ -112,6 +115,8 @@ def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str) -
     if error["type"] == "union_tag_not_found":
         tokens.append("type")
     code, detail = _wording(error)
+    if code == "unknown_field":
+        detail += meant([*root.split("/")[1:], *tokens])
     return Fault(root + json_pointer(tokens), code, detail[: 2 * _MOST_CHARACTERS] + _found(error))
 
 
@@ -136,6 +141,8 @@ def _found(error: Mapping[str, Any]) -> str:
 
 def _wording(error: Mapping[str, Any]) -> tuple[str, str]:
     code, detail = str(error["type"]), str(error["msg"])
+    if isinstance(error.get("input"), WrongUnit):
+        return "unit", error["input"].sentence
     if code == "extra_forbidden":
         return "unknown_field", "unknown field"
     if code in {"union_tag_not_found", "union_tag_invalid"}:

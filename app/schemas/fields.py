@@ -1,8 +1,11 @@
 """What all documents share: strict models that refuse unknown fields, and fields with unit and bounds."""
 
+from functools import cache
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from app.schemas.units import any_unit, in_unit
 
 LENGTH_LIMIT_M = 5000.0
 """Longest plausible span and farthest plausible position [m]."""
@@ -22,9 +25,29 @@ class Document(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _in_own_units(cls, given: Any) -> Any:
+        """Convert numbers that come with a unit to the unit of their field."""
+        if type(given) is not dict or not any_unit(given.values()):
+            return given
+        units = _units_of(cls)
+        return {name: in_unit(value, units[name]) if name in units else value for name, value in given.items()}
+
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
         """Return the document itself: documents are immutable, so requests may share the default of an absent field."""
         return self
+
+
+@cache
+def _units_of(model: type[Document]) -> dict[str, str]:
+    """Return the units of a document's numbers by their names in JSON."""
+    found = {}
+    for name, field in model.model_fields.items():
+        extra = field.json_schema_extra
+        if isinstance(extra, dict) and isinstance(extra.get("unit"), str):
+            found[field.alias or name] = str(extra["unit"])
+    return {name: unit for name, unit in found.items() if "^j" not in unit}
 
 
 class Answer(BaseModel):
