@@ -1,6 +1,6 @@
 """Let mechaphlowers compute changes of state and print them as JSON: tests/validation/mechaphlowers_states.json.
 
-It needs pandas 2 and numba, which the project does not, so it runs in an environment of its own, without the project:
+It needs pandas 2, which the project does not, so it runs in an environment of its own, without the project:
 
     python -m venv peer && peer/bin/pip install mechaphlowers==0.13.1
     peer/bin/python benchmarks/validation/mechaphlowers_states.py > tests/validation/mechaphlowers_states.json
