@@ -21,6 +21,7 @@ from benchmarks.validation import (
     static_twist,
     stretching,
     studies,
+    tables,
 )
 from benchmarks.validation.common import ROOT
 
@@ -45,6 +46,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "model_comparison": model_comparison.section,
     "quasi_periodic": quasi_periodic.section,
     "studies": studies.section,
+    "tables": tables.section,
     "relative_wind": relative_wind.section,
     "static_state": static_state.section,
     "static_twist": static_twist.section,

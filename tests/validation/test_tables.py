@@ -60,6 +60,22 @@ def test_two_loops_of_the_twin_have_0_1532_m_by_the_table_and_0_1520_m_by_its_cu
     assert table.residual < 1e-8
 
 
+def test_small_motions_are_those_of_the_cubics() -> None:
+    """One loop of the twin one and ten per cent above its onset: the difference falls with the square of the motion."""
+    onset = 2.346
+    differences = []
+    for wind_speed in (1.01 * onset, 1.1 * onset):
+        sizes = []
+        for line, asked in ((with_table(source_line(2), 0.0), TABLE), (known(source_line(2)), FULL)):
+            result = run(line, replace(asked, loops=(1,), wind_speeds=(wind_speed,)))
+            (row,) = stable_cycles(result, loops=1, wind_speed=wind_speed)
+            assert row.vertical_m is not None
+            sizes.append(row.vertical_m)
+        differences.append(sizes[0] / sizes[1] - 1.0)
+    assert abs(differences[0]) < 5e-4
+    assert 1e-3 < differences[1] < 4e-3
+
+
 def test_doubling_the_samples_moves_no_coefficient() -> None:
     analysis = replace(TABLE, stretching=Stretching.NEGLECTED)
     system = discretize((with_table(source_line(2), 0.0),))
