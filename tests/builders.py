@@ -25,9 +25,12 @@ from engine.spec import (
     Ice,
     Line,
     Model,
+    Section,
+    SectionSpan,
     Span,
     Support,
     Supports,
+    SuspensionString,
     Wind,
 )
 
@@ -195,3 +198,30 @@ def lightly_damped_line(generator: np.random.Generator) -> Line:
     ratio = float(np.exp(generator.uniform(np.log(0.003), np.log(0.05))))
     bundle = Bundle.regular(1, 0.0, 0.0) if generator.random() < 0.5 else line.bundle
     return replace(line, bundle=bundle, damping=replace(line.damping, torsional_ratio=ratio))
+
+
+FIVE_SPANS = (350.0,) * 5
+THREE_SPANS = (280.0, 300.0, 330.0)
+
+
+FIVE_STRINGS = SuspensionString(4.5, 2500.0)
+STIFF_STRINGS = SuspensionString(1e-8, 2500.0)
+
+
+def section_line(
+    lengths: tuple[float, ...] = FIVE_SPANS,
+    *,
+    subconductors: int = 1,
+    interest: int = 1,
+    elements: int = 10,
+    string: SuspensionString | None = None,
+) -> Line:
+    """Return one of the two sections of theory section 16: five equal spans, else three with their shorter strings."""
+    line = source_line(subconductors)
+    tension, own = (40e3, FIVE_STRINGS) if len(lengths) == 5 else (30e3, SuspensionString(2.4, 600.0))
+    string = string or own
+    return replace(
+        line,
+        span=Span(lengths[interest - 1], horizontal_tension=tension, elements=elements),
+        section=Section(tuple(SectionSpan(x) for x in lengths), (string,) * (len(lengths) - 1), interest),
+    )

@@ -205,6 +205,15 @@ def published_load(
     return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)
 
 
+def of_all_members(load: PolynomialLoad) -> PolynomialLoad:
+    """Join the loads on the points of members (members, groups) to that on all points of their assembly (1, groups)."""
+
+    def joined(values: FloatArray) -> FloatArray:
+        return np.concatenate(list(values), axis=1)[None]
+
+    return PolynomialLoad(*(joined(getattr(load, field.name)) for field in fields(load)))
+
+
 def take_load(load: PolynomialLoad, index: Any) -> PolynomialLoad:
     """Select or repeat loads along the leading axes."""
     return PolynomialLoad(*(getattr(load, field.name)[index] for field in fields(load)))

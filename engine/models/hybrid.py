@@ -61,7 +61,8 @@ def hybrid_model(
     """
     relief = _relief(discretization, loops, analysis)
     basis = _basis(shapes.nodal[:, :, :, None], relief)
-    mass, stiffness = _condensed(discretization.matrices, basis, 1, analysis.longitudinal_inertia)
+    system = _of_each_group(discretization.matrices)
+    mass, stiffness, _ = condensed(system, basis, 1, analysis.longitudinal_inertia)
     squares = diagonals(stiffness) / diagonals(mass)
     selected = [shapes.loops.index(k) for k in loops]
     mass, stiffness = mass[:, selected], stiffness[:, selected]
@@ -72,7 +73,7 @@ def hybrid_model(
         ratios = np.append(ratios, np.full((len(ratios), 1), DAMPING_RATIO), axis=-1)
     rate = 2.0 * ratios[:, None] * np.sqrt(np.maximum(square, 0.0))
     unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
-    nodal = fields_in_space(discretization.profile, _diagonal_fields(shapes.nodal[:, selected, 1:]))
+    nodal = fields_in_space(discretization.profile, diagonal_fields(shapes.nodal[:, selected, 1:]))
     fields = _with_relief(discretization, nodal, None if relief is None else np.zeros_like(relief))
     damping = diagonal_matrices(rate * diagonals(mass))  # (11)
     damping += device_damping(discretization.lines, discretization.profile, fields)
@@ -98,9 +99,8 @@ def joint_model(
     relief = _relief(discretization, loops, analysis)
     selected = [shapes.loops.index(k) for k in loops]
     basis = _basis(np.moveaxis(shapes.nodal[:, selected], 1, 2)[:, None], relief)
-    mass, stiffness = (
-        matrix[:, 0] for matrix in _condensed(discretization.matrices, basis, len(loops), analysis.longitudinal_inertia)
-    )
+    system = _of_each_group(discretization.matrices)
+    mass, stiffness = (m[:, 0] for m in condensed(system, basis, len(loops), analysis.longitudinal_inertia)[:2])
     nodal = np.stack([model.shapes[:, :3] for model in alone], axis=2).reshape(
         len(mass), -1, *alone[0].shapes.shape[-2:]
     )
@@ -134,13 +134,10 @@ def joint_model(
     )
 
 
-def with_published_load(discretization: Discretization, model: ReducedModel) -> ReducedModel:
-    """Return the hybrid model with the load of the published closure, which section 7.1's formula needs.
-
-    Without stretching and relief coordinate: the formula treats three linear coordinates.
-    """
+def three_coordinates(model: ReducedModel) -> ReducedModel:
+    """Return the hybrid model without stretching and without its relief coordinate."""
     three = slice(3)
-    model = replace(
+    return replace(
         model,
         mass=model.mass[..., three, three],
         damping=model.damping[..., three, three],
@@ -150,6 +147,14 @@ def with_published_load(discretization: Discretization, model: ReducedModel) -> 
         stretching=None,
         unexpanded=None,
     )
+
+
+def with_published_load(discretization: Discretization, model: ReducedModel) -> ReducedModel:
+    """Return the hybrid model with the load of the published closure, which section 7.1's formula needs.
+
+    Without stretching and relief coordinate: the formula treats three linear coordinates.
+    """
+    model = three_coordinates(model)
     values = at_points(discretization.matrices, model.shapes)
     load = published_load(
         discretization.lines,
@@ -182,24 +187,37 @@ def _basis(nodal: FloatArray, relief: FloatArray | None) -> FloatArray:
     return np.append(basis, np.broadcast_to(relief[:, None, None], (lines, groups, 1, nodes * FIELDS)), axis=-2)
 
 
-def _condensed(
-    system: Matrices, basis: FloatArray, longitudinal: int, inertia: LongitudinalInertia
-) -> tuple[FloatArray, FloatArray]:
-    """Project onto a basis (lines, groups, coordinates, freedoms) and condense its first ones, f_u, eqs. (18)-(20).
+def _of_each_group(system: Matrices) -> tuple[FloatArray, FloatArray]:
+    """Return K and M with an axis for groups: (lines, 1, freedoms, freedoms) each."""
+    return system.stiffness[:, None], system.mass[:, None]
+
+
+def condensed(
+    system: tuple[FloatArray, FloatArray], basis: FloatArray, longitudinal: int, inertia: LongitudinalInertia
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Project K and M onto a basis (..., coordinates, freedoms) and condense its first ones, f_u, eqs. (18)-(20).
 
     Where their inertia counts, each vertical shape moves with its own f_u as in the mode that both come from; the
     static condensation would be off by a third of a percent where longitudinal and vertical frequencies come close.
+
+    Returns
+    -------
+    mass, stiffness : (..., kept, kept)
+    moving : (..., kept, coordinates)
+        The motion of the basis in each coordinate that is kept.
     """
-    stiffness = basis @ system.stiffness[:, None] @ basis.swapaxes(-1, -2)
-    mass = basis @ system.mass[:, None] @ basis.swapaxes(-1, -2)
+    stiffness, mass = (basis @ matrix @ basis.swapaxes(-1, -2) for matrix in system)
     along, across = slice(longitudinal), slice(longitudinal, None)
-    follow = -np.linalg.solve(stiffness[..., along, along], stiffness[..., along, across])
-    if inertia is LongitudinalInertia.NEGLECTED:
-        return mass[..., across, across], stiffness[..., across, across] + stiffness[..., across, along] @ follow
-    follow[..., along] = np.eye(longitudinal)
+    follow = np.asarray(-np.linalg.solve(stiffness[..., along, along], stiffness[..., along, across]))
     kept = follow.shape[-1]
-    moving = np.append(follow, np.broadcast_to(np.eye(kept), (*follow.shape[:-2], kept, kept)), axis=-2)
-    return moving.swapaxes(-1, -2) @ mass @ moving, moving.swapaxes(-1, -2) @ stiffness @ moving
+    rest = np.broadcast_to(np.eye(kept), (*follow.shape[:-2], kept, kept))
+    if inertia is LongitudinalInertia.NEGLECTED:
+        remaining = stiffness[..., across, across] + stiffness[..., across, along] @ follow
+        return mass[..., across, across], remaining, np.concatenate([follow, rest], axis=-2).swapaxes(-1, -2)
+    follow[..., along] = np.eye(longitudinal)
+    moving = np.concatenate([follow, rest], axis=-2).swapaxes(-1, -2)
+    back = moving.swapaxes(-1, -2)
+    return moving @ mass @ back, moving @ stiffness @ back, moving
 
 
 def _stretching(discretization: Discretization, moving: FloatArray, analysis: Analysis) -> StretchingForce | None:
@@ -226,16 +244,24 @@ def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: An
         values,
         analysis.aerodynamic_model,
     )
-    q_theta, (v_rate, w_rate, theta_rate) = 2, range(nodal.shape[2], nodal.shape[2] + 3)
+    return integrated(load, nodal.shape[2], analysis, turned=bool(discretization.profile.tilt.any()))
+
+
+def integrated(load: PolynomialLoad, coordinates: int, analysis: Analysis, *, turned: bool) -> PolynomialLoad:
+    """Integrate the load on f_v, f_w and f_theta, the first ones of some coordinates, along the span.
+
+    turned: whether the plane of the sag is, so that the rates of both f_v and f_w make each velocity.
+    """
+    q_theta, (v_rate, w_rate, theta_rate) = 2, range(coordinates, coordinates + 3)
     active = (q_theta, v_rate, w_rate, theta_rate)
-    if discretization.profile.tilt.any():  # both rates make each velocity
+    if turned:
         return integrate_along_span(load, active)
     if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
         return integrate_along_span(load, (q_theta, theta_rate, v_rate))
     return integrate_each(load, active)
 
 
-def _diagonal_fields(shapes: FloatArray) -> FloatArray:
+def diagonal_fields(shapes: FloatArray) -> FloatArray:
     """Return V, W, Theta of the coordinates with shapes f_v, f_w, f_theta (..., 3, nodes): (..., 3, 3, nodes)."""
     return shapes[..., None, :] * np.eye(3)[..., None]
 

@@ -46,7 +46,7 @@ class StretchingForce:
     table: (..., m, monomials of degree 1 to 3), coefficients of g, those of the first degree zero; slopes:
     (..., m, m, lower monomials), derivatives of the table; linear: (..., n, m) and square: (..., n, m, m), dynamic
     tensions N_i = linear_i . q + q . square_i q / 2 [N] of the sub-conductors, or n = 1 where all share that of the
-    mean.
+    mean. In an assembly these follow for one member after the other.
     """
 
     table: FloatArray
@@ -84,7 +84,9 @@ def slope_points(lines: Sequence[Line], profile: StaticProfile, section_points: 
     )
 
 
-def stretching_of(discretization: Discretization, nodal: FloatArray) -> StretchingForce:
+def stretching_of(
+    discretization: Discretization, nodal: FloatArray, pulled: FloatArray | None = None
+) -> StretchingForce:
     """Return the stretching of coordinates with given shapes.
 
     Parameters
@@ -93,6 +95,8 @@ def stretching_of(discretization: Discretization, nodal: FloatArray) -> Stretchi
         Of lines with equal numbers of elements.
     nodal : (lines, groups, m, 3, nodes)
         V, W and Theta of each generalized coordinate.
+    pulled : (lines, groups, m), optional
+        U at the right end less that at the left end, where both are coordinates and no springs; theory section 16.
 
     Returns
     -------
@@ -105,6 +109,8 @@ def stretching_of(discretization: Discretization, nodal: FloatArray) -> Stretchi
     offsets = [_offsets(line, turn) for line, turn in zip(lines, section_points.twist, strict=True)]
     stiffness = span_stiffness(lines, profile, at)[:, None, None, None]
     linear, square = _stretches(at, slopes, offsets)
+    if pulled is not None:
+        linear = linear + pulled
     count = np.array([len(line.bundle.positions) for line in lines])
     table = count[:, None, None, None] * stiffness * _mean_table(linear, square)
     tension = TensionForms(stiffness * linear[:, :, None], stiffness[..., None] * square[:, :, None])

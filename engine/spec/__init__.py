@@ -48,6 +48,7 @@ from engine.spec.environment import (
 from engine.spec.line import Line, ice_properties
 from engine.spec.physics import PhysicsRequest, with_physics
 from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
+from engine.spec.section import Section, SectionSpan, SuspensionString
 from engine.spec.span import Bundle, Conductor, CrossSection, Span, Support, Supports, Yoke
 
 __all__ = [
@@ -85,6 +86,8 @@ __all__ = [
     "PhysicsRequest",
     "Placement",
     "PointDevice",
+    "Section",
+    "SectionSpan",
     "Spacer",
     "Span",
     "SpoilerChoice",
@@ -93,6 +96,7 @@ __all__ = [
     "Stretching",
     "Support",
     "Supports",
+    "SuspensionString",
     "TorsionalDamper",
     "TorusSearch",
     "Wind",

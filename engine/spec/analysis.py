@@ -206,6 +206,7 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
     table = analysis.aerodynamic_model is AerodynamicModel.TABLE
     require(
+        Fault("section", None, "must be absent: sections are not analysed yet") if line.section is not None else None,
         Fault("ice.aerodynamics", None, "must be a measured table for the table model")
         if table and line.ice.aerodynamics.measured is None
         else None,

@@ -8,18 +8,19 @@ from engine.outcome import Fault, require
 from engine.spec.devices import Device, StretchDevice
 from engine.spec.environment import Aerodynamics, Damping, Ice, IceSegment, Wind
 from engine.spec.rules import overlap_faults
-from engine.spec.span import Bundle, Conductor, Span, Supports
+from engine.spec.section import Section
+from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One iced span with everything that its motion depends on.
+    """One iced span with everything that its motion depends on, or the span of interest of a section of spans.
 
     Raises
     ------
     InvalidSpec
-        If a position lies off the span, devices overlap, the eccentricity is too large for the polar inertia, or the
-        blow-out has no drag.
+        If a position lies off the span, devices overlap, the eccentricity is too large for the polar inertia, the
+        blow-out has no drag, or the section does not hold the span.
     """
 
     conductor: Conductor
@@ -30,14 +31,16 @@ class Line:
     damping: Damping
     supports: Supports = Supports()
     devices: tuple[Device, ...] = ()
+    section: Section | None = None
 
     def __post_init__(self) -> None:
-        """Check positions on the span, overlaps of devices, that inertia is positive and that drag is known."""
+        """Check positions, overlaps of devices, that inertia is positive, that drag is known, and the section."""
         require(
             *self._position_faults(),
             *overlap_faults(self._stretches_by_field()),
             *self._inertia_faults(),
             self._drag_fault(),
+            *self._section_faults(),
         )
 
     @property
@@ -98,11 +101,39 @@ class Line:
                 rule = "must leave the polar inertia about the mass centre positive: I > m (e_y^2 + e_z^2)"
                 yield Fault(f"{path}.eccentricity_y", math.hypot(e_y, e_z), rule)
 
+    def _section_faults(self) -> Iterator[Fault]:
+        """Check that the section holds this span, and that its supports are those of the section."""
+        section = self.section
+        if section is None or not 1 <= section.span_of_interest <= len(section.spans):
+            return
+        path = f"section.spans.{section.span_of_interest - 1}"
+        own = section.spans[section.span_of_interest - 1]
+        for name in ("length", "level_difference"):
+            if getattr(own, name) != getattr(self.span, name):
+                rule = f"must be that of the line's span ({getattr(self.span, name)}), which is the span of interest"
+                yield Fault(f"{path}.{name}", getattr(own, name), rule)
+        for name in ("ice", "profile"):
+            if getattr(own, name) is not None:
+                yield Fault(f"{path}.{name}", None, "must be absent for the span of interest: the line describes it")
+        held = replace(self.supports, left=_dead_end(self.supports.left), right=_dead_end(self.supports.right))
+        if held != _DEAD_ENDS:
+            rule = "must be absent or dead ends for a section, whose strings are in section.strings"
+            yield Fault("supports", None, rule)
+        if self.wind.blow_out is not None:
+            yield Fault("wind.blow_out", None, "must be absent for a section: its static state is that of still air")
+
     def _drag_fault(self) -> Fault | None:
         blow_out = self.wind.blow_out
         if blow_out is None or blow_out.drag_coefficient is not None or self.ice.aerodynamics.at_rest is not None:
             return None
         return Fault("wind.blow_out.drag_coefficient", None, "must be given where ice.aerodynamics_at_rest is not")
+
+
+_DEAD_ENDS = Supports(left=Support(dead_end=True), right=Support(dead_end=True))
+
+
+def _dead_end(end: Support) -> Support:
+    return replace(end, dead_end=True)
 
 
 def ice_properties(line: Line, piece: Ice | IceSegment) -> tuple[float, float, float]:
