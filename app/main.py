@@ -34,6 +34,7 @@ from app.routes import (
     explorer,
     health,
     jobs,
+    own_conductors,
     reference,
     results,
 )
@@ -110,7 +111,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(HeadAsGet)
     for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)
-    for module in (events, deliveries, aerodynamics, reference, health, explorer):
+    for module in (events, deliveries, aerodynamics, own_conductors, reference, health, explorer):
         app.include_router(module.router)
     app.mount(explorer.ASSETS, explorer.assets())
     return app

@@ -51,6 +51,7 @@ WITHOUT_A_TEST_FILE = {
     "app.routes.documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",
     "app.routes.events": "tests/app/routes/test_waiting.py follows its streams.",
     "app.routes.explorer": "tests/app/test_main.py opens its page and its files.",
+    "app.routes.own_documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",
     "app.routes.reference_documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",
     "app.schemas.batch": SCHEMA,
     "app.schemas.devices": SCHEMA,

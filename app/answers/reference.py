@@ -13,26 +13,29 @@ class ConductorRow(Answer):
     name: str = described("Code word or usual name", "Drake")
     designation: str = described("Designation of its standard", "795 kcmil 26/7")
     standard: str = described("Standard that describes it", "ASTM B232")
-    type: Literal["ACSR", "AACSR", "AAC", "AAAC"] = described(
-        "Aluminium (AAC), alloy (AAAC), with steel core (ACSR), or alloy with steel core (AACSR)", "ACSR"
+    type: str = described(
+        "Aluminium (AAC), alloy (AAAC), with steel core (ACSR), alloy with steel core (AACSR), or an owner's own word",
+        "ACSR",
     )
-    stranding: str = described("Wires of aluminium / of steel", "26/7")
+    stranding: str | None = described("Wires of aluminium / of steel", "26/7")
     aluminium_wire_diameter_m: Number = described(
         "Diameter of a wire of aluminium; null where the source has none [m]", None
     )
     steel_wire_diameter_m: Number = described("Diameter of a wire of steel; null where the source has none [m]", None)
     aluminium_area_m2: Number = described("Area of the wires of aluminium [m2]", 4.028e-4)
-    area_m2: float = described("Area of all wires [m2]", 4.6864e-4)
+    area_m2: Number = described("Area of all wires; null where the source has none [m2]", 4.6864e-4)
     diameter_m: float = described("Overall diameter [m]", 0.02814)
     mass_kg_per_m: float = described("Mass per length, bare [kg/m]", 1.6281)
     rated_strength_n: Number = described("Rated tensile strength; null where the source has none [N]", 140120.0)
     youngs_modulus_pa: Number = described("Final modulus; null where the source has none [Pa]", 6.964e10)
     thermal_expansion_per_k: Number = described("Thermal expansion; null where the source has none [1/K]", 1.882e-5)
     source: str = described("Source of the figures", "ASTM B232/B232M-11, Table 1")
-    source_address: str = described(
-        "Where the source was read", "https://github.com/OverheadTransmissionLineSoftware/SpanAnalyzer"
+    source_address: str | None = described(
+        "Where the source was read; null for own rows",
+        "https://github.com/OverheadTransmissionLineSoftware/SpanAnalyzer",
     )
-    licence: str = described("Licence under which the source gives its figures", "Unlicense (public domain)")
+    licence: str | None = described("Licence of the source; null for own rows", "Unlicense (public domain)")
+    own: bool = described("Whether it is the owner's own row", False)
 
 
 class ConductorList(Answer):

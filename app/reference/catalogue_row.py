@@ -6,6 +6,11 @@ from typing import Any
 _WIRES = frozenset({"aluminium_wires", "steel_wires"})
 
 
+def name_key(name: str) -> str:
+    """Return a name without case and extra spaces, as conductors are compared by it."""
+    return " ".join(name.casefold().split())
+
+
 @dataclass(frozen=True, slots=True)
 class CatalogueRow:
     """Figures of one bare conductor; None where the source has none.
@@ -31,6 +36,7 @@ class CatalogueRow:
     source: str
     source_address: str | None
     licence: str | None
+    own: bool = False
 
     @property
     def stranding(self) -> str | None:

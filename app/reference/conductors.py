@@ -1,11 +1,11 @@
 """The catalogue of bare conductors that ships with the service: published figures as printed, with their sources."""
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 
-from app.reference.catalogue_row import CatalogueRow
+from app.reference.catalogue_row import CatalogueRow, name_key
 
 # Field -> published column and factor to SI.
 _NUMBERS: Mapping[str, tuple[str, float]] = {
@@ -21,20 +21,30 @@ _NUMBERS: Mapping[str, tuple[str, float]] = {
 }
 
 
-def search(text: str) -> list[CatalogueRow]:
-    """Return the conductors whose name, designation, type or stranding contain every word of a text, ignoring case."""
+def search(text: str, own: Sequence[CatalogueRow] = ()) -> list[CatalogueRow]:
+    """Return the conductors whose name, designation, type or stranding contain every word of a text, ignoring case.
+
+    An owner's own rows come first, and hide the shipped ones of the same name or designation.
+    """
     words = text.casefold().split()
-    return [row for row in shipped() if all(word in _searched(row) for word in words)]
+    return [row for row in _with_own(own) if all(word in _searched(row) for word in words)]
 
 
-def named(name: str) -> list[CatalogueRow]:
+def named(name: str, own: Sequence[CatalogueRow] = ()) -> list[CatalogueRow]:
     """Return the conductors of a designation, or if there are none, of a whole name, ignoring case; several may be."""
-    wanted = " ".join(name.casefold().split())
-    for key in ("designation", "name"):
-        found = [row for row in shipped() if getattr(row, key).casefold() == wanted]
-        if found:
-            return found
+    wanted = name_key(name)
+    for rows, keys in ((own, ("name", "designation")), (shipped(), ("designation", "name"))):
+        for key in keys:
+            found = [row for row in rows if name_key(getattr(row, key)) == wanted]
+            if found:
+                return found
     return []
+
+
+def _with_own(own: Sequence[CatalogueRow]) -> Iterator[CatalogueRow]:
+    hidden = {name_key(row.name) for row in own}
+    yield from own
+    yield from (row for row in shipped() if hidden.isdisjoint({name_key(row.name), name_key(row.designation)}))
 
 
 def _searched(row: CatalogueRow) -> str:
@@ -70,6 +80,7 @@ def _row(printed: Mapping[str, str], source: Mapping[str, str]) -> CatalogueRow:
         source=source["title"],
         source_address=source["address"],
         licence=source["licence"],
+        own=False,
         **numbers,
     )
 

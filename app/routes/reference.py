@@ -8,10 +8,11 @@ from fastapi.responses import JSONResponse
 from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList
 from app.export.columns import all_tables
 from app.http.problems import ProblemKind
+from app.owned import records
 from app.reference import conductors
 from app.reference.ice_shapes import ICE_SHAPES
 from app.routes import documentation, reference_documentation
-from app.routes.dependencies import PREFIX
+from app.routes.dependencies import PREFIX, CallerOf, Readers
 from app.schemas import field_table
 
 router = APIRouter(prefix=PREFIX, tags=["reference"])
@@ -27,12 +28,16 @@ router = APIRouter(prefix=PREFIX, tags=["reference"])
     },
 )
 def list_conductors(
+    caller: CallerOf,
+    readers: Readers,
     search: Annotated[
         str, Query(max_length=100, description="Words to find in name, designation, type or stranding, ignoring case")
     ] = "",
 ) -> JSONResponse:
-    """List bare conductors of the catalogue with published figures; each row names its source."""
-    return JSONResponse({"conductors": [row.listed() for row in conductors.search(search)]})
+    """List bare conductors: the owner's own, then those of the catalogue with published figures and their source."""
+    with readers() as session:
+        own = records.conductor_rows(session, caller.owner)
+    return JSONResponse({"conductors": [row.listed() for row in conductors.search(search, own)]})
 
 
 @router.get(

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
 _KEYS = frozenset({"value", "unit"})
 _SHAPE = re.compile(r"[\w°%µ²³/*^(). -]{1,40}")
+_TENS = re.compile(r"(?:1e|10\^|10\*\*)(-?\d)\s*/\s*(\w.*)")
 _LARGE_POWER = re.compile(r"(\*\*|\^)\s*[-(]*\s*\d\d|\d{3}")
 _POWER = re.compile(r"(?<=[A-Za-z])(?=[234])")
 # Physical kinds as people say them, by pint's dimensions of mass, length, time and temperature.
@@ -99,6 +100,10 @@ def _converted(given: Mapping[str, Any], wanted: str) -> Any:
 @lru_cache(maxsize=1024)
 def _scale(unit: str, wanted: str) -> tuple[float, float] | WrongUnit:
     """Return the factor and the offset from a unit to the one that is wanted."""
+    tens = _TENS.fullmatch(unit)
+    if tens:
+        rest = _scale(f"1/{tens[2]}", wanted)
+        return rest if isinstance(rest, WrongUnit) else (10.0 ** int(tens[1]) * rest[0], 0.0)
     import pint  # noqa: PLC0415 - it takes half a second to load, and most requests have no units
 
     aim = _registry().Unit("" if wanted == "1" else _spelled(wanted))
@@ -116,6 +121,8 @@ def _scale(unit: str, wanted: str) -> tuple[float, float] | WrongUnit:
 
 def _spelled(unit: str) -> str:
     """Write powers as pint reads them: kg/m3 becomes kg/m**3."""
+    if "/" in unit:  # a difference of temperatures, as in 1/degF
+        unit = re.sub(r"\bdeg([CF])\b", r"delta_deg\1", unit)
     return _POWER.sub("**", unit.replace("²", "2").replace("³", "3").replace("·", "*"))
 
 

@@ -6,6 +6,7 @@ from app.tables.batches import Batch, BatchItem
 from app.tables.counter_increments import CounterIncrement
 from app.tables.idempotency import IdempotencyKey
 from app.tables.jobs import Job, JobEvent, JobTag
+from app.tables.owned import OwnAerodynamics, OwnConductor
 from app.tables.results import PointRow
 from app.tables.webhooks import DeliveryState, WebhookDelivery
 from app.tables.workers import Worker
@@ -27,6 +28,8 @@ __all__ = [
     "JobEventKind",
     "JobStatus",
     "JobTag",
+    "OwnAerodynamics",
+    "OwnConductor",
     "PointRow",
     "UtcDateTime",
     "WebhookDelivery",
