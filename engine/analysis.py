@@ -27,11 +27,11 @@ from engine.models.reduced_model import ReducedModel, take
 from engine.models.scanned_wind_speeds import Scan, crossings_in_wind, scan_of
 from engine.outcome import Fault, InvalidSpec
 from engine.progress import Progress
-from engine.report.device_effects import device_effects
+from engine.report.comparisons.device_effects import device_effects
+from engine.report.comparisons.loop_competitions import loop_competitions
 from engine.report.findings import ModelFindings
-from engine.report.frequencies import NaturalFrequencies, coupled_frequencies
+from engine.report.frequencies import NaturalFrequencies, coupled_frequencies, full_frequencies
 from engine.report.line_results import line_results
-from engine.report.loop_competitions import loop_competitions
 from engine.result import LoopCompetitionRow, Result
 from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, StaticTwist, check_compatible
 from engine.tori.quasi_periodic import check_by_integration, quasi_periodic_motions
@@ -134,8 +134,8 @@ def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, N
 def _frequencies(
     prepared: _Discretized, hybrid: Sequence[ModelFindings], analysis: Analysis
 ) -> list[NaturalFrequencies]:
-    frequencies = [_coupled_frequencies(part) for part in hybrid] if Model.HYBRID in analysis.models else []
-    return frequencies if prepared.modes is None else [*frequencies, _full_frequencies(prepared.modes)]
+    frequencies = [coupled_frequencies(part) for part in hybrid] if Model.HYBRID in analysis.models else []
+    return frequencies if prepared.modes is None else [*frequencies, full_frequencies(prepared.modes)]
 
 
 def _in_each_wind(prepared: _Discretized, analysis: Analysis) -> list[tuple[_Discretized, Analysis]]:
@@ -268,16 +268,6 @@ def _competitions(
     joint = joint_model(prepared.discretization, prepared.shapes, analysis.loops, analysis)
     tables = [loop_competitions(prepared.discretization, joint, part, analysis.loops) for part in hybrid]
     return [list(chain.from_iterable(rows)) for rows in zip(*tables, strict=True)]
-
-
-def _coupled_frequencies(hybrid: ModelFindings) -> NaturalFrequencies:
-    return NaturalFrequencies(Model.HYBRID, hybrid.line, hybrid.loops, coupled_frequencies(hybrid.model))
-
-
-def _full_frequencies(modes: FullModes) -> NaturalFrequencies:
-    count = modes.eigenvalues.shape[0]
-    loops = np.broadcast_to(np.tile(modes.loops, 3), (count, 3 * len(modes.loops)))
-    return NaturalFrequencies(Model.FINITE_ELEMENT, np.arange(count), loops, modes.eigenvalues.reshape(count, -1))
 
 
 def _cycles_in_full_modes(

@@ -9,8 +9,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from app import schemas
 from app.convert.assemble import SoundParts
-from app.schemas.analysis import STUDY_POINTS_LIMIT, AxisValue
 from app.schemas.faults import Fault
+from app.schemas.request import STUDY_POINTS_LIMIT, AxisValue
 
 Part = TypeVar("Part", bound=BaseModel)
 

@@ -13,8 +13,8 @@ from app import schemas
 from app.convert.assemble import SoundParts, gather
 from app.convert.pointers import to_pointer
 from app.convert.sound_parts import PARTS, SoundAxis, sound_parts
-from app.schemas.analysis import STUDY_POINTS_LIMIT
 from app.schemas.faults import Fault, faults_of, json_pointer
+from app.schemas.request import STUDY_POINTS_LIMIT
 
 _UNVARIABLE = frozenset({"name", "asset_id", "tags"})
 

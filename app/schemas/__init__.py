@@ -1,6 +1,6 @@
 """The JSON that comes in, as pydantic models: names, units, bounds, defaults and examples of the fields."""
 
-from app.schemas.analysis import Analysis, Axis, JobRequest, Study, WindSpeedRange
+from app.schemas.analysis import Analysis, WindSpeedRange
 from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer, TorsionalDamper
 from app.schemas.environment import (
     Aerodynamics,
@@ -16,6 +16,7 @@ from app.schemas.fields import Document
 from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
 from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
+from app.schemas.request import Axis, JobRequest, Study
 
 __all__ = [
     "Aerodynamics",

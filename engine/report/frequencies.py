@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.mechanics.modes import assign, solve_symmetric
-from engine.models.reduced_model import ReducedModel
+from engine.mechanics.modes import FullModes, assign, solve_symmetric
 from engine.outcome import Outcome
 from engine.report.cells import finite_or_none, lists_by_line
+from engine.report.findings import ModelFindings
 from engine.result import FrequencyRow
 from engine.spec import Model
 
@@ -27,14 +27,22 @@ class NaturalFrequencies:
     squared_frequency: FloatArray
 
 
-def coupled_frequencies(model: ReducedModel) -> FloatArray:
-    """Return the squared natural frequencies of (M, K): (members, m) [rad^2/s^2].
+def coupled_frequencies(hybrid: ModelFindings) -> NaturalFrequencies:
+    """Return the frequencies of (M, K) of hybrid models.
 
     Each mode is assigned to the coordinate of largest M_ii |x_i|^2, one mode per coordinate.
     """
-    values, vectors = solve_symmetric(model.stiffness, model.mass)
-    share = model.modal_masses[..., None] * vectors**2
-    return np.take_along_axis(values, assign(share), axis=-1)
+    values, vectors = solve_symmetric(hybrid.model.stiffness, hybrid.model.mass)
+    share = hybrid.model.modal_masses[..., None] * vectors**2
+    squared = np.take_along_axis(values, assign(share), axis=-1)
+    return NaturalFrequencies(Model.HYBRID, hybrid.line, hybrid.loops, squared)
+
+
+def full_frequencies(modes: FullModes) -> NaturalFrequencies:
+    """Return the frequencies of the full modes of every line."""
+    count = modes.eigenvalues.shape[0]
+    loops = np.broadcast_to(np.tile(modes.loops, 3), (count, 3 * len(modes.loops)))
+    return NaturalFrequencies(Model.FINITE_ELEMENT, np.arange(count), loops, modes.eigenvalues.reshape(count, -1))
 
 
 def frequency_rows(table: NaturalFrequencies, loops: tuple[int, ...]) -> list[list[FrequencyRow]]:

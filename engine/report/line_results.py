@@ -14,12 +14,12 @@ from engine.models.stretching import relieved_share
 from engine.outcome import Outcome
 from engine.report.amplitude_curves import amplitude_curve_rows
 from engine.report.bifurcations import bifurcation_rows
+from engine.report.comparisons.model_comparisons import model_comparisons
 from engine.report.critical_wind_speeds import critical_wind_speed_rows
 from engine.report.findings import ModelFindings
 from engine.report.frequencies import NaturalFrequencies, frequency_rows
 from engine.report.internal_resonances import internal_resonance_rows
 from engine.report.limit_cycles import Motion, limit_cycle_rows
-from engine.report.model_comparisons import model_comparisons
 from engine.report.static_equilibria import static_equilibrium_rows
 from engine.report.tensions import tension_rows
 from engine.report.warnings import (

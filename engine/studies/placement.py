@@ -12,7 +12,7 @@ from engine.analysis import analyse_stack
 from engine.arrays import FloatArray
 from engine.outcome import Outcome
 from engine.progress import Progress, finished, translated
-from engine.report.device_effects import device_effects, largest_amplitude, lowest_onset
+from engine.report.comparisons.device_effects import device_effects, largest_amplitude, lowest_onset
 from engine.result import PlacedDeviceRow, Result
 from engine.spec import (
     Analysis,

@@ -14,7 +14,11 @@ from tests.app.whole_lines import Json, assert_answers_every_wind, assert_is_nam
 
 
 def outcomes(requests: st.SearchStrategy[Json], count: int) -> Counter[str]:
-    """Try this many requests, the same at every run, and count what became of them."""
+    """Try this many requests and count what became of them.
+
+    Hypothesis also draws constants of the modules that are loaded: the requests change with the source, and with the
+    tests that ran before. The least numbers below leave room for that.
+    """
     told: Counter[str] = Counter()
 
     @settings(max_examples=count, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
@@ -44,12 +48,11 @@ def outcome(request: Json) -> str:
 
 
 def test_usual_lines_are_answered() -> None:
-    told = outcomes(whole_lines.REQUESTS, 10)
+    told = outcomes(whole_lines.REQUESTS, 20)
     assert told["answered"] >= 6, told
 
 
 def test_lines_with_numbers_far_off_are_answered_or_named() -> None:
-    # Hypothesis draws other lines whenever the strategies change; both kinds have to be among them.
     told = outcomes(whole_lines.far_off(), 25)
     assert told["answered"] >= 2, told
     assert told["refused"] >= 4, told

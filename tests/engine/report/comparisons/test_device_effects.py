@@ -4,7 +4,7 @@ from functools import cache
 import pytest
 
 from engine.outcome import Stability
-from engine.report.device_effects import device_effects, largest_amplitude, lowest_onset
+from engine.report.comparisons.device_effects import device_effects, largest_amplitude, lowest_onset
 from engine.result import DeviceEffectRow, Result
 from engine.spec import Model
 from tests.builders import only, run, source_line

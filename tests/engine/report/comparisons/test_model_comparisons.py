@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from engine.outcome import Outcome, Stability
-from engine.report.model_comparisons import model_comparisons
+from engine.report.comparisons.model_comparisons import model_comparisons
 from engine.result import LimitCycleRow, columns_of
 from engine.spec import Analysis, Model
 from tests.builders import only, run, source_line
