@@ -24,6 +24,7 @@ from engine.outcome import Fault, require
 from engine.spec.rules import finite, positive
 
 UP = 1.0 + 0.0j
+WINDWARD = 1.5 * math.pi  # rad, clockwise from straight up
 MOST_POINTS = 1000
 DEEPEST_CUT = 0.1  # of the radius: chords of an outline that lies on the conductor pass inside its circle
 SOLID_ICE = 917.0  # kg/m3, no accretion is denser
@@ -43,17 +44,17 @@ class Accretion:
     """Ice on a sub-conductor: its shape and one measure of how much there is.
 
     thickness: the largest radial thickness [m]; mass: of the ice per length [kg/m]; density [kg/m3], None for that of
-    the kind; angle: direction of the thickest point, clockwise from straight up like that of a sub-conductor [rad]. A
-    profile has points (y, z) of its outline about the bare centre [m], which the angle turns, and, unless its density
-    is given, may have a mass from which the density follows.
+    the kind, and kind None for glaze; angle: direction of the thickest point, clockwise from straight up like that of a
+    sub-conductor [rad], None for windward. A profile has points (y, z) of its outline about the bare centre [m], which
+    the angle turns, None by nothing; unless its density is given, it may have a mass from which the density follows.
     """
 
     shape: Shape
     thickness: float | None = None
     mass: float | None = None
-    kind: IceKind = IceKind.GLAZE
+    kind: IceKind | None = None
     density: float | None = None
-    angle: float = 0.0
+    angle: float | None = None
     points: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
@@ -66,6 +67,17 @@ class Accretion:
             _density_fault(self.density),
             *(self._profile_faults() if self.shape is Shape.PROFILE else self._measure_faults()),
         )
+
+    @property
+    def usual_density(self) -> float:
+        """The density, given or that of the kind [kg/m3]."""
+        return density_of(self.kind or IceKind.GLAZE).value if self.density is None else self.density
+
+    @property
+    def direction(self) -> float:
+        """The angle, given or the usual one [rad]."""
+        usual = 0.0 if self.shape is Shape.PROFILE else WINDWARD
+        return usual if self.angle is None else self.angle
 
     def _measure_faults(self) -> Iterator[Fault | None]:
         given = [value for value in (self.thickness, self.mass) if value is not None]
@@ -141,9 +153,9 @@ def ice_section(conductor: BareConductor, accretion: Accretion) -> IceSection:
     radius = 0.5 * conductor.diameter
     if accretion.shape is Shape.PROFILE:
         return _of_profile(conductor, accretion)
-    density = density_of(accretion.kind).value if accretion.density is None else accretion.density
+    density = accretion.usual_density
     thickness = _thickness(accretion, radius, density)
-    outline = _outline(accretion.shape, radius, thickness, accretion.angle)
+    outline = _outline(accretion.shape, radius, thickness, accretion.direction)
     bare = Moments(math.pi * radius**2, 0j, 0.5 * math.pi * radius**4)
     ice = moments(outline) + bare.scaled(-1.0)
     crescent = accretion.shape is Shape.CRESCENT
@@ -181,7 +193,7 @@ def _outline(shape: Shape, radius: float, thickness: float, angle: float) -> Out
 
 def _of_profile(conductor: BareConductor, accretion: Accretion) -> IceSection:
     radius = 0.5 * conductor.diameter
-    turned = np.array([complex(y, z) for y, z in accretion.points]) * cmath.rect(1.0, accretion.angle)
+    turned = np.array([complex(y, z) for y, z in accretion.points]) * cmath.rect(1.0, accretion.direction)
     edges = _edges(turned)
     require(*_outline_faults(edges, turned, radius))
     whole = moments(edges)
@@ -221,7 +233,7 @@ def _outline_faults(
 
 def _profile_density(accretion: Accretion, area: float) -> float:
     if accretion.mass is None:
-        return density_of(accretion.kind).value if accretion.density is None else accretion.density
+        return accretion.usual_density
     density = accretion.mass / area
     require(_density_fault(density, f" within {1e4 * area:.4g} cm2 of ice", "mass", accretion.mass))
     return density

@@ -47,7 +47,9 @@ class Assumption:
     def _range_fault(self) -> Fault | None:
         if self.lowest is None or self.highest is None or self.lowest <= self.value <= self.highest:
             return None
-        return Fault(self.path, self.value, f"must lie between {self.lowest:g} and {self.highest:g} {self.unit}")
+        return Fault(
+            self.path, self.value, f"must lie between {self.lowest:g} and {self.highest:g} {self.unit}".rstrip()
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +60,14 @@ class Provenance:
 
     def __getitem__(self, path: str) -> float:
         """Return a value by its path."""
-        for row in self.rows:
-            if row.path == path:
-                return row.value
-        raise KeyError(path)
+        value = self.get(path)
+        if value is None:
+            raise KeyError(path)
+        return value
+
+    def get(self, path: str) -> float | None:
+        """Return a value by its path, None if there is none."""
+        return next((row.value for row in self.rows if row.path == path), None)
 
     def __contains__(self, path: object) -> bool:
         """Return whether there is a value of a path."""

@@ -223,3 +223,11 @@ def test_a_profile_takes_no_thickness_and_not_both_mass_and_density() -> None:
 def test_the_bare_conductor_is_checked() -> None:
     with pytest.raises(InvalidSpec, match=r"conductor\.mass must be a finite number greater than zero, got 0\.0"):
         BareConductor(DIAMETER, 0.0, INERTIA)
+
+
+def test_ice_without_a_direction_grows_to_windward_and_an_outline_stands_as_drawn() -> None:
+    usual = ice_section(DRAKE, Accretion(Shape.CRESCENT, THICKNESS, density=DENSITY))
+    assert usual == iced(Shape.CRESCENT, math.radians(270.0))
+    outline = tuple((float(p.real), float(p.imag)) for p in ring(0.03, 600, 0.005 + 0j))
+    drawn = ice_section(DRAKE, Accretion(Shape.PROFILE, density=DENSITY, points=outline))
+    assert drawn.eccentricity_y > 1e-3
