@@ -122,6 +122,7 @@ def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Li
         if "analysis" not in gathered.neutral:
             with_physics = partial(spec.with_physics, comparable, analysis, parts.physics(options))
             analysis = gathered.attempt("analysis.", with_physics) or _NEUTRAL_ANALYSIS
+    line = None if line is None else spec.with_section(line, analysis.physics)
     return line, analysis, gathered.faults
 
 

@@ -70,8 +70,8 @@ class Analysis(Document):
     physics: Literal["full", "source"] | None = Field(
         default=None,
         description="Full physics, or the source's simplifications; null: full if the line's coefficients at rest are "
-        "known, else the source's with a warning. Sets aerodynamic_model, longitudinal_inertia, stretching and "
-        "static_twist where they are null",
+        "known, else the source's with a warning. Sets aerodynamic_model, longitudinal_inertia, stretching, "
+        "static_twist and the line's bundle.section where they are null",
         examples=["full"],
     )
     aerodynamic_model: Literal["published", "relative_wind", "table"] | None = Field(

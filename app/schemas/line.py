@@ -110,7 +110,8 @@ class Bundle(Document):
     section: Literal["rigid", "free"] | None = Field(
         default=None,
         description="How sub-conductors move along the span: `rigid`, all alike, as if spacers could not yaw or pitch; "
-        "`free`, each by itself between the yokes at the ends, which lowers the torsional frequencies; if null, rigid",
+        "`free`, each by itself between the yokes at the ends, which lowers the torsional frequencies; if null, as "
+        "the physics of the analysis has it: rigid (source), free (full)",
         examples=["free"],
     )
 

@@ -20,7 +20,7 @@ from engine.models.hybrid import loop_groups
 from engine.models.reduced_model import take
 from engine.outcome import Outcome
 from engine.result import LimitCycleRow, Orbit, Result
-from engine.spec import Aerodynamics, Analysis, Line, Physics, PhysicsRequest, StaticTwist, with_physics
+from engine.spec import Aerodynamics, Analysis, Line, Physics, PhysicsRequest, StaticTwist, with_physics, with_section
 
 SEED, LINES = 20261122, 96
 COMPARED, COMPARED_LINES = 40, 8  # shortest periods, and lines, compared with DOP853
@@ -89,6 +89,7 @@ def reported(lines: Sequence[Line], winds: Sequence[float] = WINDS, analysis: An
 def full_physics(lines: Sequence[Line]) -> tuple[list[Line], Analysis]:
     """Return the lines with coefficients at rest, and the analysis of full physics as they hang."""
     iced = [replace(line, ice=replace(line.ice, aerodynamics=_with_rest(line.ice.aerodynamics))) for line in lines]
+    iced = [with_section(line, Physics.FULL) for line in iced]
     return iced, with_physics(iced[0], SOURCE, PhysicsRequest(Physics.FULL, static_twist=StaticTwist.NEGLECTED))
 
 
@@ -233,8 +234,8 @@ def full_section() -> Iterator[str]:
     yield "## Completeness under full physics\n"
     yield (
         "The same lines, winds and starts with coefficients at rest C_y0 = 0, C_z0 = 1, C_theta0 = 0, relative wind at "
-        "every sub-conductor, condensed longitudinal inertia and stretching, without static twist; the relief "
-        f"coordinate has starts of its own. {len(found.cases)} cases with {found.starts} starts. The largest "
+        "every sub-conductor, condensed longitudinal inertia, stretching and free sections, without static twist; the "
+        f"relief coordinate has starts of its own. {len(found.cases)} cases with {found.starts} starts. The largest "
         f"difference between an attractor and the motion reported for it is {_worst(found):.2%}.\n"
     )
     yield from _listing(found)

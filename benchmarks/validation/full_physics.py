@@ -1,4 +1,4 @@
-"""Cycles and tensions under full physics beside the reference of theory section 16.1."""
+"""Cycles and tensions under full physics beside the reference of theory section 16.1, whose sections are rigid."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -7,15 +7,16 @@ from functools import cache
 from benchmarks.lines import source_line
 from benchmarks.validation.common import REFERENCE, SUBCONDUCTORS, percent, result, table
 from engine.result import LimitCycleRow, Result
-from engine.spec import Analysis, Line, Model, PhysicsRequest, StaticTwist, with_physics
+from engine.spec import Analysis, CrossSection, Line, Model, PhysicsRequest, StaticTwist, with_physics
 
 WINDS = (4.0, 6.0, 10.0)
 AT_REST = (0.0, 1.0, 0.0)
 
 
 def iced_line(subconductors: int) -> Line:
-    """Return a line of the source with coefficients at rest."""
+    """Return a line of the source with coefficients at rest and rigid sections."""
     line = source_line(subconductors)
+    line = replace(line, bundle=replace(line.bundle, section=CrossSection.RIGID))
     aerodynamics = replace(line.ice.aerodynamics, at_rest=AT_REST)
     return replace(line, ice=replace(line.ice, aerodynamics=aerodynamics))
 

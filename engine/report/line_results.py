@@ -35,7 +35,7 @@ from engine.report.warnings import (
     wind_twist_warnings,
 )
 from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, PhysicsRow, Result, StaticState
-from engine.spec import AmplitudeCurves, Analysis
+from engine.spec import AmplitudeCurves, Analysis, CrossSection, Line
 
 
 def line_results(
@@ -89,7 +89,7 @@ def line_results(
             Result(
                 static=_static_state(discretization, i),
                 den_hartog=_den_hartog(discretization, i),
-                physics=(_physics(analysis),),
+                physics=(_physics(discretization.lines[i], analysis),),
                 frequencies=own_frequencies,
                 internal_resonances=internal_resonance_rows(own_frequencies),
                 static_equilibria=tuple(equilibria[i]),
@@ -110,8 +110,10 @@ def _of_line(parts: Sequence[Sequence[Sequence[Any]]], line: int) -> list[Any]:
     return [item for part in parts for item in part[line]]
 
 
-def _physics(analysis: Analysis) -> PhysicsRow:
-    return PhysicsRow(**{field.name: getattr(analysis, field.name) for field in fields(PhysicsRow)})
+def _physics(line: Line, analysis: Analysis) -> PhysicsRow:
+    single = len(line.bundle.positions) == 1
+    options = {field.name: getattr(analysis, field.name) for field in fields(PhysicsRow) if field.name != "section"}
+    return PhysicsRow(**options, section=None if single else line.bundle.section or CrossSection.RIGID)
 
 
 def _warnings_about_lines(

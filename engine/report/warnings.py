@@ -18,6 +18,7 @@ from engine.spec import (
     AerodynamicModel,
     Aerodynamics,
     Analysis,
+    CrossSection,
     Ice,
     IceSegment,
     Line,
@@ -71,8 +72,8 @@ def physics_warnings(line: Line, analysis: Analysis) -> list[str]:
     result = []
     if analysis.lacks is not None:
         result.append(
-            f"The physics is the source's, because {analysis.lacks} is not given: {_neglected(analysis)}. Motion in "
-            f"two and more loops depends on it. Give {analysis.lacks}, or a measured table in the place of "
+            f"The physics is the source's, because {analysis.lacks} is not given: {_neglected(line, analysis)}. Motion "
+            f"in two and more loops depends on it. Give {analysis.lacks}, or a measured table in the place of "
             'ice.aerodynamics, for full physics, or ask for "physics": "source".'
         )
     if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
@@ -118,7 +119,7 @@ def relief_warnings(analysis: Analysis, relieved: float) -> list[str]:
     ]
 
 
-def _neglected(analysis: Analysis) -> str:
+def _neglected(line: Line, analysis: Analysis) -> str:
     """Return what an analysis with the source's physics neglects, as a clause."""
     parts = []
     if analysis.aerodynamic_model is AerodynamicModel.PUBLISHED:
@@ -127,6 +128,8 @@ def _neglected(analysis: Analysis) -> str:
         parts.append("the longitudinal inertia of the hybrid model")
     if analysis.stretching is Stretching.NEGLECTED:
         parts.append("the stretching of the conductors by large motion")
+    if line.bundle.section is CrossSection.RIGID:
+        parts.append("that sub-conductors move along the span by themselves")
     return "it neglects " + "; ".join(parts) if parts else "every option was said singly"
 
 

@@ -5,7 +5,16 @@ from typing import Annotated, Literal
 
 from engine.outcome import Outcome
 from engine.result.columns import Column
-from engine.spec import AerodynamicLoad, AerodynamicModel, LongitudinalInertia, Model, Physics, StaticTwist, Stretching
+from engine.spec import (
+    AerodynamicLoad,
+    AerodynamicModel,
+    CrossSection,
+    LongitudinalInertia,
+    Model,
+    Physics,
+    StaticTwist,
+    Stretching,
+)
 
 Direction = Literal["vertical", "horizontal", "torsional", "longitudinal"]
 ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
@@ -55,6 +64,10 @@ class PhysicsRow:
     stretching: Annotated[Stretching, Column("Stretching of the conductors by large motion", "included")]
     static_twist: Annotated[
         StaticTwist, Column("Whether eccentric weight twists the line at rest, or only where that is large", "solved")
+    ]
+    section: Annotated[
+        CrossSection | None,
+        Column("Whether the sub-conductors move along the span alike or each by itself; null for a single one", "free"),
     ]
 
 

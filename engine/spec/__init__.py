@@ -46,7 +46,7 @@ from engine.spec.environment import (
     Wind,
 )
 from engine.spec.line import Line, ice_properties
-from engine.spec.physics import PhysicsRequest, with_physics
+from engine.spec.physics import PhysicsRequest, with_physics, with_section
 from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
 from engine.spec.section import Section, SectionSpan, SuspensionString
 from engine.spec.span import Bundle, Conductor, CrossSection, Span, Support, Supports, Yoke
@@ -105,4 +105,5 @@ __all__ = [
     "check_placement",
     "ice_properties",
     "with_physics",
+    "with_section",
 ]

@@ -1,4 +1,7 @@
-"""Which physics an analysis has: that of the source, or the full one; each option may be said by itself, too."""
+"""Which physics an analysis has: that of the source, or the full one; each option may be said by itself, too.
+
+How the sub-conductors move along the span belongs to the physics as well, but to each line.
+"""
 
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
@@ -14,6 +17,7 @@ from engine.spec.analysis import (
     Stretching,
 )
 from engine.spec.line import Line
+from engine.spec.span import CrossSection
 
 AT_REST = "ice.aerodynamics_at_rest"
 
@@ -31,6 +35,8 @@ _DEFAULTS: dict[Physics, dict[str, Any]] = {
         "static_twist": StaticTwist.WHERE_LARGE,
     },
 }
+
+_SECTIONS = {Physics.SOURCE: CrossSection.RIGID, Physics.FULL: CrossSection.FREE}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +63,13 @@ def with_physics(line: Line, analysis: Analysis, asked: PhysicsRequest) -> Analy
     """
     lacks = AT_REST if line.ice.aerodynamics.at_rest is None else None
     return _with_physics(analysis, asked, lacks)
+
+
+def with_section(line: Line, physics: Physics) -> Line:
+    """Return a line whose bundle has the section of a physics, where it says none; a single conductor has none."""
+    if line.bundle.section is not None or len(line.bundle.positions) == 1:
+        return line
+    return replace(line, bundle=replace(line.bundle, section=_SECTIONS[physics]))
 
 
 @lru_cache  # all lines of a batch have the same analysis

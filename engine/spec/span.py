@@ -69,7 +69,7 @@ class Yoke(StrEnum):
 class Bundle:
     """Positions (y, z) [m] of the bare sub-conductor centres about the reference curve, and how the section moves.
 
-    section: None for the default, which is rigid.
+    section: None where it is open. `with_section` then gives that of the physics; without it, it is rigid.
     """
 
     positions: tuple[tuple[float, float], ...] = ((0.0, 0.0),)

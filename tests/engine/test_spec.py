@@ -17,6 +17,7 @@ from engine.spec import (
     Bundle,
     Closure,
     Conductor,
+    CrossSection,
     Damping,
     DetuningPendulum,
     Ice,
@@ -37,6 +38,7 @@ from engine.spec import (
     check_compatible,
     ice_properties,
     with_physics,
+    with_section,
 )
 from tests.builders import ICE_AT_40, source_line
 
@@ -246,6 +248,20 @@ def test_physics_is_that_asked_for_or_that_of_the_data(
     assert found.loops == (2,)
     unasked = asked.physics is None and line is LINE
     assert found.lacks == ("ice.aerodynamics_at_rest" if unasked else None)
+
+
+@pytest.mark.parametrize(
+    ("physics", "section"), [(Physics.SOURCE, CrossSection.RIGID), (Physics.FULL, CrossSection.FREE)]
+)
+def test_bundles_that_do_not_say_how_they_move_do_as_physics_has_it(physics: Physics, section: CrossSection) -> None:
+    twin = replace(LINE, bundle=Bundle.regular(2, 0.2, 0.0))
+    found = with_section(twin, physics)
+    assert found == replace(twin, bundle=replace(twin.bundle, section=section))
+    for said in CrossSection:
+        line = replace(twin, bundle=replace(twin.bundle, section=said))
+        assert with_section(line, physics) is line
+    single = replace(LINE, bundle=Bundle())
+    assert with_section(single, physics) is single
 
 
 def test_published_closure_belongs_to_the_source() -> None:

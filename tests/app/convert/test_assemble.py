@@ -187,13 +187,14 @@ def test_area_and_modulus_make_the_rigidity() -> None:
 
 def test_positions_are_taken_as_they_stand() -> None:
     line = changed("bundle", {"positions_m": [[0.1, -0.2], [-0.1, 0]]})
-    assert built(line)[0].bundle == spec.Bundle(((0.1, -0.2), (-0.1, 0.0)))
+    assert built(line)[0].bundle.positions == ((0.1, -0.2), (-0.1, 0.0))
 
 
 @pytest.mark.parametrize("section", [None, *spec.CrossSection])
 def test_every_kind_of_section_and_yoke_arrives(section: spec.CrossSection | None) -> None:
     line = changed("bundle.section", None if section is None else section.value)
-    assert built(line)[0].bundle.section is section
+    for physics, default in (("full", spec.CrossSection.FREE), ("source", spec.CrossSection.RIGID)):
+        assert built(line, {"physics": physics})[0].bundle.section is (section or default)
     for yoke in (None, *spec.Yoke):
         line = changed("supports.right.yoke", None if yoke is None else yoke.value)
         assert built(line)[0].supports.right.yoke is yoke

@@ -11,7 +11,7 @@ from engine.cycles.bifurcations import Bifurcations
 from engine.cycles.search import Cycles
 from engine.cycles.transitions import FACTORS, Kind
 from engine.outcome import Stability
-from engine.spec import AerodynamicModel, Analysis, Line, LongitudinalInertia, Stretching
+from engine.spec import AerodynamicModel, Analysis, Line, LongitudinalInertia, Physics, Stretching, with_section
 from tests.builders import lightly_damped_line
 from tests.engine.motions import bifurcations_between, resonant_line
 
@@ -79,7 +79,8 @@ def test_every_change_of_stability_has_its_row_whatever_wind_speeds_are_asked_fo
 def test_the_same_holds_under_full_physics(number: int, loops: int) -> None:
     line = drawn(number)
     at_rest = replace(line.ice.aerodynamics, at_rest=(0.0, 1.0, 0.0))
-    assert_independent(replace(line, ice=replace(line.ice, aerodynamics=at_rest)), loops, FULL)
+    line = with_section(replace(line, ice=replace(line.ice, aerodynamics=at_rest)), Physics.FULL)
+    assert_independent(line, loops, FULL)
 
 
 def test_multipliers_beyond_all_numbers_cross_nothing_and_warn_of_nothing() -> None:

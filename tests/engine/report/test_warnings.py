@@ -21,6 +21,7 @@ from engine.spec import (
     Support,
     Supports,
     with_physics,
+    with_section,
 )
 from tests.builders import ICE_AT_40, run, source_line
 
@@ -109,6 +110,10 @@ def test_physics_that_the_data_kept_from_being_full_is_named() -> None:
         "measured table",
     ):
         assert part in said
+    assert "by themselves" not in said
+    rigid = with_section(line, Physics.SOURCE)
+    (more,) = run(rigid, with_physics(rigid, asked, PhysicsRequest())).warnings
+    assert "; that sub-conductors move along the span by themselves." in more
     single = PhysicsRequest(longitudinal_inertia=LongitudinalInertia.CONDENSED)
     (said,) = run(line, with_physics(line, asked, single)).warnings
     assert "longitudinal inertia" not in said
