@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from engine.progress import Progress, finished
+from engine.report.verdict import verdict
 from engine.result import TABLES, BifurcationRow, CriticalWindSpeedRow, Result
 from engine.spec import Analysis, Line
 
@@ -76,7 +77,7 @@ def analyse_lines(
     results = []
     for line in lines:
         result = (yield from _at_each_wind(line, analysis, in_one_state)) if line.follows_wind else next(together)
-        results.append(result)
+        results.append(replace(result, verdict=(verdict(result, line, analysis),)))
     return results
 
 

@@ -27,6 +27,7 @@ from engine.result.motions import (
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 from engine.result.tables import TABLES, Result, Tables
+from engine.result.verdict import VerdictRow
 
 __all__ = [
     "TABLES",
@@ -54,6 +55,7 @@ __all__ = [
     "Tables",
     "TensionRow",
     "Title",
+    "VerdictRow",
     "columns_of",
     "tables_of",
 ]

@@ -25,12 +25,14 @@ from engine.result.motions import (
     TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
+from engine.result.verdict import VerdictRow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tables:
     """Every table of flat rows that a result holds, in the order of the result document."""
 
+    verdict: Annotated[tuple[VerdictRow, ...], Title("The verdict: one row, whatever the models and loops")] = ()
     physics: Annotated[tuple[PhysicsRow, ...], Title("Physics of the analysis")] = ()
     frequencies: Annotated[tuple[FrequencyRow, ...], Title("Natural frequencies")] = ()
     internal_resonances: Annotated[tuple[InternalResonanceRow, ...], Title("Ratios of the natural frequencies")] = ()

@@ -1,0 +1,195 @@
+"""The verdict on a line: does it gallop, from which wind, how far, and how well is that known?"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from engine.clearance import EllipseMethod, galloping_ellipse
+from engine.outcome import Outcome, Stability
+from engine.result import LimitCycleRow, Result, TensionRow, VerdictRow
+from engine.result.verdict import Gallops, Trust
+from engine.spec import Analysis, Check, Line
+
+AGREEMENT = 0.01  # largest relative change under direct integration of a cycle that counts as checked
+_BEYOND = {Outcome.OUTSIDE_FIT, Outcome.BEYOND_DATA, Outcome.NO_BOUNDED_MOTION, Outcome.STATICALLY_UNSTABLE}
+
+
+@dataclass(frozen=True, slots=True)
+class _Evidence:
+    """What a result says about galloping.
+
+    moving: stable motions, the largest vertical amplitude first; unknown: rows without numbers; onset: lowest critical
+    wind speed of an oscillation; highest: highest wind speed asked for [m/s].
+    """
+
+    moving: tuple[LimitCycleRow, ...]
+    unknown: tuple[LimitCycleRow, ...]
+    onset: float | None
+    highest: float | None
+
+    @property
+    def outcomes(self) -> set[Outcome]:
+        """How stable motions, and motions without numbers, ended."""
+        return {row.outcome for row in (*self.moving, *self.unknown)}
+
+    @property
+    def loses_stability(self) -> bool:
+        """Whether the span at rest loses stability up to the highest wind speed, at any if none was asked for."""
+        return self.onset is not None and (self.highest is None or self.onset <= self.highest)
+
+    @property
+    def gallops(self) -> Gallops:
+        """The answer: the wind starts a motion, or keeps up one that something else has started."""
+        if self.moving or self.loses_stability or Outcome.NO_BOUNDED_MOTION in self.outcomes:
+            return "yes"
+        return "undecided" if self.unknown or self.highest is None else "no"
+
+
+def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
+    """Return the verdict on a line at wind speeds up to the highest one that was asked for.
+
+    Parameters
+    ----------
+    result : Result
+        With all other tables.
+    line : Line
+    analysis : Analysis
+    """
+    evidence = _evidence(result, analysis)
+    worst = evidence.moving[0] if evidence.moving else None
+    tension = None if worst is None else _tension(result.tensions, worst)
+    trust = _trust(evidence, tension, analysis)
+    return VerdictRow(
+        gallops=evidence.gallops,
+        onset_m_per_s=evidence.onset,
+        worst_wind_m_per_s=None if worst is None else worst.wind_speed_m_per_s,
+        worst_loops=None if worst is None else worst.loops,
+        vertical_peak_to_peak_m=None if worst is None else _doubled(worst.vertical_m),
+        horizontal_peak_to_peak_m=None if worst is None else _doubled(worst.horizontal_m),
+        tension_range_n=_range(tension),
+        clearance_m=None,
+        clearance_ok=None,
+        ellipse_peak_to_peak_m=_ellipse(result, line),
+        probability_gallops=None,
+        trust=trust,
+        sentence=" ".join(_sentences(evidence, tension)),
+        what_decides=None,
+    )
+
+
+def _evidence(result: Result, analysis: Analysis) -> _Evidence:
+    rows = result.limit_cycles
+    moving = [row for row in rows if row.stability is Stability.STABLE and row.kind != "equilibrium"]
+    onsets = [
+        row.wind_speed_m_per_s
+        for row in result.critical_wind_speeds
+        if row.crossing == "onset" and row.type == "oscillation"
+    ]
+    return _Evidence(
+        moving=tuple(sorted(moving, key=lambda row: row.vertical_m or 0.0, reverse=True)),
+        unknown=tuple(row for row in rows if row.vertical_m is None),
+        onset=min(onsets, default=None),
+        highest=max(analysis.wind_speeds, default=None),
+    )
+
+
+def _tension(rows: Sequence[TensionRow], worst: LimitCycleRow) -> TensionRow | None:
+    key = (worst.model, worst.loops, worst.wind_speed_m_per_s, worst.branch, worst.kind, worst.stability)
+    same = (
+        row
+        for row in rows
+        if (row.model, row.loops, row.wind_speed_m_per_s, row.branch, row.kind, row.stability) == key
+    )
+    return max(same, key=lambda row: row.largest_at_support_n or 0.0, default=None)
+
+
+def _trust(evidence: _Evidence, tension: TensionRow | None, analysis: Analysis) -> Trust:
+    slack = tension is not None and tension.outcome is Outcome.SLACK
+    if slack or evidence.outcomes & _BEYOND:
+        return "beyond_data"
+    differences = [row.direct_difference for row in evidence.moving]
+    agree = all(difference is not None and abs(difference) <= AGREEMENT for difference in differences)
+    decided = evidence.gallops != "undecided" and not evidence.unknown and evidence.highest is not None
+    return "checked" if analysis.check is Check.DIRECT and agree and decided else "plausible"
+
+
+def _range(tension: TensionRow | None) -> float | None:
+    if tension is None or tension.largest_at_support_n is None or tension.smallest_at_support_n is None:
+        return None
+    return tension.largest_at_support_n - tension.smallest_at_support_n
+
+
+def _ellipse(result: Result, line: Line) -> float | None:
+    ellipse = galloping_ellipse(
+        EllipseMethod.CIGRE,
+        result.static.sag_m,
+        diameter=line.conductor.diameter,
+        subconductors=len(line.bundle.positions),
+    )
+    return None if ellipse is None else ellipse.major_axis
+
+
+def _doubled(amplitude: float | None) -> float | None:
+    return None if amplitude is None else 2.0 * amplitude
+
+
+def _sentences(evidence: _Evidence, tension: TensionRow | None) -> list[str]:
+    if evidence.gallops == "no":
+        return [_rest(evidence)]
+    if evidence.gallops == "undecided":
+        return ["Not decided.", *_reasons(evidence)]
+    texts = [_motion(evidence)]
+    below = [row.wind_speed_m_per_s for row in evidence.moving if row.wind_speed_m_per_s < (evidence.onset or 0.0)]
+    if below and evidence.loses_stability:
+        texts.append(f"Once started, it goes on from {min(below):g} m/s.")
+    if evidence.moving and evidence.moving[0].outcome in _BEYOND:
+        texts.append(f"The size is not to be relied on: {_lowered(evidence.moving[0].outcome.sentence)}")
+    if tension is not None and tension.outcome is Outcome.SLACK:
+        texts.append(tension.outcome.sentence)
+    return texts + _reasons(evidence)
+
+
+def _rest(evidence: _Evidence) -> str:
+    later = "" if evidence.onset is None else f"; it would lose stability at {evidence.onset:.1f} m/s"
+    return f"Stays at rest at the wind speeds asked for, up to {evidence.highest:g} m/s{later}."
+
+
+def _motion(evidence: _Evidence) -> str:
+    """Return from which wind the span gallops, and the worst motion."""
+    if evidence.loses_stability:
+        text = f"Gallops from {evidence.onset:.1f} m/s"
+    elif evidence.moving:
+        lowest = min(row.wind_speed_m_per_s for row in evidence.moving)
+        text = f"Can gallop from {lowest:g} m/s on if something starts it, though the span at rest is stable"
+    else:
+        text = "Gallops"
+    if not evidence.moving:
+        return f"{text}; how far was not found."
+    worst = evidence.moving[0]
+    size = _doubled(worst.vertical_m) or 0.0
+    return f"{text}; at {worst.wind_speed_m_per_s:g} m/s in {_in_words(worst.loops)}, {_metres(size)} m peak to peak."
+
+
+def _reasons(evidence: _Evidence) -> list[str]:
+    """Return why motions have no numbers, with the wind speeds of each reason."""
+    texts = []
+    if evidence.highest is None:
+        texts.append("No wind speed was asked for.")
+    for outcome in dict.fromkeys(row.outcome for row in evidence.unknown):
+        winds = sorted({row.wind_speed_m_per_s for row in evidence.unknown if row.outcome is outcome})
+        if outcome is Outcome.STATICALLY_UNSTABLE:
+            texts.append(outcome.sentence)
+        else:
+            texts.append(f"At {', '.join(f'{wind:g}' for wind in winds)} m/s: {_lowered(outcome.sentence)}")
+    return texts
+
+
+def _lowered(sentence: str) -> str:
+    return sentence[0].lower() + sentence[1:]
+
+
+def _metres(length: float) -> str:
+    return f"{length:.2f}" if length >= 0.1 else f"{length:.2g}"
+
+
+def _in_words(loops: int) -> str:
+    return {1: "one loop", 2: "two loops", 3: "three loops"}.get(loops, f"{loops} loops")
