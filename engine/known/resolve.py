@@ -12,7 +12,8 @@ from engine.known.estimate import Estimate
 from engine.known.everyday import iced_span
 from engine.known.ice_sections import IceSection
 from engine.known.iced_conductor import iced_conductor
-from engine.known.provenance import Assumption, Origin, Provenance, assumed, given
+from engine.known.provenance import Assumption, Origin, Provenance, assumed, computed, given
+from engine.mechanics.static_profile import static_profile
 from engine.outcome import Fault, require
 from engine.spec import Aerodynamics, Conductor, Damping, Ice, Line, Span, Supports, Wind
 
@@ -55,7 +56,8 @@ def resolve(known: KnownLine, chosen: Mapping[str, float] | None = None) -> Reso
     Raises
     ------
     InvalidSpec
-        If a value breaks its rule or cannot be estimated, or a chosen value has no assumed row.
+        If a value breaks its rule or cannot be estimated, a chosen value has no assumed row, or the conductor pulls an
+        insulator string up.
     """
     values = {} if chosen is None else chosen
     bare = isinstance(known.span, KnownSpan) or known.ice.accretion is not None or known.ice.mass is None
@@ -72,7 +74,7 @@ def resolve(known: KnownLine, chosen: Mapping[str, float] | None = None) -> Reso
     require(*_unknown_choices(values, rows))
     line = _line(known, rows, hung.span if hung else known.span, aerodynamics)
     states = (hung.everyday, hung.iced) if hung else (None, None)
-    return Resolved(line, rows.rows, iced.section, *states)
+    return Resolved(line, (*rows.rows, *_ends(line)), iced.section, *states)
 
 
 def _line(known: KnownLine, rows: Provenance, span: KnownSpan | Span, aerodynamics: Aerodynamics) -> Line:
@@ -143,6 +145,18 @@ def _with_neighbours(supports: Supports, rows: Provenance) -> Supports:
     return replace(
         supports, left=replace(supports.left, adjacent_span=left), right=replace(supports.right, adjacent_span=right)
     )
+
+
+def _ends(line: Line) -> Iterator[Assumption]:
+    """Yield the longitudinal stiffness of both ends per sub-conductor that (A10) gives, none at a dead end."""
+    if line.supports.longitudinal_stiffness is not None:
+        return
+    ends = (("left", line.supports.left), ("right", line.supports.right))
+    for (name, end), stiffness in zip(ends, static_profile((line,)).end_stiffness[0].tolist(), strict=True):
+        if not end.dead_end:
+            string = "" if end.insulator_length is None else " and of its string"
+            source = f"(A10): static stiffness of the adjacent span{string}, under ice"
+            yield computed(f"supports.{name}.longitudinal_stiffness", stiffness, "N/m", source)
 
 
 def _unknown_choices(chosen: Mapping[str, float], rows: Provenance) -> Iterator[Fault]:

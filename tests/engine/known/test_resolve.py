@@ -84,6 +84,11 @@ def test_the_rows_are_the_line() -> None:
     assert rows["damping.torsional_ratio"] == line.damping.torsional_ratio
     assert rows["wind.air_density"] == line.wind.air_density
     assert rows["supports.left.adjacent_span"] == line.supports.left.adjacent_span == 280.0
+    ends = [rows[f"supports.{name}.longitudinal_stiffness"] for name in ("left", "right")]
+    assert ends == static_profile((line,)).end_stiffness[0].tolist()
+    # The string alone has the weight that it carries over its length: half of both spans, and iced.
+    carried = 2.2073 * 9.81 * 0.5 * (280.0 + 300.0)
+    assert ends[0] > carried / 2.4
 
 
 def test_every_assumed_value_can_be_chosen_and_changes_the_line() -> None:
@@ -144,6 +149,8 @@ def test_supports_wind_and_damping_are_kept() -> None:
     assert origins["wind.air_density"] is Origin.GIVEN
     assert origins["supports.right.insulator_length"] is Origin.GIVEN
     assert "supports.left.adjacent_span" not in origins
+    assert "supports.left.longitudinal_stiffness" not in origins
+    assert origins["supports.right.longitudinal_stiffness"] is Origin.COMPUTED
 
 
 def test_a_given_stiffness_makes_neighbours_needless() -> None:
