@@ -1,13 +1,13 @@
 """A line as an engineer knows it; None means that a value was not said. SI, radians, degrees Celsius."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from enum import StrEnum
 
 from engine.known.ice_sections import Accretion
 from engine.known.provenance import Origin
 from engine.outcome import Fault, require
-from engine.spec import Aerodynamics, Bundle, DampingModel, Device, IceSegment, Span, Supports, Wind
+from engine.spec import Aerodynamics, Bundle, DampingModel, Device, IceSegment, Section, Span, Supports, Wind
 from engine.spec.rules import finite, not_negative, positive
 
 _PERCENT = 100.0
@@ -194,7 +194,10 @@ class KnownDamping:
 
 @dataclass(frozen=True, slots=True)
 class KnownLine:
-    """A span with everything that is known of it. A `Span` in the place of a `KnownSpan` says its iced tension."""
+    """A span with everything that is known of it. A `Span` in the place of a `KnownSpan` says its iced tension.
+
+    section: the spans and strings around it, which then hold its ends.
+    """
 
     conductor: KnownConductor
     bundle: Bundle
@@ -203,4 +206,5 @@ class KnownLine:
     supports: Supports = Supports()
     wind: Wind | None = None
     damping: KnownDamping = KnownDamping()
-    devices: tuple[Device, ...] = field(default=())
+    devices: tuple[Device, ...] = ()
+    section: Section | None = None

@@ -1,15 +1,15 @@
 """The iced span from its everyday state."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from engine.known.change_of_state import HungSpan, HungState, LoadState, change_of_state, hung_state, tension_of_sag
-from engine.known.description import EverydayState, KnownSpan
+from engine.known.description import EverydayState, KnownLine, KnownSpan
 from engine.known.estimate import Estimate
 from engine.known.provenance import Assumption, Provenance, assumed, computed, given
 from engine.outcome import Fault, InvalidSpec, require
-from engine.spec import GRAVITY, Span, Supports
+from engine.spec import GRAVITY, Span
 
 USUAL_SHARE = Estimate(
     0.2, "", 0.15, 0.25, "assumed: lines are usually strung to some 20 % of the rated strength; range 15 to 25 %"
@@ -31,17 +31,18 @@ class IcedSpan:
 
 
 def iced_span(
-    known: KnownSpan, values: Provenance, supports: Supports, mass: float, chosen: Mapping[str, float]
+    line: KnownLine, known: KnownSpan, values: Provenance, mass: float, chosen: Mapping[str, float]
 ) -> IcedSpan:
     """Return the span under ice in still air.
 
     Parameters
     ----------
+    line : KnownLine
+        Its section has a ruling span, or else its adjacent spans estimate one.
     known : KnownSpan
+        The span of the line.
     values : Provenance
         The values of the conductor.
-    supports : Supports
-        Their adjacent spans estimate the ruling span.
     mass : float
         Of the iced sub-conductor per length [kg/m].
     chosen : mapping
@@ -52,7 +53,7 @@ def iced_span(
     InvalidSpec
         If the rated strength is needed and not known, a tension exceeds it, or the span has no such state.
     """
-    rows = Provenance().extended(_conditions(known, supports, chosen))
+    rows = Provenance().extended(_conditions(line, known, chosen))
     hung = HungSpan(
         length=known.length,
         rigidity=values["conductor.axial_rigidity"],
@@ -81,7 +82,7 @@ def iced_span(
     return IcedSpan(span, rows.extended([result]), everyday, under_ice)
 
 
-def _conditions(known: KnownSpan, supports: Supports, chosen: Mapping[str, float]) -> list[Assumption]:
+def _conditions(line: KnownLine, known: KnownSpan, chosen: Mapping[str, float]) -> list[Assumption]:
     """Return both temperatures, and the ruling span unless the span stands between dead ends."""
     usual = None if known.everyday is None else known.everyday.temperature
     rows = [given("span.length", known.length, "m")]
@@ -90,19 +91,27 @@ def _conditions(known: KnownSpan, supports: Supports, chosen: Mapping[str, float
         ("span.temperature", known.temperature, ICING_TEMPERATURE),
     ):
         rows.append(assumed(path, estimate, chosen) if stated is None else given(path, stated, "degC"))
+    ends = (line.supports.left, line.supports.right)
     if known.ruling_span is not None:
         return [*rows, given("span.ruling_span", known.ruling_span, "m")]
-    if supports.left.dead_end and supports.right.dead_end:
+    if line.section is not None:
+        ruling = ruling_span(span.length for span in line.section.spans)
+        return [*rows, computed("span.ruling_span", ruling, "m", "sqrt(sum L^3/sum L) of the section's spans")]
+    if all(end.dead_end for end in ends):
         return rows
-    return [*rows, assumed("span.ruling_span", _ruling_span(known, supports), chosen)]
+    lengths = [end.adjacent_span for end in ends if not end.dead_end and end.adjacent_span is not None]
+    return [*rows, assumed("span.ruling_span", _of_neighbours([known.length, *lengths]), chosen)]
 
 
-def _ruling_span(known: KnownSpan, supports: Supports) -> Estimate:
-    ends = (end for end in (supports.left, supports.right) if not end.dead_end)
-    lengths = [known.length, *(end.adjacent_span for end in ends if end.adjacent_span is not None)]
-    value = math.sqrt(sum(length**3 for length in lengths) / sum(lengths))
+def ruling_span(lengths: Iterable[float]) -> float:
+    """Return the ruling span sqrt(sum L^3/sum L) of spans [m]."""
+    spans = list(lengths)
+    return math.sqrt(sum(length**3 for length in spans) / sum(spans))
+
+
+def _of_neighbours(lengths: list[float]) -> Estimate:
     source = "assumed: the ruling span of this span and its known neighbours; range 0.8 to 1.25 times the extremes"
-    return Estimate(value, "m", 0.8 * min(lengths), 1.25 * max(lengths), source)
+    return Estimate(ruling_span(lengths), "m", 0.8 * min(lengths), 1.25 * max(lengths), source)
 
 
 def _load(path: str, rows: Provenance, weight: float, drag: float) -> LoadState:

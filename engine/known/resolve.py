@@ -66,7 +66,7 @@ def resolve(known: KnownLine, chosen: Mapping[str, float] | None = None) -> Reso
     rows = rows.extended(iced.rows.rows)
     hung = None
     if isinstance(known.span, KnownSpan):
-        hung = iced_span(known.span, rows, known.supports, rows["conductor.mass"], values)
+        hung = iced_span(known, known.span, rows, rows["conductor.mass"], values)
     rows = rows.extended(_as_given(known.span) if hung is None else hung.rows.rows)
     outer = None if iced.section is None else iced.section.outer_diameter
     aerodynamics, borrowed = coefficients(known.ice.aerodynamics, rows["conductor.diameter"], outer, values)
@@ -101,6 +101,7 @@ def _line(known: KnownLine, rows: Provenance, span: KnownSpan | Span, aerodynami
         damping=Damping(vertical, horizontal, torsional, known.damping.model),
         supports=_with_neighbours(known.supports, rows),
         devices=known.devices,
+        section=known.section,
     )
 
 
@@ -124,10 +125,11 @@ def _surroundings(known: KnownLine, chosen: Mapping[str, float]) -> Iterator[Ass
 
 
 def _neighbours(known: KnownLine, chosen: Mapping[str, float]) -> Iterator[Assumption]:
-    """Yield what holds the ends along the line: a given stiffness, else the adjacent spans and strings of (A10)."""
+    """Yield what holds the ends along the line unless a section does: a given stiffness, or the neighbours of (A10)."""
     supports, length = known.supports, known.span.length
     if supports.longitudinal_stiffness is not None:
         yield given("supports.longitudinal_stiffness", supports.longitudinal_stiffness, "N/m")
+    if supports.longitudinal_stiffness is not None or known.section is not None:
         return
     source = "assumed: as long as this span, which (A10) takes; range half to twice"
     for name, end in (("left", supports.left), ("right", supports.right)):
@@ -149,7 +151,7 @@ def _with_neighbours(supports: Supports, rows: Provenance) -> Supports:
 
 def _ends(line: Line) -> Iterator[Assumption]:
     """Yield the longitudinal stiffness of both ends per sub-conductor that (A10) gives, none at a dead end."""
-    if line.supports.longitudinal_stiffness is not None:
+    if line.supports.longitudinal_stiffness is not None or line.section is not None:
         return
     ends = (("left", line.supports.left), ("right", line.supports.right))
     for (name, end), stiffness in zip(ends, static_profile((line,)).end_stiffness[0].tolist(), strict=True):

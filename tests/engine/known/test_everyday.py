@@ -12,7 +12,7 @@ from engine.known.everyday import IcedSpan, iced_span
 from engine.known.provenance import Origin
 from engine.outcome import InvalidSpec
 from engine.spec import GRAVITY, Support, Supports
-from tests.engine.known.known_lines import DRAKE
+from tests.engine.known.known_lines import DRAKE, SPARSE
 
 VALUES = bare_conductor(KnownConductor(row=DRAKE), {}, bare=True)
 STRENGTH, BARE_MASS, ICED_MASS = 140120.0, 1.6281, 2.3
@@ -24,7 +24,7 @@ DEAD_ENDS = Supports(left=Support(dead_end=True), right=Support(dead_end=True))
 def hang(
     span: KnownSpan, supports: Supports = SUPPORTS, mass: float = ICED_MASS, chosen: Mapping[str, float] | None = None
 ) -> IcedSpan:
-    return iced_span(span, VALUES, supports, mass, chosen or {})
+    return iced_span(replace(SPARSE, span=span, supports=supports), span, VALUES, mass, chosen or {})
 
 
 def test_a_share_of_the_rated_strength_becomes_the_iced_tension() -> None:
@@ -115,6 +115,6 @@ def test_a_share_needs_the_rated_strength() -> None:
     with pytest.raises(
         InvalidSpec, match=r"conductor\.rated_strength must be given where the everyday tension is a share"
     ):
-        iced_span(SPAN, values, SUPPORTS, 2.3, {})
+        iced_span(SPARSE, SPAN, values, 2.3, {})
     known = replace(SPAN, everyday=EverydayState(horizontal_tension=150e3, temperature=15.0))
-    assert iced_span(known, values, SUPPORTS, 2.3, {}).iced.largest_tension > 150e3
+    assert iced_span(SPARSE, known, values, 2.3, {}).iced.largest_tension > 150e3

@@ -12,7 +12,7 @@ from engine.known.provenance import Origin
 from engine.known.resolve import resolve
 from engine.mechanics.static_profile import static_profile
 from engine.outcome import InvalidSpec
-from engine.spec import Damping, Support, Supports, Wind
+from engine.spec import Damping, Section, SectionSpan, Support, Supports, SuspensionString, Wind
 from tests.builders import source_line
 from tests.engine.known.known_lines import GUIDE, SPARSE
 
@@ -159,6 +159,19 @@ def test_a_given_stiffness_makes_neighbours_needless() -> None:
     assert rows["supports.longitudinal_stiffness"] is Origin.GIVEN
     assert "supports.left.adjacent_span" not in rows
     assert found.line.supports.longitudinal_stiffness == 2e5
+
+
+def test_a_section_holds_the_ends_and_has_the_ruling_span() -> None:
+    spans = (SectionSpan(280.0), SectionSpan(300.0), SectionSpan(330.0))
+    strings = (SuspensionString(2.4, 600.0), SuspensionString(2.4, 600.0))
+    section = Section(spans, strings, span_of_interest=2)
+    found = resolve(replace(SPARSE, section=section))
+    rows = {row.path: row for row in found.assumptions}
+    assert found.line.section == section
+    assert found.line.supports == Supports()
+    assert rows["span.ruling_span"].origin is Origin.COMPUTED
+    assert rows["span.ruling_span"].value == pytest.approx((84.889e6 / 910.0) ** 0.5)
+    assert not [path for path in rows if path.startswith("supports")]
 
 
 @pytest.mark.parametrize("subconductors", [1, 2, 3, 4, 6])
