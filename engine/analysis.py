@@ -213,10 +213,9 @@ def _analyse_finite_element(
     starts = stacked(
         [_cycles_in_full_modes(prepared.discretization, modes, part, model, analysis.harmonics) for part in hybrid]
     )
-    line, loops = (
-        np.arange(len(prepared.discretization.lines)),
-        np.broadcast_to(np.tile(modes.loops, 3), model.shapes.shape[:2]),
-    )
+    line, coordinates = np.arange(len(prepared.discretization.lines)), model.shapes.shape[:2]
+    own = np.resize(modes.loops, coordinates[1])  # those of each direction; a relief coordinate is never the largest
+    loops = np.broadcast_to(own, coordinates)
     stack = _ModelStack(Model.FINITE_ELEMENT, model, line, loops, crossings)
     return _findings(stack, _winds(analysis), starts, analysis)
 
@@ -282,8 +281,10 @@ def _cycles_in_full_modes(
     momentum = (vectors @ discretization.matrices.mass).reshape(*vectors.shape[:2], -1, FIELDS).swapaxes(-1, -2)
     transverse = fields_in_space(discretization.profile, momentum)[:, :, 1:]
     projection = merge_axes(transverse, -2)[line] @ merge_axes(hybrid.model.shapes[member], -2).swapaxes(-1, -2)
+    shares = projection @ cycles.orbits.coefficients[usable]
+    relief = model.mass.shape[-1] - shares.shape[-2]  # a coordinate of no shape, which starts at rest
     orbits = Orbits(
-        projection @ cycles.orbits.coefficients[usable],
+        np.pad(shares, ((0, 0), (0, relief), (0, 0))),
         cycles.orbits.angular_frequency[usable],
         cycles.orbits.wind_speed[usable],
     )

@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from engine.arrays import FloatArray
+from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W, device_damping
 from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
 from engine.models.aerodynamic_load import span_load, take_load
 from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
+from engine.models.relief import DAMPING_RATIO, relief_displacement
 from engine.models.stretching import stretching_of, take_stretching
 from engine.models.unexpanded_load import load_as_it_stands, take_unexpanded
 from engine.spec import Analysis, DampingModel, Stretching
@@ -20,16 +21,21 @@ def finite_element_model(
 ) -> ReducedModel:
     """Return the model reduced to the full modes of several loops per direction, with the exact load: (lines,).
 
-    Where the analysis includes it, with stretching, whose tension the symmetric vertical modes relieve.
+    Where the analysis includes it, with stretching, whose tension the symmetric vertical modes relieve. Without the
+    modes of one loop a relief coordinate follows as the last one, as in the hybrid model.
 
     Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
     2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi, and that of devices. Section 7.4.
     """
-    vectors = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
-    values = modes.eigenvalues.reshape(vectors.shape[:2])
-    nodes = vectors.shape[-1] // FIELDS
-    in_plane = vectors.reshape(*vectors.shape[:2], nodes, FIELDS).swapaxes(-1, -2)
-    fields = fields_in_space(discretization.profile, in_plane)
+    modal = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
+    values = modes.eigenvalues.reshape(modal.shape[:2])
+    included = analysis.stretching is Stretching.INCLUDED
+    relieves = included and 1 not in modes.loops
+    vectors = np.append(modal, relief_displacement(discretization)[:, None], axis=1) if relieves else modal
+    in_plane = vectors.reshape(*vectors.shape[:2], -1, FIELDS).swapaxes(-1, -2)
+    fields = fields_in_space(discretization.profile, in_plane).copy()
+    moving = fields[:, :, list(TRANSVERSE)]
+    fields[:, values.shape[1] :] = 0.0  # the wind does not act on the relief coordinate, and nobody sees it
     nodal = fields[:, :, list(TRANSVERSE)]
     at = at_points(discretization.matrices, nodal)
     load = span_load(
@@ -39,21 +45,44 @@ def finite_element_model(
         at[:, None],
         analysis.aerodynamic_model,
     )
-    included = analysis.stretching is Stretching.INCLUDED
-    stretching = stretching_of(discretization, nodal[:, None]) if included else None
-    unstable = np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
+    stretching = stretching_of(discretization, moving[:, None]) if included else None
+    mass, stiffness = _projected(discretization, vectors) if relieves else _diagonal(values)
+    damping = _modal_damping(discretization, modal, shapes, modes.loops)
     return ReducedModel(
-        mass=np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])),
-        damping=_modal_damping(discretization, vectors, shapes, modes.loops)
+        mass=mass,
+        damping=(_with_damped_relief(damping, mass, stiffness) if relieves else damping)
         + device_damping(discretization.lines, discretization.profile, fields),
-        stiffness=diagonal_matrices(values),
+        stiffness=stiffness,
         load=take_load(load, (slice(None), 0)),
         shapes=nodal,
-        direction=np.repeat(np.arange(3), len(modes.loops)),
-        statically_unstable=unstable,
+        direction=np.resize(np.repeat(np.arange(3), len(modes.loops)), fields.shape[1]),  # relief: vertical
+        statically_unstable=_unstable(values, shapes),
         stretching=take_stretching(stretching, (slice(None), 0)),
         unexpanded=take_unexpanded(load_as_it_stands(discretization, at[:, None], analysis), (slice(None), 0)),
     )
+
+
+def _unstable(values: FloatArray, shapes: DirectionalShapes) -> BoolArray:
+    return np.asarray((values <= 0.0).any(axis=-1) | np.isnan(shapes.angular_frequency).any(axis=(1, 2)))
+
+
+def _diagonal(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return M and K of modes with unit modal mass and eigenvalues (lines, m)."""
+    return np.broadcast_to(np.eye(values.shape[1]), (*values.shape, values.shape[1])), diagonal_matrices(values)
+
+
+def _projected(discretization: Discretization, vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Project M and K onto displacements (lines, m, freedoms)."""
+    system, back = discretization.matrices, vectors.swapaxes(-1, -2)
+    return vectors @ system.mass @ back, vectors @ system.stiffness @ back
+
+
+def _with_damped_relief(damping: FloatArray, mass: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """Append the damping of the relief coordinate, which is the last one of M and K."""
+    whole = np.zeros(mass.shape)
+    whole[:, :-1, :-1] = damping
+    whole[:, -1, -1] = 2.0 * DAMPING_RATIO * np.sqrt(stiffness[:, -1, -1] * mass[:, -1, -1])
+    return whole
 
 
 def _modal_damping(

@@ -28,11 +28,13 @@ from engine.spec import (
     Model,
     Spacer,
     Span,
+    Stretching,
     Support,
     Supports,
     Wind,
 )
 from tests.builders import ICE_AT_40, random_line, run, source_line, stable_cycles
+from tests.engine.motions import free_sections, relative_line
 
 SHORT = Analysis(loops=(1, 2), wind_speeds=(5.0,))
 
@@ -218,3 +220,17 @@ def test_finite_element_model_gives_frequencies_alone() -> None:
     result = run(source_line(2), replace(Analysis(), finite_element_loops=()))
     assert {row.model for row in result.frequencies} == {Model.HYBRID, Model.FINITE_ELEMENT}
     assert {row.model for row in result.limit_cycles} == {Model.HYBRID}
+
+
+def test_both_models_agree_on_two_stretched_loops_alone() -> None:
+    """Neither has the vertical motion of one loop, so both need the relief coordinate."""
+    line = relative_line(2)
+    asked = Analysis(loops=(2,), finite_element_loops=(2,), wind_speeds=(10.0,))
+    asked = replace(asked, aerodynamic_model=AerodynamicModel.RELATIVE_WIND, stretching=Stretching.INCLUDED)
+    asked = replace(asked, longitudinal_inertia=LongitudinalInertia.CONDENSED)
+    result = run(free_sections(line), asked)
+    (hybrid,), (full,) = (stable_cycles(result, loops=2, wind_speed=10.0, model=model) for model in Model)
+    for name in ("vertical_m", "horizontal_m", "torsional_rad", "frequency_hz"):
+        assert getattr(full, name) == pytest.approx(getattr(hybrid, name), rel=1e-3)
+    tensions = [(row.smallest_horizontal_n, row.largest_horizontal_n) for row in result.tensions]
+    assert tensions[1] == pytest.approx(tensions[0], rel=1e-4)

@@ -3,8 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.free_vibration import SPANS, finite_element_shift
 from engine.mechanics.modes import full_modes
-from engine.spec import DampingModel
+from engine.spec import Analysis, DampingModel, Stretching
 from tests.builders import discretized, finite_element, random_line, source_line
 
 RATIOS = np.array([0.000515, 0.000515, 0.308])
@@ -43,3 +44,18 @@ def test_finite_element_model_is_diagonal_in_its_modes() -> None:
     projected = vectors @ discretization.matrices.stiffness[0] @ vectors.T
     assert model.stiffness[0] == pytest.approx(projected, abs=1e-8 * np.abs(projected).max())
     assert model.direction.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+
+
+def test_without_the_modes_of_one_loop_a_relief_coordinate_takes_their_place() -> None:
+    line = SPANS["source's line, springs"]
+    shifts = [finite_element_shift(line, 0.95, loops) for loops in ((2,), (2, 4), (2, 3), (1, 2, 3, 5))]
+    assert shifts[:3] == pytest.approx([shifts[3]] * 3, rel=2e-3)
+    stretched = Analysis(stretching=Stretching.INCLUDED)
+    model = finite_element(source_line(2), (2, 3), stretched)
+    assert model.mass.shape == (1, 7, 7)
+    assert not model.shapes[0, 6].any()
+    assert model.direction.tolist() == [0, 0, 1, 1, 2, 2, 0]
+    natural = np.sqrt(model.stiffness[0, 6, 6] / model.mass[0, 6, 6])
+    assert model.damping[0, 6] == pytest.approx(np.eye(7)[6] * 0.2 * natural * model.mass[0, 6, 6])
+    for loops, analysis in (((1, 2), stretched), ((2, 3), Analysis())):
+        assert finite_element(source_line(2), loops, analysis).mass.shape == (1, 6, 6)
