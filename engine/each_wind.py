@@ -221,7 +221,7 @@ def _own_rows(rows: Sequence[Any], wind: float, winds: Sequence[float]) -> list[
 def _in_own_state(row: BifurcationRow, at_winds: Sequence[tuple[float, Result]], critical: Rows) -> BifurcationRow:
     """Move a Hopf point to its critical wind speed, and widen the uncertainty of any other bifurcation.
 
-    It lies away from the wind speed of its static state; the two nearest states tell how fast it moves with them. Where
+    It lies away from the wind speed of its static state; the two nearest states show how fast it moves with them. Where
     the other one does not have it, it is taken to move as fast as the wind.
     """
     alike = [other for other in critical if (other.model, other.loops) == (row.model, row.loops)]

@@ -35,7 +35,7 @@ WITHOUT_A_TEST_FILE = {
     "app.convert.clearance": "tests/app/routes/test_clearance.py holds its figures.",
     "app.convert.parts": "Every field that it converts is compared in tests/app/convert/test_assemble.py.",
     "app.convert.study": "tests/app/convert/test_check.py holds its faults, tests/app/convert/test_run.py its points.",
-    "app.convert.tables": "tests/app/export/test_columns.py and tests/app/test_result_tables.py hold it.",
+    "app.convert.tables": "tests/app/export/test_exported_columns.py and tests/app/test_result_tables.py hold it.",
     "app.http.security_headers": "tests/app/security/test_gate.py finds its headers on every kind of answer.",
     "app.operation.workers": "tests/worker/test_presence.py and tests/app/operation/test_service_status.py hold it.",
     "app.plots.drawing": "It sets up figures; tests/app/test_plots.py draws every picture with it.",

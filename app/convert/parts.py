@@ -165,7 +165,7 @@ def _choice(part: schemas.PendulumChoice | schemas.SpoilerChoice) -> spec.Pendul
 
 
 def physics(part: schemas.Analysis) -> spec.PhysicsRequest:
-    """Build what was asked of the physics."""
+    """Build the choice of physics that a request makes."""
     return spec.PhysicsRequest(
         physics=_choice_of(spec.Physics, part.physics),
         aerodynamic_model=_choice_of(spec.AerodynamicModel, part.aerodynamic_model),

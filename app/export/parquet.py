@@ -8,7 +8,7 @@ from typing import Any
 import pyarrow as pa
 from pyarrow.parquet import ParquetWriter
 
-from app.export.columns import ExportedColumn, Kind
+from app.export.exported_columns import ExportedColumn, Kind
 
 _TYPES: Mapping[Kind, pa.DataType] = {
     "number": pa.float64(),

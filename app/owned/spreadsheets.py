@@ -1,7 +1,7 @@
 """Read the rows of a spreadsheet that was saved as text, as Excel writes it anywhere.
 
-Comma, semicolon or tab between cells, decimal comma or point, byte order mark, UTF-8 or Windows-1252: found from the
-text, and said. Rows keep the numbers that the spreadsheet shows; blank rows are left out.
+Comma, semicolon or tab between cells, decimal comma or point, byte order mark, UTF-8 or Windows-1252: the text shows
+which, and the answer names them. Rows keep the numbers that the spreadsheet shows; blank rows are left out.
 """
 
 import csv

@@ -1,4 +1,4 @@
-"""What all pictures share: drawing, saving, and the look of models and stability."""
+"""What all pictures share: drawing, saving, and the colours and symbols of models and stability."""
 
 import io
 import threading

@@ -1,4 +1,4 @@
-"""A bare conductor as a row of a catalogue: SI figures of a source, and what can be told from them."""
+"""A bare conductor as a row of a catalogue: SI figures of a source, and what follows from them."""
 
 from dataclasses import asdict, dataclass
 from typing import Any

@@ -13,7 +13,7 @@ from app import convert
 from app.answers.batches import BatchErrors, BatchTableName
 from app.batches import line_results
 from app.export import formats
-from app.export.columns import exported_columns
+from app.export.exported_columns import exported_columns
 from app.http.conditional import strong_tag, unless_known
 from app.http.problems import ProblemError, ProblemKind
 from app.routes import batch_documentation, documentation

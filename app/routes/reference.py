@@ -6,7 +6,7 @@ from fastapi import APIRouter, Query
 from fastapi.responses import JSONResponse
 
 from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList
-from app.export.columns import all_tables
+from app.export.exported_columns import all_tables
 from app.http.problems import ProblemKind
 from app.owned import records
 from app.reference import conductors

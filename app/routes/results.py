@@ -12,7 +12,7 @@ from app import convert
 from app.answers.results import ResultDocument, TableName
 from app.batches import batch_records
 from app.export import formats
-from app.export.columns import axis_columns, exported_columns
+from app.export.exported_columns import axis_columns, exported_columns
 from app.export.formats import Format
 from app.http.problems import ProblemError, ProblemKind
 from app.routes import documentation

@@ -78,24 +78,25 @@ class Analysis(Document):
         default=None,
         description="Which velocities change the wind: the vertical one (published, source), or all those of each "
         "sub-conductor (relative_wind, full), which needs ice.aerodynamics_at_rest or a table; table: all of them, by "
-        "a measured table as it stands and about the twist in the wind; null: as physics has it",
+        "a measured table as it stands and about the twist in the wind; null: set by physics",
         examples=["published"],
     )
     aerodynamic_load: Literal["expanded", "unexpanded"] = Field(
         default="expanded",
-        description="Load of the relative wind to third order in the motion, or as it stands, as a table always is",
+        description="Whether the load of the relative wind is expanded to third order in the motion, or evaluated as "
+        "it stands; a measured table is always evaluated as it stands",
         examples=["expanded"],
     )
     longitudinal_inertia: Literal["neglected", "condensed"] | None = Field(
         default=None,
-        description="Longitudinal inertia in the hybrid model: neglected (source), condensed (full); null: as physics "
-        "has it",
+        description="Longitudinal inertia in the hybrid model: neglected (source), condensed (full); null: set by "
+        "physics",
         examples=["neglected"],
     )
     stretching: Literal["neglected", "included"] | None = Field(
         default=None,
         description="Whether large motions stretch the conductors, which stiffens them: neglected (source), included "
-        "(full), which also gives tensions; null: as physics has it",
+        "(full), which also gives tensions; null: set by physics",
         examples=["included"],
     )
     critical_wind_limit: float = quantity(
@@ -125,8 +126,8 @@ class Analysis(Document):
     static_twist: Literal["neglected", "where_large", "solved"] | None = Field(
         default=None,
         description="Whether eccentric ice twists the span at rest: neglected (source), solved, so that mass, weight "
-        "and tables turn with it, or where_large, solved for lines that turn by more than 5 degrees (full); null: as "
-        "physics has it",
+        "and tables turn with it, or where_large, solved for lines that turn by more than 5 degrees (full); null: "
+        "set by physics",
         examples=["neglected"],
     )
     loop_competition: Literal["neglected", "checked"] = Field(

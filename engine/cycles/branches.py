@@ -35,7 +35,7 @@ LEFT = 1.0
 MOST_CUTS = 3  # times that a branch is followed on after the continuation had left it
 LAST = slice(-1, None)
 CELLS = 8  # parts of a segment between two points that are searched for a given wind speed
-LOWEST_WIND = 0.25  # of the lowest wind speed asked for: branches are not followed below it
+LOWEST_WIND = 0.25  # of the lowest requested wind speed: branches are not followed below it
 HIGHEST_WIND = 1.05  # of the highest wind speed: a branch may fold just above it and return
 
 
@@ -55,7 +55,7 @@ def follow_from_hopf_points(
     harmonics : int
         H of the balance.
     winds : (winds,)
-        Wind speeds asked for in rising order [m/s]; branches are followed a little beyond the highest.
+        Requested wind speeds in rising order [m/s]; branches are followed a little beyond the highest.
     """
     member, speed = crossings.member[hopf], crossings.wind_speed[hopf]
     shape = critical_modes(model, member, speed)

@@ -1,4 +1,4 @@
-"""The distinct limit cycles found so far at the wind speeds asked for, and the branches that connect them."""
+"""The distinct limit cycles found so far at the requested wind speeds, and the branches that connect them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Search for all limit cycles at the wind speeds asked for. Theory sections 7.1 to 7.3.
+"""Search for all limit cycles at the requested wind speeds. Theory sections 7.1 to 7.3.
 
 Branches are followed from every Hopf point. Every further cycle that a start leads to is followed in both directions
 until no new cycle appears. Cycles on the same branch, or on branches that share a cycle, form a family.
@@ -57,7 +57,7 @@ class Cycles:
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """What direct integration tells about wind speeds without a stable cycle.
+    """What direct integration finds at wind speeds without a stable cycle.
 
     starts: approximate cycles, of the motions that did not diverge; unbounded: as in `Cycles`.
     """

@@ -1,4 +1,4 @@
-"""Starts of limit cycles from the first harmonic, at every wind speed asked for. Theory section 7.1."""
+"""Starts of limit cycles from the first harmonic, at every requested wind speed. Theory section 7.1."""
 
 from dataclasses import replace
 

@@ -46,7 +46,7 @@ def full_frequencies(modes: FullModes) -> NaturalFrequencies:
 
 
 def frequency_rows(table: NaturalFrequencies, loops: tuple[int, ...]) -> list[list[FrequencyRow]]:
-    """Return the rows of the numbers of loops asked for, one list per line."""
+    """Return the rows of the requested numbers of loops, one list per line."""
     frequency = np.sqrt(np.where(table.squared_frequency > 0.0, table.squared_frequency, np.nan)) / (2.0 * np.pi)
     rows: list[list[FrequencyRow]] = lists_by_line(table.line)
     for member, line in enumerate(table.line.tolist()):

@@ -241,7 +241,7 @@ def _rows(
 ) -> Iterator[tuple[int, Motion]]:
     """Yield rows written from columns, with the line of each. Missing columns and numbers that are not finite are None.
 
-    measures: columns of numbers, which include the amplitudes; told: all others.
+    measures: columns of numbers, which include the amplitudes; labels: all others.
     """
     sag, speed = scales.sag[keys.line], scales.speed[keys.line]
     observed = {k: at.tolist() for k, at in scales.observed.items()}

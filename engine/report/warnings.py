@@ -130,7 +130,7 @@ def _neglected(line: Line, analysis: Analysis) -> str:
         parts.append("the stretching of the conductors by large motion")
     if line.bundle.section is CrossSection.RIGID:
         parts.append("that sub-conductors move along the span by themselves")
-    return "it neglects " + "; ".join(parts) if parts else "every option was said singly"
+    return "it neglects " + "; ".join(parts) if parts else "the request sets every option itself"
 
 
 def _lacks_rest(aerodynamics: Aerodynamics | None) -> bool:
@@ -211,8 +211,8 @@ def fit_warnings(cycles: Sequence[LimitCycleRow], analysis: Analysis) -> list[st
 def motion_warnings(motions: Sequence[LimitCycleRow]) -> list[str]:
     """Return a sentence for each way in which motions go beyond what the input carries, and for missing ones."""
     # An unstable cycle without data to carry it is no motion that anyone would see, so its row says enough.
-    told = (m.outcome for m in motions if (m.outcome, m.stability) != (Outcome.BEYOND_DATA, Stability.UNSTABLE))
-    counts = Counter(told)
+    reported = (m.outcome for m in motions if (m.outcome, m.stability) != (Outcome.BEYOND_DATA, Stability.UNSTABLE))
+    counts = Counter(reported)
     return [text.format(counts[outcome]) for outcome, text in MOTION_WARNINGS.items() if counts[outcome]]
 
 

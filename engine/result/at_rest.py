@@ -53,9 +53,9 @@ class DenHartog:
 
 @dataclass(frozen=True, slots=True)
 class PhysicsRow:
-    """The physics that the analysis had: the set, and the options in force, which may have been said singly."""
+    """The physics of the analysis: the set of options, and the options in force; a request may set each separately."""
 
-    physics: Annotated[Physics, Column("Set that the options belong to unless they were said singly", "full")]
+    physics: Annotated[Physics, Column("Set of options; the request may have set some of them differently", "full")]
     aerodynamic_model: Annotated[AerodynamicModel, Column("Velocities that change the wind", "relative_wind")]
     aerodynamic_load: Annotated[AerodynamicLoad, Column("Whether the load is expanded in the motion", "expanded")]
     longitudinal_inertia: Annotated[
@@ -127,7 +127,7 @@ class StaticEquilibriumRow:
     """
 
     wind_speed_m_per_s: Annotated[float, Column("Wind speed", 10.0, unit="m/s")]
-    equilibrium: Annotated[int, Column("0 for the one that a rising wind finds, then further ones", 0)]
+    equilibrium: Annotated[int, Column("0: the twist that a rising wind leads to; from 1: further stable ones", 0)]
     twist_rad: Annotated[
         float | None, Column("Twist at mid-span; null where no equilibrium was found", 0.0137, unit="rad")
     ]

@@ -203,7 +203,7 @@ class ModelComparisonRow:
 
 @dataclass(frozen=True, slots=True)
 class LoopCompetitionRow:
-    """A stable cycle of the hybrid model, tested with motion in the other loops asked for.
+    """A stable cycle of the hybrid model, tested with motion in the other requested loops.
 
     The growth factor is the largest modulus of the Floquet multipliers except the trivial one.
     """

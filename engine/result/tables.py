@@ -67,7 +67,7 @@ class Tables:
     placements: Annotated[tuple[PlacedDeviceRow, ...], Title("Devices that a search has placed")] = ()
     followed_cycles: Annotated[
         tuple[FollowedCycleRow, ...],
-        Title("Cycles on branches over the field of a study; empty unless it has follow"),
+        Title("Cycles on branches over the field of a study; empty without follow"),
     ] = ()
     followed_bifurcations: Annotated[
         tuple[FollowedBifurcationRow, ...],

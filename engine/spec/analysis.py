@@ -74,7 +74,7 @@ class StaticTwist(StrEnum):
 
 
 class LoopCompetition(StrEnum):
-    """Whether stable cycles of the hybrid model are tested against small motions in the other loops asked for."""
+    """Whether stable cycles of the hybrid model are tested against small motions in the other requested loops."""
 
     NEGLECTED = "neglected"
     CHECKED = "checked"
@@ -88,7 +88,7 @@ class DeviceEffect(StrEnum):
 
 
 class AmplitudeCurves(StrEnum):
-    """Whether branches of limit cycles are reported point by point, besides the wind speeds asked for."""
+    """Whether branches of limit cycles are reported point by point, besides the requested wind speeds."""
 
     NEGLECTED = "neglected"
     REPORTED = "reported"
@@ -199,7 +199,7 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     ------
     InvalidSpec
         If the line has fewer elements than loops are asked for, the published closure is asked for with a wind profile,
-        the relative wind is asked for without coefficients at rest, or a table that is none or has gaps.
+        the relative wind is asked for without coefficients at rest, or the table model with no table or one with gaps.
     """
     most = max(analysis.loops + analysis.finite_element_loops)
     published = analysis.closure is Closure.PUBLISHED

@@ -1,4 +1,4 @@
-"""Which physics an analysis has: that of the source, or the full one; each option may be said by itself, too.
+"""Which physics an analysis has, the source's or the full one; a request may also set each option separately.
 
 How the sub-conductors move along the span belongs to the physics as well, but to each line.
 """
@@ -41,7 +41,7 @@ _SECTIONS = {Physics.SOURCE: CrossSection.RIGID, Physics.FULL: CrossSection.FREE
 
 @dataclass(frozen=True, slots=True)
 class PhysicsRequest:
-    """What was asked for: physics, None if the data of the line decide, and options, None as physics has them."""
+    """The physics of a request: None lets the data of the line decide; an option that is None is set by the physics."""
 
     physics: Physics | None = None
     aerodynamic_model: AerodynamicModel | None = None
@@ -51,9 +51,9 @@ class PhysicsRequest:
 
 
 def with_physics(line: Line, analysis: Analysis, asked: PhysicsRequest) -> Analysis:
-    """Return an analysis with the physics asked for.
+    """Return an analysis with the physics that a request chooses.
 
-    If none was asked for, it is full where the line's coefficients at rest are known, as full physics needs them, and
+    If it chooses none, it is full where the line's coefficients at rest are known, as full physics needs them, and
     that of the source elsewhere. The published closure belongs to the source.
 
     Raises

@@ -34,7 +34,7 @@ def place(line: Line, analysis: Analysis, placement: Placement) -> Generator[Pro
     """Search for the best places, then analyse the line without and with the devices.
 
     The objective comes from the hybrid model at all loops asked for: the lowest onset, or the largest amplitude of a
-    stable motion at the wind speeds asked for. Devices already on the line stay where they are.
+    stable motion at the requested wind speeds. Devices already on the line stay where they are.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Search for quasi-periodic motions at the wind speeds asked for, with their stability. Theory section 7.3.
+"""Search for quasi-periodic motions at the requested wind speeds, with their stability. Theory section 7.3.
 
 Tori bifurcate from cycles at torus points and are followed over the wind speed from there. At a wind speed where no
 stable motion is known after that, the unstable cycles are tried as well, modulated by the disturbance that grows on

@@ -16,7 +16,7 @@ from app.answers.batches import BatchTableName
 from app.answers.results import ResultDocument, TableName
 from app.answers.rows import row_schema, with_tables
 from app.convert.run import point_results
-from app.export.columns import exported_columns
+from app.export.exported_columns import exported_columns
 from app.export.formats import csv_text
 from app.export.parquet import parquet_bytes
 from app.runtime.settings import Settings

@@ -5,7 +5,7 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from app.export.columns import ExportedColumn
+from app.export.exported_columns import ExportedColumn
 from app.export.parquet import parquet_bytes
 
 COLUMNS = [

@@ -5,7 +5,7 @@ import pytest
 from app import convert
 from app.answers.results import ResultDocument
 from app.batches import line_results
-from app.export.columns import ExportedColumn, axis_columns, exported_columns
+from app.export.exported_columns import ExportedColumn, axis_columns, exported_columns
 
 
 @pytest.mark.parametrize("table", [*convert.TABLES, "summary"])
