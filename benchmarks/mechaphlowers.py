@@ -1,4 +1,4 @@
-"""The statics of a span in mechaphlowers, an independent code: catenaries of elastic conductors between dead ends."""
+"""The statics of spans in mechaphlowers, an independent code: catenaries of elastic conductors between dead ends."""
 
 import warnings
 from dataclasses import dataclass
@@ -58,14 +58,35 @@ def horizontal_tension(cable: HungCable, weather: Weather) -> float:
     mechaphlowers gives it along the projection of the span on the turned plane of the sag, where a level difference has
     a part across the line.
     """
+    engine = _balanced(cable, weather)
+    across = cable.level_difference * np.sin(engine.cable_loads.load_angle[0])
+    return float(engine.span_model.T_h()[0] * cable.length / np.hypot(cable.length, across))
+
+
+def section_tensions(
+    cable: HungCable, lengths: tuple[float, ...], string: tuple[float, float], weather: Weather
+) -> list[float]:
+    """Return the tension of every level span of a section between dead ends in another state [N].
+
+    string: length [m] and mass [kg] of each suspension string, plumb at first; the cable's own length is not used.
+    """
+    engine = _balanced(cable, weather, lengths, string)
+    return [float(tension) for tension in engine.span_model.T_h()[: len(lengths)]]
+
+
+def _balanced(
+    cable: HungCable,
+    weather: Weather,
+    lengths: tuple[float, ...] = (),
+    string: tuple[float, float] = (0.0, 0.0),
+) -> BalanceEngine:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # it warns of strings without length, which are the dead ends here
-        engine = BalanceEngine(_cable(cable), _section(cable))
+        engine = BalanceEngine(_cable(cable), _section(cable, lengths, string))
         engine.cable_loads.ice_density = weather.ice_weight
         engine.solve_adjustment()
         engine.solve_change_state(weather.wind_pressure, weather.ice_thickness, weather.temperature)
-        across = cable.level_difference * np.sin(engine.cable_loads.load_angle[0])
-        return float(engine.span_model.T_h()[0] * cable.length / np.hypot(cable.length, across))
+    return engine
 
 
 def _cable(cable: HungCable) -> CableArray:
@@ -85,18 +106,21 @@ def _cable(cable: HungCable) -> CableArray:
     return CableArray(pd.DataFrame([row | dict.fromkeys(UNUSED, 0.0)]))
 
 
-def _section(cable: HungCable) -> SectionArray:
-    ends = pd.DataFrame(
+def _section(cable: HungCable, lengths: tuple[float, ...], string: tuple[float, float]) -> SectionArray:
+    """Return the spans of these lengths, or the cable's own."""
+    spans = lengths or (cable.length,)
+    ends, inner = len(spans) + 1, len(spans) - 1
+    supports = pd.DataFrame(
         {
-            "name": ["left", "right"],
-            "suspension": [False, False],
-            "conductor_attachment_altitude": [1000.0, 1000.0 + cable.level_difference],
-            "crossarm_length": [0.0, 0.0],
-            "line_angle": [0.0, 0.0],
-            "insulator_length": [0.0, 0.0],
-            "insulator_mass": [0.0, 0.0],
-            "span_length": [cable.length, np.nan],
+            "name": [str(i) for i in range(ends)],
+            "suspension": [False, *[True] * inner, False],
+            "conductor_attachment_altitude": [1000.0, *[1000.0] * inner, 1000.0 + cable.level_difference],
+            "crossarm_length": [0.0] * ends,
+            "line_angle": [0.0] * ends,
+            "insulator_length": [0.0, *[string[0]] * inner, 0.0],
+            "insulator_mass": [0.0, *[string[1]] * inner, 0.0],
+            "span_length": [*spans, np.nan],
         }
     )
     parameter = cable.horizontal_tension / (cable.mass * GRAVITY)
-    return SectionArray(ends, sagging_parameter=parameter, sagging_temperature=cable.temperature)
+    return SectionArray(supports, sagging_parameter=parameter, sagging_temperature=cable.temperature)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from benchmarks.validation import (
     bifurcations,
+    changes_of_state,
     completeness,
     critical_wind_speeds,
     device_placement,
@@ -49,6 +50,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "tables": tables.section,
     "relative_wind": relative_wind.section,
     "static_state": static_state.section,
+    "changes_of_state": changes_of_state.section,
     "static_twist": static_twist.section,
     "stretching": stretching.section,
     "full_physics": full_physics.section,
