@@ -46,6 +46,9 @@ class LineSummary(Answer):
     largest_width_m: float | None = described(
         "Largest width of the space that the sub-conductors sweep in a stable motion [m]", 0.4908
     )
+    unknown_motions: bool = described(
+        "Whether a motion is unknown or unbounded at some wind speed; amplitude, height and width are then null", False
+    )
     engine_version: str | None = described("Version of the computation", "0.1.0")
 
 
@@ -63,6 +66,9 @@ class RankedLine(Answer):
     )
     largest_width_m: float | None = described(
         "Largest width of the space that the sub-conductors sweep in a stable motion [m]", 0.4908
+    )
+    unknown_motions: bool = described(
+        "Whether a motion is unknown or unbounded at some wind speed; amplitude, height and width are then null", False
     )
     margin_m_per_s: float | None = described("Critical minus design wind speed; null unless ranked by it [m/s]", -2.597)
     clearance_m: float | None = described("Spacing minus height or width; null unless ranked by it [m]", 3.6864)

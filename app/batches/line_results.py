@@ -9,7 +9,14 @@ from sqlalchemy import Row, and_, select
 from sqlalchemy.orm import Session
 
 from app import convert
-from app.storage.stored_results import RANKING_FIGURES, STATIC, tables_of, unpacked
+from app.storage.stored_results import (
+    RANKING_FIGURES,
+    STATIC,
+    UNKNOWN_MOTIONS,
+    ranking_columns,
+    tables_of,
+    unpacked,
+)
 from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
 
 _LINES_A_FETCH = 200
@@ -21,7 +28,7 @@ _HARTOG = ("den_hartog_coefficient", "den_hartog_unstable")
 def columns(table: str) -> list[str]:
     """Return the names of a table's columns in order."""
     if table == "summary":
-        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *RANKING_FIGURES, "engine_version"]
+        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *RANKING_FIGURES, UNKNOWN_MOTIONS, "engine_version"]
     return [*_LABELS, *convert.columns(table)]
 
 
@@ -88,7 +95,9 @@ def _summary(item: Row[Any]) -> dict[str, Any]:
         **_labels(item),
         "status": state["status"],
         "failure": state["failure"]["detail"] if state["failure"] else None,
-        **{name: getattr(item, name) for name in (*STATIC, *_HARTOG, *RANKING_FIGURES, "engine_version")},
+        **{name: getattr(item, name) for name in (*STATIC, *_HARTOG)},
+        **ranking_columns(item),
+        "engine_version": item.engine_version,
     }
 
 

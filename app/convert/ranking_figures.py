@@ -1,5 +1,6 @@
 """The figures by which the lines of a batch are ranked, from the results of each line."""
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -20,9 +21,10 @@ _Room = tuple[float, float]
 def ranking_figures(lines: Sequence[spec.Line], results: Sequence[Result]) -> list[dict[str, float | None]]:
     """Return the lowest critical wind speed of each line, and its largest stable motion at the analysis' wind speeds.
 
-    Height and width [m] bound the space that the sub-conductors sweep at the observation point. A figure is None if it
-    is unknown: no crossing up to the limit, or no motion with known stability. A line that is unstable without wind has
-    the critical wind speed 0.
+    Height and width [m] bound the space that the sub-conductors sweep at the observation point. A line with a motion
+    without numbers at any wind speed, because it is not known or nothing bounds it, has infinite figures, so that it
+    ranks before all others. A line that is unstable without wind has the critical wind speed 0 besides. None: no
+    crossing up to the limit, or no wind speed asked for.
     """
     lasting = [_lasting(result) for result in results]
     moving = [place for place, motions in enumerate(lasting) if motions]
@@ -43,6 +45,8 @@ def _figures(result: Result, lasting: Sequence[_Motion], room: _Room | None) -> 
     winds += [0.0 for row in result.frequencies if row.outcome is Outcome.STATICALLY_UNSTABLE]
     amplitudes = [row.vertical_m for row, _ in lasting if row.vertical_m is not None]
     height, width = room or (None, None)
+    if any(row.vertical_m is None for row in result.limit_cycles):
+        amplitudes, height, width = [math.inf], math.inf, math.inf
     return {
         "lowest_critical_wind_speed_m_per_s": min(winds, default=None),
         "largest_vertical_m": max(amplitudes, default=None),

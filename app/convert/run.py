@@ -213,7 +213,7 @@ def point_results(
             axes=values,
             static=_finite(asdict(result.static)),
             den_hartog=_finite(asdict(result.den_hartog)),
-            ranking_figures=_finite(figures),
+            ranking_figures=figures,
             tables_json=_json({name: getattr(result, name) for name in TABLES}),
             orbits_json=_json(result.orbits),
             warnings=list(result.warnings),

@@ -1,5 +1,6 @@
 """Rank the lines of a batch by amplitude, by margin of the critical wind speed, or by clearance between phases."""
 
+import math
 from typing import Annotated, Any, Literal, Self
 from urllib.parse import urlencode
 from uuid import UUID
@@ -18,7 +19,7 @@ from app.routes import batch_documentation, documentation
 from app.routes.batch_status import batch_address, require_results
 from app.routes.dependencies import PREFIX, CallerOf, Readers, SettingsOf
 from app.runtime.settings import signing_key
-from app.storage.stored_results import RANKING_FIGURES
+from app.storage.stored_results import ranking_columns
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
@@ -93,7 +94,10 @@ def rank_lines(
 ) -> JSONResponse:
     """Return one page of the lines, most critical first; `next` is the address of the next page.
 
-    Lines without the figure are left out, for example a line without a critical wind speed up to the limit.
+    A line whose motion is unknown or unbounded at any wind speed comes first by amplitude and clearance, with
+    `unknown_motions`; one that is unstable without wind comes first by margin. Left out are lines without a critical
+    wind speed up to the limit (by margin), lines analysed without wind speeds (otherwise), and failed ones, which the
+    status of the batch counts.
     """
     query, key = ranking_query.checked(), signing_key(settings)
     order = query.order()
@@ -116,15 +120,21 @@ def _line(query: RankingQuery, rank: int, row: Row[Any]) -> dict[str, Any]:
     if query.design_wind_speed_m_per_s is not None:
         margin = row.lowest_critical_wind_speed_m_per_s - query.design_wind_speed_m_per_s
     if query.vertical_spacing_m is not None:
-        clearance = query.vertical_spacing_m - row.largest_height_m
+        clearance = _left(query.vertical_spacing_m, row.largest_height_m)
     elif query.horizontal_spacing_m is not None:
-        clearance = query.horizontal_spacing_m - row.largest_width_m
+        clearance = _left(query.horizontal_spacing_m, row.largest_width_m)
     return {
         "rank": rank,
-        **{name: getattr(row, name) for name in ("number", "reference", "asset_id", *RANKING_FIGURES)},
+        **{name: getattr(row, name) for name in ("number", "reference", "asset_id")},
+        **ranking_columns(row),
         "margin_m_per_s": margin,
         "clearance_m": clearance,
     }
+
+
+def _left(spacing: float, taken: float) -> float | None:
+    """Return what a motion leaves of the spacing [m], None where the motion is unknown."""
+    return None if math.isinf(taken) else spacing - taken
 
 
 def _place(key: bytes, batch_id: UUID, order: Order, cursor: str | None) -> Place | None:

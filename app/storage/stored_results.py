@@ -1,5 +1,6 @@
 """Results in SQL: one row for each point, stored when its job ends and unpacked into the rows of the result tables."""
 
+import math
 import threading
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 STATIC = tuple(columns_of(StaticState))
 RANKING_FIGURES = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
+UNKNOWN_MOTIONS = "unknown_motions"
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100
 _THREAD = threading.local()
@@ -37,6 +39,14 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"],
         place = {"job_id": job_id, "batch_id": batch_id}
         compressor = zstandard.ZstdCompressor(level=_LEVEL)
         insert_rows(session, PointRow, [{**place, **_as_columns(point, compressor)} for point in points_found])
+
+
+def ranking_columns(row: Any) -> dict[str, float | bool | None]:
+    """Return the ranking figures of a stored point as they are shown, where infinite ones are unknown."""
+    figures = {name: getattr(row, name) for name in RANKING_FIGURES}
+    unknown = any(value is not None and math.isinf(value) for value in figures.values())
+    shown = {name: None if value is not None and math.isinf(value) else value for name, value in figures.items()}
+    return {**shown, UNKNOWN_MOTIONS: unknown}
 
 
 def unpacked(packed: bytes | None) -> bytes:

@@ -1,3 +1,4 @@
+import math
 import random
 from dataclasses import replace
 from uuid import UUID, uuid4
@@ -32,7 +33,7 @@ def filled(sessions: sessionmaker[Session], seed: int) -> tuple[UUID, dict[int, 
             _, lines = batch_records.lines_of_chunk(session, chunk, batch_id)
             for line in lines:
                 figures[line.number] = {
-                    name: draw.choice([None, 0.1 + 0.2, 1.5, 2.5, 1e-300]) for name in RANKING_FIGURES
+                    name: draw.choice([None, 0.1 + 0.2, 1.5, 2.5, 1e-300, math.inf]) for name in RANKING_FIGURES
                 }
             found = [replace(point_result(line.number), ranking_figures=figures[line.number]) for line in lines]
             assert leases.finish(session, held, found)

@@ -1,3 +1,4 @@
+import copy
 import math
 from typing import Any
 
@@ -62,8 +63,21 @@ def test_a_line_that_is_unstable_without_wind_has_the_critical_wind_speed_0() ->
     point = found(line, [4.0])
     assert point.tables["frequencies"][0]["outcome"] == "statically_unstable"
     assert point.ranking_figures["lowest_critical_wind_speed_m_per_s"] == 0.0
-    assert point.ranking_figures["largest_vertical_m"] is None
-    assert point.ranking_figures["largest_height_m"] is None
+    assert point.ranking_figures["largest_vertical_m"] == math.inf
+    assert point.ranking_figures["largest_height_m"] == math.inf
+
+
+def test_a_motion_that_nothing_bounds_outweighs_the_known_ones() -> None:
+    """The source's twin with a vertical cubic of the wrong sign: at rest at 1 m/s, unbounded at 4 m/s."""
+    line = copy.deepcopy(TWIN)
+    line["ice"]["aerodynamics"]["vertical"][2] = -8.3581
+    calm = found(line, [1.0]).ranking_figures
+    assert calm["largest_vertical_m"] == 0.0
+    point = found(line, [1.0, 4.0])
+    outcomes = {row["outcome"] for row in point.tables["limit_cycles"] if row["wind_speed_m_per_s"] == 4.0}
+    assert outcomes - {"converged"}
+    assert point.ranking_figures["largest_vertical_m"] == math.inf
+    assert point.ranking_figures["largest_width_m"] == math.inf
 
 
 def test_lines_side_by_side_have_the_peaks_that_each_has_alone() -> None:
@@ -80,7 +94,7 @@ def test_lines_side_by_side_have_the_peaks_that_each_has_alone() -> None:
         for name, value in alone.items():
             assert point.ranking_figures[name] == (None if value is None else pytest.approx(value, rel=1e-6, abs=1e-12))
     widths = [point.ranking_figures["largest_width_m"] for point in points]
-    assert widths[1] is None
+    assert widths[1] == math.inf
     assert len(set(widths)) == len(widths)
 
 

@@ -1,3 +1,5 @@
+import csv
+import io
 from typing import Any
 
 import httpx
@@ -96,3 +98,27 @@ def test_a_ranking_waits_for_the_end_unless_a_partial_one_is_asked_for(shared_cl
 def test_there_is_no_ranking_of_no_batch(shared_client: httpx.Client, address: str) -> None:
     other = address[:-1] + ("0" if address[-1] != "0" else "1")
     assert shared_client.get(f"{other}/ranking?by=amplitude").status_code == 404
+
+
+def test_a_line_whose_motion_is_unknown_ranks_before_the_others(
+    shared_client: httpx.Client, shared_settings: Settings
+) -> None:
+    """At 4 m/s nothing in the equations bounds the motion of the second line; at 1 m/s both rest."""
+    unbounded = changed("ice.aerodynamics.vertical", [-0.1667, -4.0547, -8.3581], TWIN)
+    lines = [{**TWIN, "reference": "known"}, {**unbounded, "reference": "unknown"}]
+    analysis = {**SHORT, "wind_speeds_m_per_s": [1.0, 4.0]}
+    answer = shared_client.post("/v1/batches", json={"lines": lines, "analysis": analysis})
+    assert answer.status_code == 202, answer.text
+    work_off(shared_client, shared_settings, answer.headers["location"])
+    for query in ({"by": "amplitude"}, {"by": "clearance", "vertical_spacing_m": 3.0}):
+        first, second = ranked(shared_client, answer.headers["location"], **query)
+        assert (first["reference"], first["unknown_motions"]) == ("unknown", True)
+        assert first["largest_vertical_m"] is first["largest_height_m"] is first["clearance_m"] is None
+        assert (second["reference"], second["unknown_motions"]) == ("known", False)
+        assert second["largest_vertical_m"] > 0.1
+    text = shared_client.get(f"{answer.headers['location']}/results", params={"format": "csv"}).text
+    rows = list(csv.DictReader(io.StringIO(text)))
+    assert [(row["unknown_motions"], bool(row["largest_vertical_m"])) for row in rows] == [
+        ("False", True),
+        ("True", False),
+    ]
