@@ -19,7 +19,7 @@ RIGID = InterphaseSpacer(31.0, 20.0, ("this", "top"))
 ELASTIC = replace(RIGID, axial_stiffness=3e3)
 
 
-def profile_of(line: Line):
+def profile_of(line: Line) -> StaticProfile:
     return static_profile(tied_lines(line))
 
 
