@@ -34,6 +34,7 @@ from app.routes import (
     explorer,
     health,
     jobs,
+    lines,
     own_conductors,
     reference,
     results,
@@ -109,7 +110,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
     problems.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
     app.add_middleware(HeadAsGet)
-    for module in (jobs, results, batch_intake, batches, batch_results, batch_ranking, clearance):
+    for module in (jobs, lines, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)
     for module in (events, deliveries, aerodynamics, own_conductors, reference, health, explorer):
         app.include_router(module.router)

@@ -19,6 +19,7 @@ for command in (
     service.submit,
     lines.example,
     lines.ellipse,
+    lines.resolve,
     catalogue.conductors,
     catalogue.ice_shapes,
     operate.status,

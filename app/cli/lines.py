@@ -1,4 +1,4 @@
-"""Commands that need no service: `galloping analyse`, `example` and `ellipse`."""
+"""Commands that need no service: `galloping analyse`, `resolve`, `example` and `ellipse`."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
 import json
@@ -49,6 +49,18 @@ def analyse(
     except (ArithmeticError, ValueError) as error:
         end(f"the computation failed: {error}", FAILED)
     write(_result(complete, points), output)
+
+
+def resolve(line: LineFile, output: OutputFile = None) -> None:
+    """Print the explicit line of one as an engineer knows it, and where each of its values came from."""
+    from app import convert
+    from app.schemas.faults import BadInput
+
+    document = read_request(line, None, None)
+    try:
+        write(convert.resolve_document(document["line"]), output)
+    except BadInput as error:
+        refuse(error.faults)
 
 
 def example(

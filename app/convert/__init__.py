@@ -3,6 +3,7 @@
 from app.convert.check import read, request_faults, with_further_faults
 from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
+from app.convert.known import OwnRows, resolve_document, resolve_line
 from app.convert.mode_shapes import mode_shapes
 from app.convert.run import Advance, PointResult, run
 from app.convert.stack import STACK, NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
@@ -20,6 +21,7 @@ __all__ = [
     "DenHartog",
     "EllipseMethodName",
     "NumberedLine",
+    "OwnRows",
     "PointResult",
     "StaticState",
     "Table",
@@ -36,6 +38,8 @@ __all__ = [
     "read_analysis",
     "read_line",
     "request_faults",
+    "resolve_document",
+    "resolve_line",
     "run",
     "run_stack",
     "seconds_a_line",

@@ -9,6 +9,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
+from app.convert import OwnRows
 from app.reference.catalogue_row import CatalogueRow, name_key
 from app.storage.database import database_time
 from app.tables import OwnAerodynamics, OwnConductor
@@ -77,6 +78,12 @@ def remove(session: Session, table: type[Kept], owner: str, row_id: UUID) -> boo
 def conductor_rows(session: Session, owner: str) -> list[CatalogueRow]:
     """Return the owner's conductors as rows of the catalogue."""
     return [catalogue_row(row) for row in kept(session, OwnConductor, owner)]
+
+
+def own_rows(session: Session, owner: str) -> OwnRows:
+    """Return what lines of an owner may name."""
+    tables = {row.name: row.document for row in kept(session, OwnAerodynamics, owner)}
+    return OwnRows(conductor_rows(session, owner), tables)
 
 
 def catalogue_row(row: OwnConductor) -> CatalogueRow:

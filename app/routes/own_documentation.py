@@ -1,7 +1,8 @@
-"""OpenAPI examples and bodies of what an owner keeps."""
+"""OpenAPI examples and bodies of what an owner keeps, and of lines as engineers know them."""
 
 from typing import Any
 
+from app.answers.lines import ResolvedLine
 from app.answers.owned import OwnConductorRow
 from app.answers.reference import ConductorRow
 from app.schemas.fields import example_of
@@ -21,3 +22,22 @@ SHEET_BODY: dict[str, Any] = {
         "content": {"text/csv": {"schema": {"type": "string"}, "example": SHEET}},
     }
 }
+
+KNOWN_LINE: dict[str, Any] = {
+    "name": "twin Drake, 300 m",
+    "conductor": {"catalogue": "Drake"},
+    "bundle": {"subconductors": 2, "spacing_m": 0.457, "arrangement": "horizontal"},
+    "span": {
+        "length_m": {"value": 1000.0, "unit": "ft"},
+        "temperature_c": -5.0,
+        "everyday": {"temperature_c": 15.0, "share_of_rated_strength": 0.2},
+    },
+    "ice": {
+        "accretion": {"shape": "crescent", "thickness_m": 0.012, "kind": "glaze"},
+        "aerodynamics": {"catalogue": "c11-40"},
+    },
+}
+KNOWN_LINES: dict[str, Any] = {
+    "twin-drake": {"summary": "What a utility knows of a twin Drake under 12 mm of glaze", "value": KNOWN_LINE}
+}
+RESOLVED: dict[str, Any] = example_of(ResolvedLine)

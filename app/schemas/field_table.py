@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
+from pydantic import BaseModel
+
 from app.schemas import JobRequest
 
 _Schema = Mapping[str, Any]
@@ -17,6 +19,12 @@ def input_fields() -> tuple[dict[str, Any], ...]:
     """
     document = JobRequest.model_json_schema(by_alias=True)
     return tuple(_fields("", _inlined(document, document["$defs"])))
+
+
+def field_names(model: type[BaseModel]) -> list[str]:
+    """Return the dotted names of all fields of a document, in its order."""
+    document = model.model_json_schema(by_alias=True)
+    return [row["name"] for row in _fields("", _inlined(document, document["$defs"]))]
 
 
 def _inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:

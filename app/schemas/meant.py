@@ -70,9 +70,11 @@ def _wrapped(path: Sequence[str], name: str) -> str:
 
 @cache
 def _names() -> tuple[str, ...]:
-    from app.schemas.field_table import input_fields  # noqa: PLC0415 - that table is made of all schemas
+    from app.schemas.field_table import field_names, input_fields  # noqa: PLC0415 - they are made of all schemas
+    from app.schemas.known import KnownLine  # noqa: PLC0415 - see above
 
-    return tuple(dict.fromkeys(re.sub(r"\[[^]]*\]", "", row["name"]) for row in input_fields()))
+    names = [*(row["name"] for row in input_fields()), *(f"line.{name}" for name in field_names(KnownLine))]
+    return tuple(dict.fromkeys(re.sub(r"\[[^]]*\]", "", name) for name in names))
 
 
 def _siblings(path: Sequence[str]) -> list[str]:

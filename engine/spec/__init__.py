@@ -23,11 +23,9 @@ from engine.spec.analysis import (
     check_compatible,
 )
 from engine.spec.devices import (
-    THIS,
     AirflowSpoiler,
     DetuningPendulum,
     Device,
-    InterphaseSpacer,
     PointDevice,
     Spacer,
     StretchDevice,
@@ -48,7 +46,6 @@ from engine.spec.environment import (
     Wind,
 )
 from engine.spec.line import Line, ice_properties
-from engine.spec.phases import Phase, own_line
 from engine.spec.physics import PhysicsRequest, with_physics, with_section
 from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
 from engine.spec.section import Section, SectionSpan, SuspensionString
@@ -57,7 +54,6 @@ from engine.spec.span import Bundle, Conductor, CrossSection, Span, Support, Sup
 __all__ = [
     "CLOSED",
     "GRAVITY",
-    "THIS",
     "TURN",
     "AerodynamicLoad",
     "AerodynamicModel",
@@ -79,7 +75,6 @@ __all__ = [
     "DeviceEffect",
     "Ice",
     "IceSegment",
-    "InterphaseSpacer",
     "Line",
     "LongitudinalInertia",
     "LoopCompetition",
@@ -87,7 +82,6 @@ __all__ = [
     "Model",
     "Objective",
     "PendulumChoice",
-    "Phase",
     "Physics",
     "PhysicsRequest",
     "Placement",
@@ -110,7 +104,6 @@ __all__ = [
     "check_compatible",
     "check_placement",
     "ice_properties",
-    "own_line",
     "with_physics",
     "with_section",
 ]

@@ -9,6 +9,7 @@ from pydantic import BaseModel
 from app import convert, schemas
 from app.export.formats import PARQUET
 from app.main import create_app
+from app.schemas import known
 from app.schemas.batch import BatchRequest
 from tests.app import service
 from tests.app.answer_modules import ANSWER_MODULES
@@ -38,7 +39,7 @@ def bodies(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]
 
 def model_of(content: dict[str, Any]) -> type[BaseModel] | None:
     name = content.get("schema", {}).get("$ref", "").rpartition("/")[2]
-    found = next((getattr(module, name) for module in (schemas, *ANSWER_MODULES) if hasattr(module, name)), None)
+    found = next((getattr(module, name) for module in (schemas, known, *ANSWER_MODULES) if hasattr(module, name)), None)
     return found if isinstance(found, type) and issubclass(found, BaseModel) else None
 
 

@@ -15,6 +15,7 @@ from app.reference.source_studies import study_request
 from app.runtime.settings import Settings
 from app.schemas.placement import EXAMPLE
 from tests.app.command_line import galloping, refused
+from tests.app.known_documents import CONTRACT
 from tests.app.lines import SHORT, changed
 from tests.documents import short_request
 from tests.processes import running_worker
@@ -266,3 +267,17 @@ def test_a_service_that_is_not_there_is_said_so(tmp_path: Path, url: str) -> Non
     assert ended.returncode == 1
     assert address in ended.stderr
     assert "Traceback" not in ended.stderr
+
+
+def test_a_line_is_resolved_wrapped_or_not(tmp_path: Path) -> None:
+    for document in (CONTRACT, {"line": CONTRACT}):
+        ended = galloping("resolve", written(tmp_path, "line", document))
+        assert ended.returncode == 0, ended.stderr
+        found = json.loads(ended.stdout)
+        assert found["line"]["conductor"]["diameter_m"] == 0.02814
+        assert {row["origin"] for row in found["assumptions"]} == {"given", "catalogue", "computed", "assumed"}
+
+
+def test_a_line_that_cannot_be_resolved_is_refused(tmp_path: Path) -> None:
+    wrong = {**CONTRACT, "conductor": {"catalogue": "Drak"}}
+    assert "/conductor/catalogue: must name" in refused("resolve", written(tmp_path, "line", wrong))

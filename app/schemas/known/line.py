@@ -1,0 +1,94 @@
+"""The whole line as an engineer knows it."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from app.schemas.devices import Device
+from app.schemas.environment import Damping, Wind
+from app.schemas.fields import Document, Label, TagKey, quantity
+from app.schemas.known.ice import ACCRETION, KnownIce
+from app.schemas.known.parts import KnownBundle, KnownConductor, KnownSpan, as_in
+from app.schemas.line import Line, Supports
+
+_CLEARANCE = (0.0, 50.0)
+_EVERYDAY = {"temperature_c": 15.0, "share_of_rated_strength": 0.2}
+
+
+class KnownDamping(Document):
+    """Structural damping; a ratio that is not said is assumed."""
+
+    vertical_ratio: float | None = as_in(Damping, "vertical_ratio")
+    horizontal_ratio: float | None = as_in(Damping, "horizontal_ratio")
+    torsional_ratio: float | None = as_in(Damping, "torsional_ratio")
+    model: Literal["constant_coefficient", "constant_ratio"] = Field(
+        default="constant_coefficient",
+        description="Quantity that is the same for every number of loops",
+        examples=["constant_coefficient"],
+    )
+
+
+class Phase(Document):
+    """Another phase or wire beside this one."""
+
+    name: Label = Field(description="Name to show to people", examples=["top"])
+    y: float = quantity("y_m", "Height of its attachment above this one's", "m", (-200.0, 200.0), 7.0)
+    z: float = quantity("z_m", "Distance of its attachment downwind of this one's", "m", (-200.0, 200.0), 0.0, 0.0)
+    required_clearance: float | None = quantity(
+        "required_clearance_m", "Required clearance to it; that of the line if null", "m", _CLEARANCE, 1.2, None
+    )
+
+
+class KnownLine(Document):
+    """One span as an engineer knows it; what is not said is estimated, and listed with its range."""
+
+    name: Label | None = Field(default=None, description="Name to show to people", examples=["L204, span 17"])
+    asset_id: Label | None = Field(default=None, description="Identity in the owner's records", examples=["L204-S017"])
+    tags: Annotated[dict[TagKey, Label], Field(max_length=50)] = Field(
+        default={}, description="Labels for finding jobs; a key contains no colon", examples=[{"region": "north"}]
+    )
+    conductor: KnownConductor = Field(description="One sub-conductor", examples=[{"catalogue": "Drake"}])
+    bundle: KnownBundle = Field(
+        default=KnownBundle(subconductors=1),
+        description="Arrangement of the sub-conductors; a single one if absent",
+        examples=[{"subconductors": 2, "spacing_m": 0.457, "arrangement": "horizontal"}],
+    )
+    span: KnownSpan = Field(
+        description="Length and tension",
+        examples=[{"length_m": 300.0, "temperature_c": -5.0, "everyday": _EVERYDAY}],
+    )
+    supports: Supports = Field(
+        default=Supports(),
+        description="Supports at both ends",
+        examples=[{"left": {"adjacent_span_m": 280.0, "insulator_length_m": 2.4}}],
+    )
+    ice: KnownIce = Field(
+        description="Ice on the span", examples=[{"accretion": ACCRETION, "aerodynamics": {"catalogue": "c11-40"}}]
+    )
+    wind: Wind | None = Field(
+        default=None, description="The wind, except its speed", examples=[Line.model_fields["wind"].examples]
+    )
+    damping: KnownDamping = Field(
+        default=KnownDamping(), description="Structural damping, assumed if absent", examples=[{"torsional_ratio": 0.1}]
+    )
+    devices: list[Device] = Field(
+        default=[],
+        max_length=200,
+        description="What is mounted on the span",
+        examples=[[{"type": "spacer", "position_m": 60.0, "mass_kg": 6.5, "polar_inertia_kg_m2": 0.4}]],
+    )
+    phases: list[Phase] = Field(
+        default=[],
+        max_length=50,
+        description="Other phases and wires; kept as they are",
+        examples=[[{"name": "top", "y_m": 7.0, "z_m": 0.0}]],
+    )
+    required_clearance: float | None = quantity(
+        "required_clearance_m", "Required clearance to other phases; kept as it is", "m", _CLEARANCE, 1.5, None
+    )
+    design_wind: float | None = quantity(
+        "design_wind_m_per_s", "Wind speed of design; kept as it is", "m/s", (0.1, 100.0), 10.0, None
+    )
+    climate: dict[str, Any] | None = Field(
+        default=None, description="Climate of the line; kept as it is", examples=[{"icing_events_per_year": 2.0}]
+    )
