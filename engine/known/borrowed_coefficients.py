@@ -9,7 +9,7 @@ from engine.known.provenance import Assumption, Origin, Provenance, assumed, com
 from engine.spec import Aerodynamics, Coefficients
 
 _PATH = "ice.aerodynamics"
-_AT_REST = (
+AT_REST = (
     ("vertical", Estimate(0.0, "", -0.3, 0.3, "assumed: no lift at rest; range -0.3 to 0.3")),
     ("horizontal", Estimate(1.0, "", 0.7, 1.6, "assumed: the drag of a rough cylinder; range 0.7 to 1.6")),
     ("torsional", Estimate(0.0, "", -0.1, 0.1, "assumed: no moment at rest; range -0.1 to 0.1")),
@@ -39,13 +39,13 @@ def coefficients(
     rows = rows.extended(_spread(known, chosen))
     aerodynamics = known.aerodynamics
     if known.origin is Origin.CATALOGUE and aerodynamics.at_rest is None:
-        rest = [assumed(f"{_PATH}_at_rest.{name}", estimate, chosen) for name, estimate in _AT_REST]
+        rest = [assumed(f"{_PATH}_at_rest.{name}", estimate, chosen) for name, estimate in AT_REST]
         rows = rows.extended(rest)
         lift, drag, moment = (row.value for row in rest)
         aerodynamics = replace(aerodynamics, at_rest=(lift, drag, moment))
     path = f"{_PATH}.reference_diameter"
     ratio = rows[path] / bare if path in rows else 1.0
-    factors = [rows[f"{_PATH}.{name}_factor"] if known.spread else 1.0 for name, _ in _AT_REST]
+    factors = [rows[f"{_PATH}.{name}_factor"] if known.spread else 1.0 for name, _ in AT_REST]
     return _scaled(aerodynamics, ratio, factors), rows
 
 
@@ -71,7 +71,7 @@ def _spread(known: KnownAerodynamics, chosen: Mapping[str, float]) -> Iterator[A
     source = (
         f"assumed: this ice has the coefficients of another one within {100.0 * known.spread:.0f} % ({known.source})"
     )
-    for name, _ in _AT_REST:
+    for name, _ in AT_REST:
         estimate = Estimate(1.0, "", 1.0 - known.spread, 1.0 + known.spread, source)
         yield assumed(f"{_PATH}.{name}_factor", estimate, chosen)
 
