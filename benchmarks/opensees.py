@@ -60,10 +60,13 @@ class Mode:
 
 
 @dataclass(frozen=True, slots=True)
-class _Node:
+class Node:
+    """A node of a chain: its tag and place in X, Y and Z [m]."""
+
     tag: int
     x: float
     y: float
+    z: float = 0.0
 
 
 def natural_modes(conductor: Conductor, section: Section, count: int, bars: int = 160) -> tuple[FloatArray, list[Mode]]:
@@ -89,8 +92,8 @@ def natural_modes(conductor: Conductor, section: Section, count: int, bars: int 
     RuntimeError
         If OpenSees finds no equilibrium.
     """
-    with _model():
-        nodes = _chain(conductor, section, bars)
+    with empty_model():
+        nodes = chain(conductor, section, bars)
         _equilibrium(conductor, section, nodes)
         eigenvalues = ops.eigen(count)
         shapes = [np.array([ops.nodeEigenvector(node.tag, i + 1) for node in nodes]) for i in range(count)]
@@ -103,8 +106,8 @@ def natural_modes(conductor: Conductor, section: Section, count: int, bars: int 
 
 def tension_in_wind(conductor: Conductor, section: Section, bars: int = 160) -> float:
     """Return the horizontal tension along the line under weight and mean drag [N]."""
-    with _model():
-        _equilibrium(conductor, section, _chain(conductor, section, bars))
+    with empty_model():
+        _equilibrium(conductor, section, chain(conductor, section, bars))
         return abs(float(ops.eleForce(1)[0]))
 
 
@@ -133,9 +136,9 @@ def twin_torsional_frequency(conductor: Conductor, section: Section, loops: int,
     bars : int
         Bars per span.
     """
-    with _model():
-        one = _chain(conductor, section, bars)
-        other = _chain(conductor, section, bars, first=len(one) + 1)
+    with empty_model():
+        one = chain(conductor, section, bars)
+        other = chain(conductor, section, bars, first=len(one) + 1)
         ends = {one[0]: section.end_stiffness[0], one[-1]: section.end_stiffness[1]}
         for left, right in zip(one, other, strict=True):
             along = tied == "everywhere" or (tied == "at ends" and left in ends)
@@ -153,7 +156,7 @@ def twin_torsional_frequency(conductor: Conductor, section: Section, loops: int,
 
 
 @contextmanager
-def _model() -> Iterator[None]:
+def empty_model() -> Iterator[None]:
     """Open an empty model; OpenSees keeps one per process, so it is wiped before and after."""
     ops.wipe()
     ops.model("basic", "-ndm", 3, "-ndf", 3)
@@ -163,15 +166,21 @@ def _model() -> Iterator[None]:
         ops.wipe()
 
 
-def _chain(conductor: Conductor, section: Section, bars: int, first: int = 1) -> list[_Node]:
-    """Place bars along the catenaries, each with its local tension; tags of nodes and bars begin with `first`."""
-    nodes = [_Node(first, 0.0, 0.0)]
-    ops.node(first, 0.0, 0.0, 0.0)
+def chain(
+    conductor: Conductor, section: Section, bars: int, first: int = 1, place: tuple[float, float] = (0.0, 0.0)
+) -> list[Node]:
+    """Place bars along the catenaries, each with its local tension; tags of nodes and bars begin with `first`.
+
+    place: (y, z) of the left end [m].
+    """
+    y, z = place
+    nodes = [Node(first, 0.0, y, z)]
+    ops.node(first, 0.0, y, z)
     for length in section.spans:
         start = nodes[-1]
         for x, y in _catenary(conductor, length, section.level_difference, bars):
-            node = _Node(first + len(nodes), start.x + x, start.y + y)
-            ops.node(node.tag, node.x, node.y, 0.0)
+            node = Node(first + len(nodes), start.x + x, start.y + y, z)
+            ops.node(node.tag, node.x, node.y, z)
             _bar(conductor, nodes[-1], node)
             nodes.append(node)
     return nodes
@@ -187,7 +196,7 @@ def _catenary(conductor: Conductor, length: float, rise: float, bars: int) -> li
     return list(zip(x.tolist(), y.tolist(), strict=True))
 
 
-def _bar(conductor: Conductor, left: _Node, right: _Node) -> None:
+def _bar(conductor: Conductor, left: Node, right: Node) -> None:
     tension = conductor.horizontal_tension * math.dist((left.x, left.y), (right.x, right.y)) / (right.x - left.x)
     elastic, stressed = 2 * left.tag, 2 * left.tag + 1
     ops.uniaxialMaterial("Elastic", elastic, conductor.axial_rigidity)
@@ -195,17 +204,17 @@ def _bar(conductor: Conductor, left: _Node, right: _Node) -> None:
     ops.element("corotTruss", left.tag, left.tag, right.tag, 1.0, stressed)
 
 
-def _equilibrium(conductor: Conductor, section: Section, *chains: Sequence[_Node]) -> None:
+def _equilibrium(conductor: Conductor, section: Section, *chains: Sequence[Node]) -> None:
     """Support and load each chain, and solve for static equilibrium."""
-    springs = _Springs(sum(map(len, chains)))
+    springs = Springs(sum(map(len, chains)))
     ops.timeSeries("Constant", 1)
     ops.pattern("Plain", 1, 1)
     for nodes in chains:
-        _support_and_load(conductor, section, nodes, springs)
-    _solve()
+        support_and_load(conductor, section, nodes, springs)
+    find_equilibrium()
 
 
-def _support_and_load(conductor: Conductor, section: Section, nodes: Sequence[_Node], springs: "_Springs") -> None:
+def support_and_load(conductor: Conductor, section: Section, nodes: Sequence[Node], springs: "Springs") -> None:
     """Fix the supports of a chain, and apply mass and weight at its nodes."""
     lengths = [math.dist((a.x, a.y), (b.x, b.y)) for a, b in itertools.pairwise(nodes)]
     shares = 0.5 * (np.array([0.0, *lengths]) + np.array([*lengths, 0.0]))
@@ -231,16 +240,17 @@ def _support_and_load(conductor: Conductor, section: Section, nodes: Sequence[_N
         ops.load(node.tag, push[node.tag], -conductor.mass * GRAVITY * share, conductor.drag * share)
 
 
-class _Springs:
+class Springs:
     """Springs to fixed ground, with tags after those of nodes and bars."""
 
     def __init__(self, nodes: int) -> None:
+        """Begin after the tags of this many nodes."""
         self._last = 4 * nodes
 
-    def hold(self, node: _Node, stiffness: dict[int, float]) -> None:
+    def hold(self, node: Node, stiffness: dict[int, float]) -> None:
         """Connect a node to the ground by springs [N/m] in these directions (1 along, 3 across the line)."""
         ground = self._last = self._last + 1
-        ops.node(ground, node.x, node.y, 0.0)
+        ops.node(ground, node.x, node.y, node.z)
         ops.fix(ground, 1, 1, 1)
         materials = []
         for value in stiffness.values():
@@ -251,7 +261,14 @@ class _Springs:
         ops.element("zeroLength", self._last, ground, node.tag, "-mat", *materials, "-dir", *stiffness)
 
 
-def _solve() -> None:
+def find_equilibrium() -> None:
+    """Solve for static equilibrium under the loads.
+
+    Raises
+    ------
+    RuntimeError
+        If OpenSees finds none.
+    """
     ops.system("BandGeneral")
     ops.numberer("RCM")
     ops.constraints("Plain")
@@ -289,8 +306,8 @@ def swinging_frequency(
     bars, steps = 24 * loops, 240
     length = section.spans[0]
     natural = 0.5 * loops / length * math.sqrt(conductor.horizontal_tension / conductor.mass)
-    with _model():
-        nodes = _chain(conductor, section, bars)
+    with empty_model():
+        nodes = chain(conductor, section, bars)
         _equilibrium(conductor, section, nodes)
         ops.loadConst("-time", 0.0)
         for node in nodes:

@@ -23,8 +23,10 @@ from engine.spec import (
     Conductor,
     Damping,
     Ice,
+    InterphaseSpacer,
     Line,
     Model,
+    Phase,
     Section,
     SectionSpan,
     Span,
@@ -206,6 +208,12 @@ THREE_SPANS = (280.0, 300.0, 330.0)
 
 FIVE_STRINGS = SuspensionString(4.5, 2500.0)
 STIFF_STRINGS = SuspensionString(1e-8, 2500.0)
+
+
+def phases_line(*spacers: InterphaseSpacer, subconductors: int = 2, above: Phase | None = None) -> Line:
+    """Return the source's line with a phase "top" 7 m above it, unless another one is given, and spacers."""
+    line = source_line(subconductors)
+    return replace(line, phases=(above or Phase("top", 7.0, 0.0),), devices=spacers)
 
 
 def section_line(

@@ -11,6 +11,17 @@ from engine.spec import Aerodynamics, Bundle, DampingModel, Device, IceSegment, 
 from engine.spec.rules import finite, not_negative, positive
 
 _PERCENT = 100.0
+# Figure -> what any conductor has, and the slip that leads out of it.
+_PLAUSIBLE = {
+    "diameter": (1e-3, 0.2, "m", "28.1 mm is 0.0281 m"),
+    "bare_mass": (5e-3, 50.0, "kg/m", "1,628 kg/km is 1.628 kg/m"),
+    "area": (1e-6, 1e-2, "m2", "468.6 mm2 is 468.6e-6 m2"),
+    "aluminium_area": (1e-6, 1e-2, "m2", "402.8 mm2 is 402.8e-6 m2"),
+    "modulus": (1e10, 3e11, "Pa", "74 GPa is 74e9 Pa"),
+    "rated_strength": (500.0, 1e7, "N", "140.1 kN is 140.1e3 N"),
+    "thermal_expansion": (1e-6, 1e-4, "1/K", "18.9 millionths per kelvin are 18.9e-6 1/K"),
+}
+_METALS = (2500.0, 9500.0)  # kg/m3 over the area of the wires, which are longer than the conductor
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +48,32 @@ class ConductorData:
     steel_wires: int | None = None
 
     def __post_init__(self) -> None:
-        """Check that every figure is positive, steel wires and coupling apart, and that aluminium is a part of all."""
+        """Check that every figure is that of a conductor, and that areas and mass fit each other."""
         free = {"axial_torsional_coupling": finite, "steel_wires": not_negative}
         require(
             *(free.get(f.name, positive)(f"conductor.{f.name}", getattr(self, f.name)) for f in fields(self)),
+            *self._implausible(),
             Fault("conductor.aluminium_area", self.aluminium_area, f"must not exceed the area ({self.area} m2)")
             if self.area is not None and self.aluminium_area is not None and self.aluminium_area > self.area
             else None,
+            self._density_fault(),
         )
+
+    def _implausible(self) -> Iterator[Fault]:
+        for name, (lowest, highest, unit, slip) in _PLAUSIBLE.items():
+            value = getattr(self, name)
+            if value is not None and value > 0.0 and not lowest <= value <= highest:
+                rule = f"must lie between {lowest:g} and {highest:g} {unit}: {slip}"
+                yield Fault(f"conductor.{name}", value, rule)
+
+    def _density_fault(self) -> Fault | None:
+        if self.bare_mass is None or self.area is None or not self.area > 0.0:
+            return None
+        density = self.bare_mass / self.area
+        if _METALS[0] <= density <= _METALS[1]:
+            return None
+        rule = f"must be that of metal wires, 2,500 to 9,500 kg/m3 over the area; it makes {density:.0f}"
+        return Fault("conductor.bare_mass", self.bare_mass, rule)
 
 
 @dataclass(frozen=True, slots=True)

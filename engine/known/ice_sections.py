@@ -27,6 +27,7 @@ UP = 1.0 + 0.0j
 WINDWARD = 1.5 * math.pi  # rad, clockwise from straight up
 MOST_POINTS = 1000
 DEEPEST_CUT = 0.1  # of the radius: chords of an outline that lies on the conductor pass inside its circle
+THICKEST = 0.5  # m
 SOLID_ICE = 917.0  # kg/m3, no accretion is denser
 
 
@@ -61,6 +62,9 @@ class Accretion:
         """Check the rules of every field, and that exactly one measure is given."""
         require(
             positive("ice.accretion.thickness", self.thickness),
+            Fault("ice.accretion.thickness", self.thickness, f"must be at most {THICKEST} m: 12 mm is 0.012 m")
+            if self.thickness is not None and self.thickness > THICKEST
+            else None,
             positive("ice.accretion.mass", self.mass),
             finite("ice.accretion.angle", self.angle),
             positive("ice.accretion.density", self.density),

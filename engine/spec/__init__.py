@@ -23,9 +23,11 @@ from engine.spec.analysis import (
     check_compatible,
 )
 from engine.spec.devices import (
+    THIS,
     AirflowSpoiler,
     DetuningPendulum,
     Device,
+    InterphaseSpacer,
     PointDevice,
     Spacer,
     StretchDevice,
@@ -46,6 +48,7 @@ from engine.spec.environment import (
     Wind,
 )
 from engine.spec.line import Line, ice_properties
+from engine.spec.phases import Phase, own_line
 from engine.spec.physics import PhysicsRequest, with_physics, with_section
 from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
 from engine.spec.section import Section, SectionSpan, SuspensionString
@@ -54,6 +57,7 @@ from engine.spec.span import Bundle, Conductor, CrossSection, Span, Support, Sup
 __all__ = [
     "CLOSED",
     "GRAVITY",
+    "THIS",
     "TURN",
     "AerodynamicLoad",
     "AerodynamicModel",
@@ -75,6 +79,7 @@ __all__ = [
     "DeviceEffect",
     "Ice",
     "IceSegment",
+    "InterphaseSpacer",
     "Line",
     "LongitudinalInertia",
     "LoopCompetition",
@@ -82,6 +87,7 @@ __all__ = [
     "Model",
     "Objective",
     "PendulumChoice",
+    "Phase",
     "Physics",
     "PhysicsRequest",
     "Placement",
@@ -104,6 +110,7 @@ __all__ = [
     "check_compatible",
     "check_placement",
     "ice_properties",
+    "own_line",
     "with_physics",
     "with_section",
 ]

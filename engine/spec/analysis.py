@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from engine.outcome import Fault, require
+from engine.spec.devices import InterphaseSpacer
 from engine.spec.line import Line
 from engine.spec.rules import positive
 
@@ -207,6 +208,7 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     table = analysis.aerodynamic_model is AerodynamicModel.TABLE
     require(
         Fault("section", None, "must be absent: sections are not analysed yet") if line.section is not None else None,
+        *_spacer_faults(line),
         Fault("ice.aerodynamics", None, "must be a measured table for the table model")
         if table and line.ice.aerodynamics.measured is None
         else None,
@@ -221,3 +223,9 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
         if relative and line.ice.aerodynamics.at_rest is None
         else None,
     )
+
+
+def _spacer_faults(line: Line) -> Iterator[Fault]:
+    for i, device in enumerate(line.devices):
+        if isinstance(device, InterphaseSpacer):
+            yield Fault(f"devices.{i}", None, "must be absent: phases that spacers tie are not analysed yet")

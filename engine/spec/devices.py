@@ -17,6 +17,7 @@ Row = tuple[float, float, float, float]
 Matrix = tuple[Row, Row, Row, Row]
 
 NOTHING: Row = (0.0, 0.0, 0.0, 0.0)
+THIS = "this"  # the name by which interphase spacers and tables call the line itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +201,33 @@ class TorsionalDamper(PointDevice):
     def damping(self) -> Matrix:
         """Return the coefficient on Theta."""
         return on_torsion(self.coefficient)
+
+
+@dataclass(frozen=True, slots=True)
+class InterphaseSpacer(PointDevice):
+    """A spacer between two phases, hinged at both: it holds their distance and nothing else. mass: of all of it [kg].
+
+    between: names of two phases, "this" for the line itself; axial_stiffness: against a change of its length [N/m],
+    None for a rigid spacer.
+    """
+
+    between: tuple[str, str]
+    axial_stiffness: float | None = None
+
+    def own_faults(self) -> Iterable[Fault | None]:
+        """Check the names and the stiffness."""
+        one, other = self.between
+        yield Fault("between", self.between, "must name two different phases") if one == other else None
+        yield positive("axial_stiffness", self.axial_stiffness)
+
+    @property
+    def points(self) -> tuple[PointDevice, ...]:
+        """Nothing: a line by itself has no other phase to be tied to."""
+        return ()
+
+    def half(self) -> PointDevice:
+        """Return what each of its phases carries, at the reference curve."""
+        return PointDevice(self.position, 0.5 * self.mass)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from engine.outcome import Fault, require
-from engine.spec.devices import Device, StretchDevice
+from engine.spec.devices import Device, InterphaseSpacer, StretchDevice
 from engine.spec.environment import Aerodynamics, Damping, Ice, IceSegment, Wind
+from engine.spec.phases import Phase, phase_faults
 from engine.spec.rules import overlap_faults
 from engine.spec.section import Section
 from engine.spec.span import Bundle, Conductor, Span, Support, Supports
@@ -16,11 +17,13 @@ from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 class Line:
     """One iced span with everything that its motion depends on, or the span of interest of a section of spans.
 
+    phases: other phases and wires of the same span, which clearances are taken to and interphase spacers tie.
+
     Raises
     ------
     InvalidSpec
         If a position lies off the span, devices overlap, the eccentricity is too large for the polar inertia, the
-        blow-out has no drag, or the section does not hold the span.
+        blow-out has no drag, the section does not hold the span, or phases coincide or are not those that spacers tie.
     """
 
     conductor: Conductor
@@ -32,6 +35,7 @@ class Line:
     supports: Supports = Supports()
     devices: tuple[Device, ...] = ()
     section: Section | None = None
+    phases: tuple[Phase, ...] = ()
 
     def __post_init__(self) -> None:
         """Check positions, overlaps of devices, that inertia is positive, that drag is known, and the section."""
@@ -41,12 +45,18 @@ class Line:
             *self._inertia_faults(),
             self._drag_fault(),
             *self._section_faults(),
+            *phase_faults(self),
         )
 
     @property
     def stretches(self) -> tuple[StretchDevice, ...]:
         """The parts of the devices that act on a stretch."""
         return tuple(part for device in self.devices for part in device.stretches)
+
+    @property
+    def interphase_spacers(self) -> tuple[InterphaseSpacer, ...]:
+        """The devices that tie it to other phases."""
+        return tuple(device for device in self.devices if isinstance(device, InterphaseSpacer))
 
     @property
     def coefficients(self) -> Iterator[tuple[str, Aerodynamics]]:

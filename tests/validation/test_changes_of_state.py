@@ -12,8 +12,8 @@ from engine.spec import GRAVITY
 POUND, FOOT, INCH = 4.4482216152605, 0.3048, 0.0254
 RIGIDITY, EXPANSION, DIAMETER, MASS = 468.64e-6 * 69.64e9, 18.82e-6, 0.02814, 1.6281  # Drake
 ICE_DENSITY = 900.0
-LEVEL = ((213.36, 0.0, 24e3), (300.0, 0.0, 28e3), (300.0, 60.0, 28e3), (500.0, -90.0, 32e3))
-ISOTHERMAL = (Weather(15.0, 0.0, 0.012), Weather(15.0, 200.0, 0.012), Weather(15.0, 0.0, 0.03))
+LEVEL = ((213.36, 0.0, 24e3), (300.0, 60.0, 28e3), (500.0, -90.0, 32e3))
+ISOTHERMAL = (Weather(15.0, 200.0, 0.012), Weather(15.0, 0.0, 0.03))
 OTHERS = (
     Weather(-20.0),
     Weather(50.0),

@@ -1,5 +1,6 @@
 """The line of the guide, and the source's line, as engineers know them."""
 
+from app.reference.catalogue_row import CatalogueRow as ShippedRow
 from app.reference.conductors import named
 from engine.known.bundles import arranged
 from engine.known.description import (
@@ -18,22 +19,26 @@ from engine.known.provenance import Origin
 from engine.spec import Aerodynamics, Support, Supports
 
 C11 = Aerodynamics((-0.1667, -4.0547, 8.3581), (0.8605, 0.8325, 1.7815), (-0.7272, 0.2935, 5.9704))
+
+
+def catalogue_row(row: ShippedRow) -> CatalogueRow:
+    """Return a shipped conductor as the engine takes it."""
+    data = ConductorData(
+        diameter=row.diameter_m,
+        bare_mass=row.mass_kg_per_m,
+        area=row.area_m2,
+        aluminium_area=row.aluminium_area_m2,
+        modulus=row.youngs_modulus_pa,
+        rated_strength=row.rated_strength_n,
+        thermal_expansion=row.thermal_expansion_per_k,
+        aluminium_wires=row.aluminium_wires,
+        steel_wires=row.steel_wires,
+    )
+    return CatalogueRow(row.name, "a table", data)
+
+
 (_DRAKE,) = named("795 kcmil 26/7")
-DRAKE = CatalogueRow(
-    "Drake",
-    "a table",
-    ConductorData(
-        diameter=_DRAKE.diameter_m,
-        bare_mass=_DRAKE.mass_kg_per_m,
-        area=_DRAKE.area_m2,
-        aluminium_area=_DRAKE.aluminium_area_m2,
-        modulus=_DRAKE.youngs_modulus_pa,
-        rated_strength=_DRAKE.rated_strength_n,
-        thermal_expansion=_DRAKE.thermal_expansion_per_k,
-        aluminium_wires=_DRAKE.aluminium_wires,
-        steel_wires=_DRAKE.steel_wires,
-    ),
-)
+DRAKE = catalogue_row(_DRAKE)
 SHAPE = KnownAerodynamics(C11, reference=Reference.BARE, origin=Origin.CATALOGUE, source="C11", spread=0.3)
 GUIDE = KnownLine(
     conductor=KnownConductor(row=DRAKE),

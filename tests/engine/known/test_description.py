@@ -21,6 +21,22 @@ ICE = Accretion(Shape.UNIFORM, 0.01)
             lambda: ConductorData(area=4e-4, aluminium_area=5e-4),
             r"aluminium_area must not exceed the area \(0\.0004 m2\)",
         ),
+        (
+            lambda: ConductorData(diameter=28.1),
+            r"conductor\.diameter must lie between .* m: 28\.1 mm is 0\.0281 m, got 28",
+        ),
+        (
+            lambda: ConductorData(bare_mass=1628.0),
+            r"conductor\.bare_mass must lie between .*: 1,628 kg/km is 1\.628 kg/m",
+        ),
+        (lambda: ConductorData(area=468.6), r"conductor\.area must lie between .*: 468\.6 mm2 is 468\.6e-6 m2"),
+        (lambda: ConductorData(modulus=74.0), r"conductor\.modulus must lie between .*: 74 GPa is 74e9 Pa, got 74"),
+        (lambda: ConductorData(rated_strength=140.1), r"conductor\.rated_strength must lie between .*: 140\.1 kN is"),
+        (lambda: ConductorData(thermal_expansion=18.9), r"conductor\.thermal_expansion must lie between .* 18\.9e-6"),
+        (
+            lambda: ConductorData(bare_mass=16.28, area=468.6e-6),
+            r"conductor\.bare_mass must be that of metal wires, 2,500 to 9,500 kg/m3 .* it makes 34742, got 16\.28",
+        ),
         (EverydayState, r"span\.everyday must have exactly one of share_of_rated_strength, horizontal_tens"),
         (lambda: EverydayState(0.2, sag=8.0), r"span\.everyday must have exactly one of .* got \(0\.2, 8\.0\)"),
         (lambda: EverydayState(20.0), r"share_of_rated_strength must be below 1, as a fraction; 20 % is 0\.2, got 20"),

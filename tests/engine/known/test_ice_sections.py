@@ -178,6 +178,7 @@ def test_without_a_density_the_kind_of_ice_says_it() -> None:
         ({"thickness": None}, r"ice\.accretion must have exactly one of thickness and mass"),
         ({"mass": 1.0}, r"ice\.accretion must have exactly one of thickness and mass"),
         ({"thickness": -0.01}, r"ice\.accretion\.thickness must be a finite number greater than zero, got -0\.01"),
+        ({"thickness": 12.0}, r"ice\.accretion\.thickness must be at most 0\.5 m: 12 mm is 0\.012 m, got 12"),
         ({"density": 9000.0}, r"ice\.accretion\.density must not make ice denser than solid ice, 917.* got 9000"),
         ({"angle": math.inf}, r"ice\.accretion\.angle must be a finite number"),
         ({"points": ((0.0, 1.0),)}, r"ice\.accretion\.points must be absent unless the shape is a profile"),

@@ -5,8 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.reference.catalogue_row import CatalogueRow as ShippedRow
+from app.reference.conductors import shipped
 from engine.known.bundles import arranged
-from engine.known.description import ConductorData, KnownAerodynamics, KnownConductor, KnownDamping, KnownIce, KnownLine
+from engine.known.description import (
+    ConductorData,
+    EverydayState,
+    KnownAerodynamics,
+    KnownConductor,
+    KnownDamping,
+    KnownIce,
+    KnownLine,
+    KnownSpan,
+)
+from engine.known.estimators import torsional_rigidity_of_diameter
 from engine.known.ice_sections import Accretion, Shape
 from engine.known.provenance import Origin
 from engine.known.resolve import resolve
@@ -14,7 +26,7 @@ from engine.mechanics.static_profile import static_profile
 from engine.outcome import InvalidSpec
 from engine.spec import Damping, Section, SectionSpan, Support, Supports, SuspensionString, Wind
 from tests.builders import source_line
-from tests.engine.known.known_lines import GUIDE, SPARSE
+from tests.engine.known.known_lines import GUIDE, SPARSE, catalogue_row
 
 
 def explicit(line_number: int = 2) -> KnownLine:
@@ -183,3 +195,19 @@ def test_lines_of_different_make_resolve(subconductors: int, shape: Shape) -> No
     assert len(found.line.bundle.positions) == subconductors
     assert found.line.conductor.mass == pytest.approx(1.6281 + 1.2)
     assert (abs(found.line.ice.eccentricity_z) > 1e-3) == (shape is not Shape.UNIFORM)
+
+
+@pytest.mark.parametrize("row", shipped(), ids=lambda row: f"{row.designation} {row.name}")
+def test_every_shipped_conductor_makes_a_line(row: ShippedRow) -> None:
+    conductor = catalogue_row(row)
+    # 40 MPa are an everyday stress of any conductor; ASTM's tables have no strength.
+    assert row.area_m2 is not None
+    everyday = EverydayState(horizontal_tension=40e6 * row.area_m2, temperature=15.0)
+    span = KnownSpan(250.0, everyday, -5.0)
+    ice = replace(GUIDE.ice, accretion=Accretion(Shape.CRESCENT, 0.008, angle=0.0))
+    found = resolve(replace(GUIDE, conductor=KnownConductor(row=conductor), span=span, ice=ice))
+    assert found.iced is not None
+    assert found.iced.horizontal_tension > 40e6 * row.area_m2
+    assert found.line.conductor.mass > row.mass_kg_per_m
+    by_diameter = torsional_rigidity_of_diameter(row.diameter_m)
+    assert by_diameter.lowest < found.line.conductor.torsional_rigidity < by_diameter.highest
