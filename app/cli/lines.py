@@ -34,7 +34,7 @@ def analyse(
 
     document = read_request(line, analysis, study, placement)
     try:
-        request = convert.read(document)
+        request = convert.read(convert.explicit_request(document))
     except BadInput as error:
         refuse(error.faults)
     complete = request.kept()

@@ -3,7 +3,14 @@
 from app.convert.check import read, request_faults, with_further_faults
 from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
-from app.convert.known import OwnRows, resolve_document, resolve_line
+from app.convert.known import (
+    OwnRows,
+    explicit_line,
+    explicit_request,
+    is_known_form,
+    resolve_document,
+    resolve_line,
+)
 from app.convert.mode_shapes import mode_shapes
 from app.convert.run import Advance, PointResult, run
 from app.convert.stack import STACK, NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
@@ -32,7 +39,10 @@ __all__ = [
     "ellipse",
     "example_row",
     "example_tables",
+    "explicit_line",
+    "explicit_request",
     "fit",
+    "is_known_form",
     "mode_shapes",
     "read",
     "read_analysis",

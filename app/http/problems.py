@@ -148,15 +148,30 @@ class StrictJsonRoute(APIRoute):
         async def strict(request: Request) -> Response:
             if takes_body:
                 _require_json(request)
-            return await handler(_StrictRequest(request.scope, request.receive))
+            return await handler(_StrictRequest(request, self.prepared))
 
         return strict
 
+    async def prepared(self, request: Request, document: Any) -> Any:
+        """Return the document that the schema is to read; a kind of route may change what was posted.
+
+        Raises
+        ------
+        BadInput
+            If the document cannot be prepared.
+        """
+        del request
+        return document
+
 
 class _StrictRequest(Request):
+    def __init__(self, request: Request, prepare: Callable[[Request, Any], Coroutine[Any, Any, Any]]) -> None:
+        super().__init__(request.scope, request.receive)
+        self._prepare = prepare
+
     async def json(self) -> Any:
         try:
-            return parse_json(await self.body())
+            return await self._prepare(self, parse_json(await self.body()))
         except BadInput as error:
             raise ProblemError(ProblemKind.INVALID_DOCUMENT, _count(error.faults), faults=error.faults) from error
 

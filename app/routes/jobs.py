@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError
 from app import convert, schemas
 from app.answers.jobs import JobDocument, JobPage
 from app.http import paging
-from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document, query_fault
+from app.http.problems import ProblemKind, invalid_document, query_fault
 from app.jobs import idempotency, job_records
 from app.jobs.idempotency import Key, KeyTaken
 from app.jobs.job_records import CancelOutcome, JobFilters, Submission
@@ -24,13 +24,14 @@ from app.routes import documentation
 from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers, vet_webhook
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, replayed_answer, stored_answer
 from app.routes.job_status import find_job, find_status, job_address, job_document
+from app.routes.known_lines import KnownLineRoute
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import signing_key
 from app.schemas.fields import Label
 from app.security.caller import Caller, Owned
 from app.tables import ENDED, Job, JobStatus
 
-router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=StrictJsonRoute)
+router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=KnownLineRoute)
 
 _MOST_ON_PAGE = 500
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
@@ -117,6 +118,9 @@ async def submit_job(
     may_reuse: MayReuse,
 ) -> Response:
     """Accept a line for analysis. The service stores the job before it answers, whether or not a worker is running.
+
+    The line may be one as an engineer knows it, as `POST /v1/lines/resolve` takes it; the job then holds the explicit
+    line. Phases, clearances, design wind and climate do not act on an analysis.
 
     If the owner has stored results of the same input by this engine version, from a job or a line of a batch, the job
     ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new

@@ -19,6 +19,7 @@ from app import convert, schemas
 from app.batches import batch_records
 from app.batches.batch_records import Chunk
 from app.batches.intake.body_formats import Incoming
+from app.owned import records
 from app.runtime.settings import Settings
 from app.schemas.faults import MOST_FAULTS, BadInput, Fault
 from app.schemas.fields import Label
@@ -45,6 +46,7 @@ class _Draft:
     analysis: schemas.Analysis
     chunk_lines: int
     atomic: bool
+    own: convert.OwnRows
     chunks: list[Chunk] = field(default_factory=list)
     taken: int = 0
     rejected: int = 0
@@ -80,7 +82,8 @@ def receive(
     analysis = convert.read_analysis(incoming.analysis)
     with sessions.begin() as session:
         batch_id = batch_records.begin(session, caller, analysis.model_dump(mode="json", by_alias=True))
-    draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic)
+        own = records.own_rows(session, caller.owner)
+    draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic, own)
     try:
         for block in _blocks(settings, draft, incoming.lines):
             with sessions.begin() as session:
@@ -119,7 +122,7 @@ def _item(draft: _Draft, document: object) -> dict[str, Any]:
     line: schemas.Line | None = None
     try:
         reference, fields = _split(document)
-        line = convert.read_line(fields, draft.analysis)
+        line = convert.read_line(convert.explicit_line(fields, draft.own), draft.analysis)
     except BadInput as error:
         faults = list(error.faults[:_FAULTS_A_LINE])
     if line is None:

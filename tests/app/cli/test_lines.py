@@ -9,6 +9,7 @@ from typing import Any
 import httpx
 import pytest
 
+from app import convert
 from app.answers.results import ResultDocument
 from app.reference.source_lines import EXAMPLE_NAMES, example
 from app.reference.source_studies import study_request
@@ -281,3 +282,14 @@ def test_a_line_is_resolved_wrapped_or_not(tmp_path: Path) -> None:
 def test_a_line_that_cannot_be_resolved_is_refused(tmp_path: Path) -> None:
     wrong = {**CONTRACT, "conductor": {"catalogue": "Drak"}}
     assert "/conductor/catalogue: must name" in refused("resolve", written(tmp_path, "line", wrong))
+
+
+def test_an_analysis_takes_a_line_as_an_engineer_knows_it(tmp_path: Path) -> None:
+    analysis = written(tmp_path, "analysis", {"loops": [1], "wind_speeds_m_per_s": [5.0]})
+    results = []
+    for number, document in enumerate([CONTRACT, convert.resolve_document(CONTRACT)["line"]]):
+        ended = galloping("analyse", written(tmp_path, f"line-{number}", document), "--analysis", analysis)
+        assert ended.returncode == 0, ended.stderr
+        results.append(json.loads(ended.stdout))
+    assert results[0]["critical_wind_speeds"]
+    assert results[0] == results[1]
