@@ -100,12 +100,11 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
         raise InvalidSpec(Fault("span.elements", None, "must be equal within a stack of lines"))
     if analysis.device_effect is DeviceEffect.NEGLECTED:
         return (yield from analyse_lines(lines, analysis, _analyse))
-    without_devices = [replace(line, devices=()) for line in lines]
-    results = yield from analyse_lines([*lines, *without_devices], analysis, _analyse)
-    pairs = zip(results[len(lines) :], results, strict=False)
-    return [
-        replace(with_devices, device_effects=device_effects(without, with_devices)) for without, with_devices in pairs
-    ]
+    bare = [replace(line, devices=()) for line in lines if line.devices]
+    results = yield from analyse_lines([*lines, *bare], analysis, _analyse)
+    without = iter(results[len(lines) :])
+    pairs = [(next(without) if line.devices else own, own) for line, own in zip(lines, results, strict=False)]
+    return [replace(own, device_effects=device_effects(other, own)) for other, own in pairs]
 
 
 def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:

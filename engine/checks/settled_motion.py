@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled
+from engine.checks.wind_polynomials import WindPolynomials, wind_polynomials
 from engine.kernels import compiled
 from engine.models.reduced_model import ReducedModel, force_gradient
 from engine.models.unexpanded_load import UnexpandedLoad
@@ -73,16 +74,18 @@ class UnexpandedTerms:
 class LawsonEquations:
     """The equations of motion of a stack of starts in the form that Lawson's method steps; starts on the last axis.
 
-    half_step: (2 m, 2 m, starts), matrix exponential of the linear part over half a step; nonlinear: (points, m,
-    monomials of degree 2 and 3, starts), coefficients of the wind's nonlinear part of q''; forms: (points, local
-    variables, 2 m, starts), the linear forms in (q, q') that these monomials are taken of; restoring: (m, monomials of
-    degree 2 and 3 of q, starts), coefficients of the part of stretching, no monomials where it is neglected; step:
+    half_step: (2 m, 2 m, starts), matrix exponential of the linear part over half a step; nonlinear: (points, rows,
+    monomials of degree 2 and 3, starts), coefficients of the wind's forces; outward: (points, m, rows, starts), the
+    share of each force in q''; forms: (points, local variables, 2 m, starts), the linear forms in (q, q') that these
+    monomials are taken of; restoring: (m, monomials of degree 2 and 3 of q, starts), coefficients of the part of
+    stretching, no monomials where it is neglected; step:
     (starts,) [s]; angle: (2 m, starts), largest coefficients of the angle of attack along the span; unexpanded: the
     wind's part where its load is unexpanded, and then no points.
     """
 
     half_step: FloatArray
     nonlinear: FloatArray
+    outward: FloatArray
     forms: FloatArray
     restoring: FloatArray
     step: FloatArray
@@ -92,13 +95,13 @@ class LawsonEquations:
     def select(self, index: IntArray) -> "LawsonEquations":
         """Select starts by their indices."""
         unexpanded = None if self.unexpanded is None else self.unexpanded.select(index)
-        half_step, nonlinear, forms, restoring, step, angle = (part[..., index] for part in self.parts)
-        return LawsonEquations(half_step, nonlinear, forms, restoring, step, angle, unexpanded)
+        half_step, nonlinear, outward, forms, restoring, step, angle = (part[..., index] for part in self.parts)
+        return LawsonEquations(half_step, nonlinear, outward, forms, restoring, step, angle, unexpanded)
 
     @property
     def parts(self) -> tuple[FloatArray, ...]:
         """The arrays in their order."""
-        return self.half_step, self.nonlinear, self.forms, self.restoring, self.step, self.angle
+        return self.half_step, self.nonlinear, self.outward, self.forms, self.restoring, self.step, self.angle
 
 
 def natural_frequency_range(model: ReducedModel, member: IntArray) -> FloatArray:
@@ -127,14 +130,15 @@ def lawson_equations(
     linear[:, :m, m:] = np.eye(m)
     linear[:, m:] = np.concatenate([by_q, by_rate], axis=-1)
     by_wind = np.repeat([np.ones(member.size), wind_speed], m, axis=0)
-    nonlinear, forms, unexpanded = _wind_terms(model, member, wind_speed, speed**2 * inverse)
+    wind, unexpanded = _wind_terms(model, member, wind_speed, speed**2 * inverse)
     step = 2.0 * np.pi / (natural_frequency_range(model, member)[1] * steps)
     angle = np.abs(model.load.angle[member]).max(axis=1).T / by_wind
     half_step = expm(0.5 * step[:, None, None] * linear)
     return LawsonEquations(
         np.moveaxis(half_step, 0, -1).copy(),
-        np.moveaxis(nonlinear, 0, -1).copy(),
-        np.moveaxis(forms, 0, -1) / by_wind,
+        np.moveaxis(wind.table, 0, -1).copy(),
+        np.moveaxis((speed**2 * inverse)[:, None] @ wind.outward, 0, -1).copy(),
+        np.moveaxis(wind.forms, 0, -1) / by_wind,
         np.moveaxis(_restoring_coefficients(model, inverse, member), 0, -1).copy(),
         step,
         angle.copy(),
@@ -144,19 +148,20 @@ def lawson_equations(
 
 def _wind_terms(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, gain: FloatArray
-) -> tuple[FloatArray, FloatArray, UnexpandedTerms | None]:
-    """Return the wind's nonlinear polynomials with their forms, or the terms of an unexpanded load.
+) -> tuple[WindPolynomials, UnexpandedTerms | None]:
+    """Return the wind's nonlinear polynomials, or the terms of an unexpanded load, and then no points.
 
     gain: (starts, m, m), U^2 M^-1.
     """
-    load, m = model.load, model.mass.shape[-1]
+    m = model.mass.shape[-1]
     if model.unexpanded is None:
-        return gain[:, None] @ load.table[member][..., load.forms.shape[-2] :], load.forms[member], None
+        return wind_polynomials(model.load, member), None
     slope = force_gradient(model, np.zeros((model.mass.shape[0], 1, 2 * m)))[member, 0]
     linear = gain @ slope / np.repeat([np.ones(member.size), wind_speed], m, axis=0).T[:, None]
     gain, linear = (np.moveaxis(part, 0, -1).copy() for part in (gain, linear))
     unexpanded = UnexpandedTerms(gain, linear, wind_speed, member, model.unexpanded)
-    return np.zeros((member.size, 0, m, 2)), np.zeros((member.size, 0, 1, 2 * m)), unexpanded
+    shapes = ((1, 2 * m), (1, 2), (m, 1))
+    return WindPolynomials(*(np.zeros((member.size, 0, *shape)) for shape in shapes)), unexpanded
 
 
 def _restoring_coefficients(model: ReducedModel, inverse: FloatArray, member: IntArray) -> FloatArray:
@@ -169,7 +174,7 @@ def _restoring_coefficients(model: ReducedModel, inverse: FloatArray, member: In
 def lawson_step(equations: LawsonEquations, state: FloatArray) -> FloatArray:
     """Return the states (2 m, starts) after one step of Lawson's fourth-order Runge-Kutta method."""
     step, half_step = equations.step, equations.half_step
-    m = equations.nonlinear.shape[1]
+    m = equations.outward.shape[1]
 
     def propagate(y: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("ijs,js->is", half_step, y))
@@ -189,7 +194,7 @@ def lawson_step(equations: LawsonEquations, state: FloatArray) -> FloatArray:
 def _nonlinear_acceleration(equations: LawsonEquations, state: FloatArray) -> FloatArray:
     """Return the quadratic and cubic part of q'' at states (2 m, starts): (m, starts)."""
     terms = _higher_monomials(np.einsum("plks,ks->lps", equations.forms, state))
-    by_wind = np.einsum("pots,tps->os", equations.nonlinear, terms)
+    by_wind = np.einsum("pors,prs->os", equations.outward, np.einsum("prts,tps->prs", equations.nonlinear, terms))
     if equations.unexpanded is not None:
         by_wind = by_wind + equations.unexpanded.acceleration(state)
     m, count, _ = equations.restoring.shape

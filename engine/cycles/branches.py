@@ -11,7 +11,7 @@ from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths,
 from engine.cycles.branch_set import BranchSet, CycleProblem, orbits_of, points_of
 from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, first_harmonic_angle, select, total_size
-from engine.cycles.refinement import judged_points, refined
+from engine.cycles.refinement import KnownExponents, judged_points, refined
 from engine.models.critical_wind_speeds import Crossings, critical_modes
 from engine.models.reduced_model import ReducedModel, lowest_frequency
 from engine.numerics.continuation import (
@@ -146,8 +146,9 @@ def follow_branches(
     points = concatenated([origin, points])
     points = points.select(np.argsort(points.branch, kind="stable"))
     found = BranchSet(problem, points, outcome, ended, hopf_wind_speed, judged_points(problem, points))
+    exponents: KnownExponents = {}
     for _ in range(MOST_CUTS):
-        found, cut = refined(found)
+        found, cut = refined(found, exponents)
         if not cut.any():
             break
         found = _followed_on(found, origin, np.flatnonzero(cut), limits)

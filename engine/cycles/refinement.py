@@ -20,7 +20,7 @@ from engine.progress import driven
 FINER_STEPS = (4, 16)  # factors on the number of steps of Floquet's integration, where its error leaves doubt
 DOUBTFUL = 1e-6  # error of the multipliers, below which finer steps would not settle an unknown stability
 INACCURATE = 1e-4  # error of the multipliers over the largest, above which finer steps are used in any case
-LIGHT = -1.0  # real part of an exponent below which a mode decays within a period and no resonance is sharp
+LIGHT = 1.0  # size of an exponent's real part beyond which a mode changes e-fold in a period: no resonance is sharp
 FAR = 0.3  # rad, the farthest that an exponent may move between two points
 SHARE = 0.5  # of its distance from 0 and i pi that an exponent may move between two points
 SHARPEST = 2e-3  # smallest distance in that rule: sharper resonances than by a damping of 0.03 % are not resolved
@@ -49,8 +49,18 @@ def judged_points(problem: CycleProblem, points: BranchPoints) -> Floquet:
     return result
 
 
-def refined(branch_set: BranchSet) -> tuple[BranchSet, BoolArray]:
+KnownExponents = dict[tuple[int, bytes], ComplexArray]
+"""Signed exponents of points by their branch and the bytes of their unknowns: most points stay from round to round."""
+
+
+def refined(branch_set: BranchSet, known: KnownExponents) -> tuple[BranchSet, BoolArray]:
     """Return the branches with points inserted where an exponent moves too far from one point to the next.
+
+    Parameters
+    ----------
+    branch_set : BranchSet
+    known : dict
+        Of exponents computed before; those computed here are added.
 
     Returns
     -------
@@ -61,7 +71,7 @@ def refined(branch_set: BranchSet) -> tuple[BranchSet, BoolArray]:
     left_alone = np.zeros(branch_set.points.branch.size, dtype=np.bool_)
     cut = np.zeros(branch_set.problem.member.size, dtype=np.bool_)
     for _ in range(ROUNDS):
-        parts = _parts_needed(branch_set)
+        parts = _parts_needed(branch_set, known)
         segment = np.flatnonzero((parts > 1) & ~left_alone[: parts.size])
         if segment.size == 0:
             break
@@ -162,14 +172,17 @@ def _points_between(
     return BranchPoints(branch[new.branch], new.z, new.scale, new.tangent), new.branch, ends
 
 
-def _parts_needed(branch_set: BranchSet) -> IntArray:
-    """Return the number of parts that each segment, given by its left point, needs: (points - 1,)."""
+def _parts_needed(branch_set: BranchSet, known: KnownExponents) -> IntArray:
+    """Return the number of parts that each segment, given by its left point, needs: (points - 1,).
+
+    Exponents are taken from those known, and the others are added to them.
+    """
     points = branch_set.points
     parts = np.ones(max(points.branch.size - 1, 0), dtype=np.intp)
     candidate = np.flatnonzero(_candidates(branch_set))
     if candidate.size == 0:
         return parts
-    exponents = signed_exponents(branch_set, np.union1d(candidate, candidate + 1))
+    exponents = _exponents(branch_set, np.union1d(candidate, candidate + 1), known)
     length = lengths((points.z[candidate + 1] - points.z[candidate]) / points.scale[candidate])
     turned = points.tangent[candidate, -1] * points.tangent[candidate + 1, -1] < 0.0
     for i, long, fold in zip(candidate.tolist(), (length > SHORTEST).tolist(), turned.tolist(), strict=True):
@@ -189,12 +202,22 @@ def _candidates(branch_set: BranchSet) -> BoolArray:
     segments = (branch[1:] == branch[:-1]) & ~at_equilibrium[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):
         exponent = np.log(branch_set.floquet.multipliers[:, 1:])
-    angle = np.sort(np.where(exponent.real > LIGHT, np.abs(exponent.imag), 0.0), axis=-1)
+    angle = np.sort(np.where(np.abs(exponent.real) < LIGHT, np.abs(exponent.imag), 0.0), axis=-1)
     moved = np.nan_to_num(np.abs(np.diff(angle, axis=0)).max(axis=-1, initial=0.0)) * segments
     count = branch_set.problem.member.size
     far = np.zeros(count, dtype=np.bool_)
     np.logical_or.at(far, branch[:-1], moved > FAR / 3.0)
     return np.asarray(segments & far[branch[:-1]])
+
+
+def _exponents(branch_set: BranchSet, index: IntArray, known: KnownExponents) -> dict[int, ComplexArray]:
+    """Return the signed exponents of points by point, and compute those that are not known yet."""
+    points = branch_set.points
+    keys = {i: (int(points.branch[i]), points.z[i].tobytes()) for i in index.tolist()}
+    new = np.array([i for i, key in keys.items() if key not in known], dtype=np.intp)
+    if new.size:
+        known.update({keys[i]: row for i, row in signed_exponents(branch_set, new).items()})
+    return {i: known[key] for i, key in keys.items()}
 
 
 def signed_exponents(branch_set: BranchSet, index: IntArray) -> dict[int, ComplexArray]:
@@ -223,7 +246,7 @@ def _excess(left: ComplexArray, right: ComplexArray) -> float:
     """Return by how much the complex exponents move farther than they may from one point to the next."""
     worst = 0.0
     for here, there in ((left, right), (right, left)):
-        own = here[(here.imag != 0.0) & (here.real > LIGHT)]
+        own = here[(here.imag != 0.0) & (np.abs(here.real) < LIGHT)]
         if own.size == 0 or there.size == 0:
             continue
         difference = there[None] - own[:, None]

@@ -18,7 +18,7 @@ def monodromies(
 ) -> None: ...
 def even_parts(size: tuple[int, int], places: Arrays, results: Arrays, /) -> None: ...
 def flows(
-    size: tuple[int, int, int, int, int, bool],
+    size: tuple[int, int, int, int, int, int, bool],
     equations: Arrays,
     results: Arrays,
     starts: tuple[AnyArray | int, ...] = ...,

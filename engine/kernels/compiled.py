@@ -215,11 +215,11 @@ def integrated_block(
     (2 m, starts), (2 m, starts), (starts,)
         The states at the end, the weighted sums of squares over the steps, and the largest angle of attack [rad].
     """
-    _, nonlinear, forms, restoring, *_ = equations
-    points, m, _, starts = nonlinear.shape
+    _, _, outward, forms, restoring, *_ = equations
+    points, m, rows, starts = outward.shape
     end = np.array(state, order="C")
     square, largest = np.empty(end.shape), np.empty(starts)
-    size = (starts, window.size, m, points, forms.shape[1], restoring.size > 0)
+    size = (starts, window.size, m, points, rows, forms.shape[1], restoring.size > 0)
     results = (end, square, largest)
     if unexpanded is None:
         flows(size, _contiguous(*equations, window), results)

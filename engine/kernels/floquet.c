@@ -43,13 +43,16 @@ static inline Lanes *matrix_of(const Workspace *w, int which) { return w->matric
 
 WITHIN void product_of(int n, const Lanes *restrict left, const Lanes *restrict right, Lanes *restrict product)
 {
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            Lanes sum = {0};
-            for (int k = 0; k < n; k++)
-                sum += left[i * n + k] * right[k * n + j];
-            product[i * n + j] = sum;
-        }
+    for (int i = 0; i < n; i++) {
+        Lanes row[n]; /* stays in registers where n is known: no sum waits for the one before */
+        for (int j = 0; j < n; j++)
+            row[j] = left[i * n] * right[j];
+        for (int k = 1; k < n; k++)
+            for (int j = 0; j < n; j++)
+                row[j] += left[i * n + k] * right[k * n + j];
+        for (int j = 0; j < n; j++)
+            product[i * n + j] = row[j];
+    }
 }
 
 WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restrict right, Lanes *restrict product)
@@ -58,6 +61,8 @@ WIDE static void multiply(int n, const Lanes *restrict left, const Lanes *restri
         product_of(6, left, right, product);
     else if (n == 8) /* with a relief coordinate */
         product_of(8, left, right, product);
+    else if (n == 12) /* finite elements with two numbers of loops */
+        product_of(12, left, right, product);
     else
         product_of(n, left, right, product);
 }

@@ -130,16 +130,16 @@ typedef struct {
 int integrate_monodromies(const Model *stack, const Monodromies *wanted);
 
 /* Arguments and results of integrate_flows, laid out as engine.checks.settled_motion.LawsonEquations with the starts on the
- * last axis: half_step (2 m, 2 m), nonlinear (points, m, monomials of degree 2 and 3), forms (points, local, 2 m),
- * restoring (m, monomials of degree 2 and 3 of q) if it `stretches`, step and angle (2 m). One step is taken for every
+ * last axis: half_step (2 m, 2 m), nonlinear (points, rows, monomials of degree 2 and 3), outward (points, m, rows), forms
+ * (points, local, 2 m), restoring (m, monomials of degree 2 and 3 of q) if it `stretches`, step and angle (2 m). One step is taken for every
  * entry of window (steps). state (2 m) is advanced in place; square (2 m) receives the sum of the squares after each step,
  * weighted by the window, and largest the largest square of the angle of attack. An unexpanded load has no points here: if
  * there is `gain` (m, m), its part of q'' is gain f(q, q'/U) - linear (q, q'), with linear (m, 2 m); member, wind_speed
  * (starts). */
 typedef struct {
     ptrdiff_t starts, steps;
-    int m, points, local, stretches;
-    const double *half_step, *nonlinear, *forms, *restoring, *step, *angle, *gain, *linear, *wind_speed, *window;
+    int m, points, rows, local, stretches;
+    const double *half_step, *nonlinear, *outward, *forms, *restoring, *step, *angle, *gain, *linear, *wind_speed, *window;
     const ptrdiff_t *member;
     Unexpanded unexpanded;
     double *state, *square, *largest;

@@ -29,36 +29,48 @@ Model model_of(const Model *stack, ptrdiff_t member)
 size_t load_scratch(const Model *model)
 {
     const int most = model->stretches && model->m > model->local ? model->m : model->local;
-    return (size_t)model->local + 1 + (size_t)monomials_of(most);
+    return (size_t)(model->local + model->m + model->m * most) + 1 + (size_t)monomials_of(most);
 }
 
-WITHIN Lanes polynomial(int count, const double *coefficients, const Lanes *terms)
+/* Sum the products of rows of coefficients (rows, terms) with the same terms, three rows at a time: the sum of one row
+ * waits for every addition. */
+WITHIN void sum_rows(int rows, int count, const double *coefficients, const Lanes *terms, Lanes *sums)
 {
-    Lanes sum = {0};
-    for (int t = 0; t < count; t++)
-        sum += coefficients[t] * terms[t];
-    return sum;
+    int row = 0;
+    for (; row + 2 < rows; row += 3, coefficients += 3 * count) {
+        Lanes first = {0}, second = {0}, third = {0};
+        for (int t = 0; t < count; t++) {
+            first += coefficients[t] * terms[t];
+            second += coefficients[count + t] * terms[t];
+            third += coefficients[2 * count + t] * terms[t];
+        }
+        sums[row] = first, sums[row + 1] = second, sums[row + 2] = third;
+    }
+    for (; row < rows; row++, coefficients += count) {
+        Lanes sum = {0};
+        for (int t = 0; t < count; t++)
+            sum += coefficients[t] * terms[t];
+        sums[row] = sum;
+    }
 }
 
 WITHIN void add_wind(const Model *model, int m, int local, const Lanes *state, Lanes *force, Lanes *gradient,
                      Lanes *scratch)
 {
     const int lower = lower_of(local), monomials = monomials_of(local);
-    Lanes *x = scratch, *terms = scratch + local;
+    Lanes *x = scratch, *own = x + local, *slopes = own + m, *terms = slopes + m * local;
     for (int p = 0; p < model->points; p++) {
         const double *forms = model->forms + (ptrdiff_t)p * local * 2 * m;
-        for (int l = 0; l < local; l++)
-            x[l] = polynomial(2 * m, forms + l * 2 * m, state);
+        sum_rows(local, 2 * m, forms, state, x);
         powers(local, x, terms);
+        sum_rows(m, monomials, model->table + (ptrdiff_t)p * m * monomials, terms + 1, own);
+        sum_rows(m * local, lower, model->slopes + (ptrdiff_t)p * m * local * lower, terms, slopes);
         for (int i = 0; i < m; i++) {
-            const ptrdiff_t row = (ptrdiff_t)p * m + i;
-            force[i] += polynomial(monomials, model->table + row * monomials, terms + 1);
-            for (int l = 0; l < local; l++) {
-                const Lanes slope = polynomial(lower, model->slopes + (row * local + l) * lower, terms);
+            force[i] += own[i];
+            for (int l = 0; l < local; l++)
                 for (int v = 0; v < 2 * m; v++)
                     if (forms[l * 2 * m + v] != 0.0)
-                        gradient[i * 2 * m + v] += forms[l * 2 * m + v] * slope;
-            }
+                        gradient[i * 2 * m + v] += forms[l * 2 * m + v] * slopes[i * local + l];
         }
     }
 }
@@ -66,15 +78,15 @@ WITHIN void add_wind(const Model *model, int m, int local, const Lanes *state, L
 WITHIN void subtract_stretching(const Model *model, int m, double share, const Lanes *state, Lanes *force,
                                 Lanes *gradient, Lanes *restoring, Lanes *scratch)
 {
-    const int lower = lower_of(m), monomials = monomials_of(m);
-    Lanes *terms = scratch;
+    Lanes *slopes = scratch, *terms = scratch + m * m;
     powers(m, state, terms);
+    sum_rows(m, monomials_of(m), model->restoring, terms + 1, restoring);
+    sum_rows(m * m, lower_of(m), model->restoring_slopes, terms, slopes);
     for (int i = 0; i < m; i++) {
-        restoring[i] = share * polynomial(monomials - m, model->restoring + i * monomials + m, terms + 1 + m);
+        restoring[i] *= share;
         force[i] -= restoring[i];
         for (int j = 0; j < m; j++)
-            gradient[i * 2 * m + j] -=
-                share * polynomial(lower - 1, model->restoring_slopes + (i * m + j) * lower + 1, terms + 1);
+            gradient[i * 2 * m + j] -= share * slopes[i * m + j];
     }
 }
 

@@ -247,20 +247,21 @@ static int read_unexpanded_starts(Buffers *held, PyObject *extra, PyObject *part
 static PyObject *flows(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *half_step, *nonlinear, *forms, *restoring, *step, *angle, *window, *state, *square, *largest;
+    PyObject *half_step, *nonlinear, *outward, *forms, *restoring, *step, *angle, *window, *state, *square, *largest;
     PyObject *extra = NULL, *parts = NULL;
     Flows wanted = {.gain = NULL};
     int done = 1;
-    if (!PyArg_ParseTuple(arguments, "(nniiip)(OOOOOOO)(OOO)|O!O!", &wanted.starts, &wanted.steps, &wanted.m,
-                          &wanted.points, &wanted.local, &wanted.stretches, &half_step, &nonlinear, &forms, &restoring,
-                          &step, &angle, &window, &state, &square, &largest, &PyTuple_Type, &extra, &PyTuple_Type,
+    if (!PyArg_ParseTuple(arguments, "(nniiiip)(OOOOOOOO)(OOO)|O!O!", &wanted.starts, &wanted.steps, &wanted.m,
+                          &wanted.points, &wanted.rows, &wanted.local, &wanted.stretches, &half_step, &nonlinear,
+                          &outward, &forms, &restoring, &step, &angle, &window, &state, &square, &largest, &PyTuple_Type, &extra, &PyTuple_Type,
                           &parts))
         return NULL;
     const Py_ssize_t starts = wanted.starts, m = wanted.m, points = wanted.points, local = wanted.local;
-    const Py_ssize_t terms = monomials_of(wanted.local) - local;
+    const Py_ssize_t rows = wanted.rows, terms = monomials_of(wanted.local) - local;
     const Py_ssize_t own = wanted.stretches ? monomials_of(wanted.m) - m : 0;
     if ((wanted.half_step = REALS(half_step, 4 * m * m * starts))
-        && (wanted.nonlinear = REALS(nonlinear, points * m * terms * starts))
+        && (wanted.nonlinear = REALS(nonlinear, points * rows * terms * starts))
+        && (wanted.outward = REALS(outward, points * m * rows * starts))
         && (wanted.forms = REALS(forms, points * local * 2 * m * starts))
         && (wanted.restoring = REALS(restoring, m * own * starts)) && (wanted.step = REALS(step, starts))
         && (wanted.angle = REALS(angle, 2 * m * starts)) && (wanted.window = REALS(window, wanted.steps))

@@ -7,11 +7,12 @@
 
 /* The equations of LANES starts, and the memory that a step needs. */
 typedef struct {
-    int m, points, local, terms, stretches;
+    int m, points, rows, local, terms, stretches;
+    int *first, *end; /* (local), the components that each linear form depends on: from first to before end */
     Unexpanded unexpanded[LANES];
     Lanes *gain, *linear, *wind_speed;
-    Lanes *half_step, *nonlinear, *forms, *restoring, *angle, *step, *state, *square, *largest;
-    Lanes *x, *monomials, *shifted, *here, *middle, *k[4];
+    Lanes *half_step, *nonlinear, *outward, *forms, *restoring, *angle, *step, *state, *square, *largest;
+    Lanes *x, *forces, *monomials, *shifted, *here, *middle, *k[4];
 } Group;
 
 /* The number of monomials of degree 2 and 3. */
@@ -31,6 +32,23 @@ static void scatter(const Lanes *from, ptrdiff_t rows, ptrdiff_t starts, ptrdiff
     for (ptrdiff_t row = 0; row < rows; row++)
         for (ptrdiff_t lane = 0; lane < LANES && first + lane < starts; lane++)
             to[row * starts + first + lane] = from[row][lane];
+}
+
+/* Find the components that each linear form depends on, at any point and in any lane. */
+static void find_reach(const Group *group)
+{
+    const int components = 2 * group->m;
+    for (int l = 0; l < group->local; l++) {
+        group->first[l] = components, group->end[l] = 0;
+        for (int p = 0; p < group->points; p++)
+            for (int k = 0; k < components; k++) {
+                const Lanes form = group->forms[((ptrdiff_t)p * group->local + l) * components + k];
+                if (form[0] == 0.0 && form[1] == 0.0 && form[2] == 0.0 && form[3] == 0.0)
+                    continue;
+                group->first[l] = k < group->first[l] ? k : group->first[l];
+                group->end[l] = k + 1 > group->end[l] ? k + 1 : group->end[l];
+            }
+    }
 }
 
 /* Add the part of an unexpanded load, less its linear part, to q'' (m) at a state (2 m). */
@@ -53,37 +71,68 @@ static void add_unexpanded(const Group *group, const Lanes *state, Lanes *result
             result[i] -= group->linear[i * 2 * m + j] * state[j];
 }
 
-/* Evaluate the quadratic and cubic part of q'' (m) at a state (2 m). */
-WITHIN void nonlinear_acceleration(const Group *group, const Lanes *state, Lanes *result)
+/* Add the products of m rows of coefficients (m, terms) with the monomials to q'' (m), three rows at a time: the sum of
+ * one row waits for every addition. */
+WITHIN void add_rows(int m, int terms, const Lanes *coefficient, const Lanes *products, Lanes *result)
 {
-    const int m = group->m, local = group->local, terms = group->terms;
-    const Lanes *form = group->forms, *coefficient = group->nonlinear;
+    int i = 0;
+    for (; i + 2 < m; i += 3, coefficient += 3 * terms) {
+        Lanes first = result[i], second = result[i + 1], third = result[i + 2];
+        for (int t = 0; t < terms; t++) {
+            first += coefficient[t] * products[t];
+            second += coefficient[terms + t] * products[t];
+            third += coefficient[2 * terms + t] * products[t];
+        }
+        result[i] = first, result[i + 1] = second, result[i + 2] = third;
+    }
+    for (; i < m; i++, coefficient += terms) {
+        Lanes even = result[i], odd = {0};
+        for (int t = 0; t + 1 < terms; t += 2) {
+            even += coefficient[t] * products[t];
+            odd += coefficient[t + 1] * products[t + 1];
+        }
+        if (terms % 2)
+            even += coefficient[terms - 1] * products[terms - 1];
+        result[i] = even + odd;
+    }
+}
+
+/* Evaluate the quadratic and cubic part of q'' (m) at a state (2 m). */
+WITHIN void nonlinear_terms(const Group *group, int m, int local, int rows, const Lanes *state, Lanes *result)
+{
+    const int terms = monomials_of(local) - local;
+    const Lanes *coefficient = group->nonlinear, *outward = group->outward, *form = group->forms;
     memset(result, 0, (size_t)m * sizeof *result);
-    for (int p = 0; p < group->points; p++) {
-        for (int l = 0; l < local; l++) {
+    for (int p = 0; p < group->points; p++, coefficient += rows * terms, outward += m * rows) {
+        for (int l = 0; l < local; l++, form += 2 * m) {
             Lanes sum = {0};
-            for (int k = 0; k < 2 * m; k++)
-                sum += *form++ * state[k];
+            for (int k = group->first[l]; k < group->end[l]; k++)
+                sum += form[k] * state[k];
             group->x[l] = sum;
         }
         powers(local, group->x, group->monomials);
-        const Lanes *products = group->monomials + 1 + local;
-        for (int i = 0; i < m; i++) {
-            Lanes sum = result[i];
-            for (int t = 0; t < terms; t++)
-                sum += *coefficient++ * products[t];
-            result[i] = sum;
-        }
+        memset(group->forces, 0, (size_t)rows * sizeof *group->forces);
+        add_rows(rows, terms, coefficient, group->monomials + 1 + local, group->forces);
+        for (int i = 0; i < m; i++)
+            for (int r = 0; r < rows; r++)
+                result[i] += outward[i * rows + r] * group->forces[r];
     }
     if (group->gain)
         add_unexpanded(group, state, result);
     if (!group->stretches)
         return;
     powers(m, state, group->monomials);
-    coefficient = group->restoring;
-    for (int i = 0; i < m; i++)
-        for (int t = 0; t < terms_of(m); t++)
-            result[i] += *coefficient++ * group->monomials[1 + m + t];
+    add_rows(m, monomials_of(m) - m, group->restoring, group->monomials + 1 + m, result);
+}
+
+WIDE static void nonlinear_acceleration(const Group *group, const Lanes *state, Lanes *result)
+{
+    if (group->m == 3 && group->local == 4 && group->rows == 3) /* the hybrid model: loops of known length are unrolled */
+        nonlinear_terms(group, 3, 4, 3, state, result);
+    else if (group->m == 4 && group->local == 4 && group->rows == 3)
+        nonlinear_terms(group, 4, 4, 3, state, result);
+    else
+        nonlinear_terms(group, group->m, group->local, group->rows, state, result);
 }
 
 /* Advance the linear part by half a step: multiply by its matrix exponential. */
@@ -154,13 +203,15 @@ WIDE static void integrate_block(const Group *group, ptrdiff_t steps, const doub
 static size_t lay_out(Group *group, Lanes *memory)
 {
     const size_t m = (size_t)group->m, points = (size_t)group->points, local = (size_t)group->local;
-    const size_t terms = (size_t)group->terms, own = group->stretches ? (size_t)terms_of(group->m) : 0;
+    const size_t rows = (size_t)group->rows, terms = (size_t)group->terms;
+    const size_t own = group->stretches ? (size_t)terms_of(group->m) : 0;
     const size_t unexpanded = group->gain ? 1 : 0;
     const size_t monomials = 1 + (local + terms > m + own ? local + terms : m + own);
     struct {
         Lanes **part;
         size_t size;
-    } parts[] = {{&group->half_step, 4 * m * m}, {&group->nonlinear, points * m * terms},
+    } parts[] = {{&group->half_step, 4 * m * m}, {&group->nonlinear, points * rows * terms},
+                 {&group->outward, points * m * rows}, {&group->forces, rows},
                  {&group->forms, points * local * 2 * m}, {&group->restoring, m * own}, {&group->angle, 2 * m},
                  {&group->step, 1}, {&group->gain, unexpanded * m * m}, {&group->linear, unexpanded * 2 * m * m},
                  {&group->wind_speed, unexpanded},
@@ -179,9 +230,11 @@ static size_t lay_out(Group *group, Lanes *memory)
 int integrate_flows(const Flows *flows)
 {
     const ptrdiff_t m = flows->m, points = flows->points, local = flows->local, starts = flows->starts;
-    Group group = {.m = flows->m, .points = flows->points, .local = flows->local, .terms = terms_of(flows->local),
-                   .stretches = flows->stretches};
+    Group group = {.m = flows->m, .points = flows->points, .rows = flows->rows, .local = flows->local,
+                   .terms = terms_of(flows->local), .stretches = flows->stretches};
     Lanes unused;
+    int reach[2 * (local ? local : 1)];
+    group.first = reach, group.end = reach + local;
     if (flows->gain)
         group.gain = &unused; /* until it is laid out */
     Lanes *memory = malloc(lay_out(&group, NULL) * sizeof *memory);
@@ -190,8 +243,10 @@ int integrate_flows(const Flows *flows)
     lay_out(&group, memory);
     for (ptrdiff_t first = 0; first < starts; first += LANES) {
         gather(flows->half_step, 4 * m * m, starts, first, group.half_step);
-        gather(flows->nonlinear, points * m * group.terms, starts, first, group.nonlinear);
+        gather(flows->nonlinear, points * group.rows * group.terms, starts, first, group.nonlinear);
+        gather(flows->outward, points * m * group.rows, starts, first, group.outward);
         gather(flows->forms, points * local * 2 * m, starts, first, group.forms);
+        find_reach(&group);
         gather(flows->angle, 2 * m, starts, first, group.angle);
         gather(flows->restoring, group.stretches ? m * terms_of(group.m) : 0, starts, first, group.restoring);
         gather(flows->step, 1, starts, first, group.step);

@@ -23,6 +23,8 @@ from engine.models.relative_wind import (
 from engine.numerics import polynomial
 from engine.spec import AerodynamicModel, Line
 
+WORTH = 0.75  # share of the products at all points, from which one polynomial is worth its integration
+
 
 @dataclass(frozen=True, slots=True)
 class PolynomialLoad:
@@ -171,6 +173,32 @@ def _of_components(table: FloatArray, load: PolynomialLoad, active: Sequence[int
     select = np.eye(load.forms.shape[-1])[list(active)]
     forms = np.broadcast_to(select, (*table.shape[:-2], 1, *select.shape))
     return polynomial_load(forms, table[..., None, :, :], load.angle)
+
+
+def cheapest_load(load: PolynomialLoad) -> PolynomialLoad:
+    """Return a load of one polynomial in all components of (q, q'/U), where that costs less than all its points.
+
+    The number of its monomials grows with the third power of the number of components, so it pays for few coordinates.
+    load: leading axes (lines, groups), with one point for every quadrature point.
+    """
+    points, local, components = load.forms.shape[-3:]
+    coordinates = load.forms.any(axis=tuple(range(load.forms.ndim - 1))).reshape(2, -1).any(axis=0)  # no relief
+    active = np.flatnonzero(np.tile(coordinates, 2)).tolist()
+    one, each = (_products(variables, components) for variables in (len(active), local))
+    if one > WORTH * points * each:
+        return load
+    # One line after another, because the products of forms at all points of a stack would take much memory.
+    lines = zip(load.table, load.forms[..., active], strict=True)
+    return _of_components(np.stack([polynomial.substitute(*line) for line in lines]), load, active)
+
+
+def _products(variables: int, components: int) -> int:
+    """Return the number of multiplications that force and gradient take at a point, about."""
+    outputs = components // 2
+    lower = 1 + variables + polynomial.count(variables, 2)
+    monomials = lower - 1 + polynomial.count(variables, 3)
+    forms = 0 if variables > outputs else variables * (1 + outputs) * outputs
+    return monomials * (1 + outputs) + outputs * variables * lower + forms
 
 
 def published_load(

@@ -5,7 +5,7 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W, device_damping
 from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
-from engine.models.aerodynamic_load import span_load, take_load
+from engine.models.aerodynamic_load import cheapest_load, span_load, take_load
 from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
 from engine.models.relief import DAMPING_RATIO, relief_displacement
@@ -45,6 +45,7 @@ def finite_element_model(
         at[:, None],
         analysis.aerodynamic_model,
     )
+    load = load if analysis.load_stands else cheapest_load(load)
     stretching = stretching_of(discretization, moving[:, None]) if included else None
     mass, stiffness = _projected(discretization, vectors) if relieves else _diagonal(values)
     damping = _modal_damping(discretization, modal, shapes, modes.loops)

@@ -12,6 +12,7 @@ from engine.mechanics.finite_elements import FIELDS, Matrices, device_damping
 from engine.mechanics.modes import DirectionalShapes, at_points
 from engine.models.aerodynamic_load import (
     PolynomialLoad,
+    cheapest_load,
     integrate_along_span,
     integrate_each,
     published_load,
@@ -117,6 +118,7 @@ def joint_model(
         values[:, None],
         analysis.aerodynamic_model,
     )
+    load = load if analysis.load_stands else cheapest_load(load)
     unstable = np.any([model.statically_unstable for model in alone], axis=0)
     return ReducedModel(
         mass=mass,

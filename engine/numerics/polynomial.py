@@ -10,9 +10,10 @@ from math import comb
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import FloatArray, IntArray, merge_axes
 
 DEGREE = 3
+FEW = 4  # variables, up to which a dense product collects equal monomials faster than an index
 
 
 @lru_cache
@@ -53,10 +54,8 @@ def slopes(table: FloatArray) -> FloatArray:
 
     The first entry of the last axis is the constant; the others are in the order of `monomials`.
     """
-    variables = _variables_of(table.shape[-1])
-    derivative = _derivative_map(variables)
-    flat = table @ derivative.reshape(derivative.shape[0], -1)
-    return flat.reshape(*table.shape[:-1], *derivative.shape[1:])
+    index, factor = _derivative_map(_variables_of(table.shape[-1]))
+    return np.asarray(table[..., index] * factor)
 
 
 def _variables_of(size: int) -> int:
@@ -67,17 +66,19 @@ def _variables_of(size: int) -> int:
 
 
 @lru_cache
-def _derivative_map(variables: int) -> FloatArray:
-    """Return the linear map (monomials, variables, 1 + monomials of degree 1 and 2) from a table to its slopes."""
+def _derivative_map(variables: int) -> tuple[IntArray, FloatArray]:
+    """Return, for each variable and each monomial of degree 0 to 2, the monomial that their product is, and its power.
+
+    Shape (variables, 1 + monomials of degree 1 and 2) each: the derivative by that variable of that monomial alone
+    holds the lower one, with the power as factor.
+    """
     every = monomials(variables)
-    position = {(): 0} | {m: i + 1 for i, m in enumerate(every) if len(m) < DEGREE}
-    result = np.zeros((len(every), variables, len(position)))
-    for i, monomial in enumerate(every):
-        for variable in set(monomial):
-            rest = list(monomial)
-            rest.remove(variable)
-            result[i, variable, position[tuple(rest)]] = monomial.count(variable)
-    return result
+    position = {monomial: i for i, monomial in enumerate(every)}
+    lower = [(), *(monomial for monomial in every if len(monomial) < DEGREE)]
+    products = [[tuple(sorted((*monomial, variable))) for monomial in lower] for variable in range(variables)]
+    index = np.array([[position[product] for product in row] for row in products])
+    factor = np.array([[float(product.count(variable)) for product in row] for variable, row in enumerate(products)])
+    return index, factor
 
 
 def substitute(table: FloatArray, forms: FloatArray) -> FloatArray:
@@ -93,19 +94,29 @@ def substitute(table: FloatArray, forms: FloatArray) -> FloatArray:
     -------
     (..., outputs, monomials of variables)
     """
-    local = forms.shape[-2]
-    result, start = [], 0
-    products = forms
-    for degree in (1, 2, 3):
-        if degree > 1:
-            index, factor = _products(local)[degree - 2]
-            products = multiply_forms(products[..., index, :], forms[..., factor, :])
-        stop = start + count(local, degree)
-        coefficients = np.moveaxis(table[..., start:stop], -2, -3)
-        flat = coefficients.reshape(*coefficients.shape[:-2], -1)
-        result.append(flat @ products.reshape(*products.shape[:-3], -1, products.shape[-1]))
-        start = stop
-    return np.concatenate(result, axis=-1)
+    local, variables = forms.shape[-2:]
+    pair, factor = _products(local)[0]
+    squares = merge_axes(multiply_forms(forms[..., pair, :], forms[..., factor, :]), -3, -2)
+    linear, quadratic = (
+        merge_axes(np.moveaxis(table[..., part], -3, -2), -2)
+        for part in (slice(local), slice(local, local + pair.size))
+    )
+    # The third factor first, so that products of three are collected only once, after the sum over the points.
+    padded = np.concatenate([table, np.zeros((*table.shape[:-1], 1))], axis=-1)[..., _cubes(local)]
+    by_last = np.moveaxis(
+        padded @ forms[..., None, :, :], (-4, -2), (-2, -1)
+    )  # (..., outputs, variables, points, pairs)
+    cubic = (merge_axes(merge_axes(by_last, -2), -3, -2) @ squares).reshape(*by_last.shape[:-2], squares.shape[-1])
+    cubic = collected(merge_axes(cubic.swapaxes(-1, -2), -2), variables, DEGREE)
+    return np.concatenate([linear @ merge_axes(forms, -3, -2), quadratic @ squares, cubic], axis=-1)
+
+
+@lru_cache
+def _cubes(variables: int) -> IntArray:
+    """Return the monomials x_i x_j x_k, i <= j <= k, by the pair (i, j) and k, else their count: (pairs, variables)."""
+    position = {monomial: i for i, monomial in enumerate(monomials(variables))}
+    pairs = combinations_with_replacement(range(variables), 2)
+    return np.array([[position.get((*pair, k), len(position)) for k in range(variables)] for pair in pairs])
 
 
 def multiply_forms(left: FloatArray, right: FloatArray) -> FloatArray:
@@ -125,7 +136,24 @@ def collected(products: FloatArray, variables: int, degree: int) -> FloatArray:
 
     products: (..., monomials of degree - 1 times variables); returns (..., monomials of degree).
     """
-    return np.asarray(products @ _fold(variables, degree))
+    if variables <= FEW:
+        return np.asarray(products @ _fold(variables, degree))
+    index, known = _equal_products(variables, degree)
+    return np.asarray((products[..., index] * known).sum(axis=-1))
+
+
+@lru_cache
+def _equal_products(variables: int, degree: int) -> tuple[IntArray, FloatArray]:
+    """Return the products of which each monomial is the sum, and 1, or 0 on padding: (monomials, degree) each."""
+    below = {m: i for i, m in enumerate(combinations_with_replacement(range(variables), degree - 1))}
+    here = list(combinations_with_replacement(range(variables), degree))
+    index, known = np.zeros((len(here), degree), dtype=np.intp), np.zeros((len(here), degree))
+    for row, monomial in enumerate(here):
+        for column, variable in enumerate(dict.fromkeys(monomial)):
+            rest = list(monomial)
+            rest.remove(variable)
+            index[row, column], known[row, column] = below[tuple(rest)] * variables + variable, 1.0
+    return index, known
 
 
 @lru_cache

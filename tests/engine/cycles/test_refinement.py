@@ -36,7 +36,7 @@ def test_no_exponent_moves_far_between_two_points() -> None:
     branch_set = follow_from_hopf_points(model, crossings, np.array([0]), 7, WINDS)
     exponents = signed_exponents(branch_set, np.arange(1, branch_set.points.branch.size))
     for i in range(1, branch_set.points.branch.size - 1):
-        here, there = (row[row.real > LIGHT] for row in (exponents[i], exponents[i + 1]))
+        here, there = (row[np.abs(row.real) < LIGHT] for row in (exponents[i], exponents[i + 1]))
         gaps = np.abs(np.exp(here)[:, None] - np.exp(there)[None]).min(axis=1)
         assert gaps.max() < 1.1 * FAR
 
