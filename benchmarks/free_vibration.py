@@ -1,10 +1,14 @@
-"""Free vibration in two horizontal loops at large amplitude: frequency over amplitude, without wind and damping."""
+"""Free vibration at large amplitude: frequency over amplitude, without wind and damping.
+
+Two horizontal loops of a single conductor, and torsion of a twin bundle.
+"""
 
 import math
 from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
 from benchmarks.lines import source_line
@@ -15,11 +19,13 @@ from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import ReducedModel, take
 from engine.models.stretching import restoring_force
-from engine.spec import Analysis, Ice, Line, LongitudinalInertia, Stretching, Support, Supports
+from engine.spec import Analysis, CrossSection, Ice, Line, LongitudinalInertia, Stretching, Support, Supports
 
 HARMONICS = 4
 SAMPLES = 4 * HARMONICS + 4
-HORIZONTAL = 1
+HORIZONTAL, TORSIONAL = 1, 2
+SMALL = 1e-3  # amplitude of a linear vibration [m]
+STEPS = 240  # samples a period of a released bundle
 ASKED = Analysis(longitudinal_inertia=LongitudinalInertia.CONDENSED, stretching=Stretching.INCLUDED)
 
 
@@ -111,3 +117,62 @@ def _frequency(model: ReducedModel, coordinate: int, amplitude: float) -> float:
     if not np.abs(residual(solution.x)).max() < 1e-9:
         raise RuntimeError(f"no periodic motion of amplitude {amplitude}: {solution.message}")
     return float(solution.x[-1] * natural / (2.0 * math.pi))
+
+
+def twin(section: CrossSection) -> Line:
+    """Return the source's horizontal twin between dead ends as two chains of bars can be: no torsional rigidity."""
+    line, held = source_line(2), Support(dead_end=True)
+    return replace(
+        line,
+        conductor=replace(line.conductor, torsional_rigidity=1e-6, polar_inertia=1e-12),
+        bundle=replace(line.bundle, section=section),
+        span=replace(line.span, elements=20),
+        supports=Supports(None, held, held),
+        ice=Ice(line.ice.aerodynamics),
+    )
+
+
+def released_shift(line: Line, loops: int, amplitude: float, periods: int = 24) -> float:
+    """Return the relative shift of a twin's frequency when it is released from a sine of Theta, against a small one.
+
+    Parameters
+    ----------
+    line : Line
+    loops : int
+    amplitude : float
+        Of the sub-conductors, up and down [m].
+    periods : int
+        Number of periods that are counted, by the zero crossings of the first loop's middle.
+    """
+    made = discretized([line])
+    shapes = directional_shapes(made.matrices, made.profile.arc_length, (1, 2, 3, 5))
+    model = take(finite_element_model(made, full_modes(made.matrices, (1, 2, 3, 5)), shapes, ASKED), 0)
+    sine = np.sin(loops * math.pi * np.linspace(0.0, 1.0, model.shapes.shape[-1]))
+    natural = 0.5 * loops / line.span.length * math.sqrt((line.span.horizontal_tension or 0.0) / line.conductor.mass)
+    start = np.zeros((3, sine.size))
+    start[TORSIONAL] = sine / abs(line.bundle.positions[0][1])
+    shares = np.linalg.lstsq(model.shapes.reshape(len(model.shapes), -1).T, start.ravel(), rcond=None)[0]
+    large, small = (_released(model, scale * shares, natural, loops, periods) for scale in (amplitude, SMALL))
+    return large / small - 1.0
+
+
+def _released(model: ReducedModel, start: FloatArray, natural: float, loops: int, periods: int) -> float:
+    """Integrate from rest and return the mean frequency of Theta in the middle of the first loop [Hz]."""
+    assert model.stretching is not None
+    stretching, m, inverse = model.stretching, start.size, np.linalg.inv(model.mass)
+
+    def rate(_: float, y: FloatArray) -> FloatArray:
+        return np.append(y[m:], -inverse @ (model.stiffness @ y[:m] + restoring_force(stretching, y[None, :m])[0]))
+
+    times = np.arange(1, (periods + 1) * STEPS + 1) / (natural * STEPS)
+    y = np.append(start, np.zeros(m))
+    solution = solve_ivp(rate, (0.0, times[-1]), y, method="DOP853", t_eval=times, rtol=1e-9, atol=1e-10)
+    middle = round((model.shapes.shape[-1] - 1) / (2 * loops))
+    return mean_frequency(solution.y[:m].T @ model.shapes[:, TORSIONAL, middle], natural * STEPS)
+
+
+def mean_frequency(series: FloatArray, rate: float) -> float:
+    """Return the mean frequency between the first and the last upward zero crossing of samples at a rate [Hz]."""
+    upward = np.flatnonzero((series[:-1] < 0.0) & (series[1:] >= 0.0))
+    crossing = upward + series[upward] / (series[upward] - series[upward + 1])
+    return float((upward.size - 1) / (crossing[-1] - crossing[0]) * rate)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import openseespy.opensees as ops
 
+from benchmarks.free_vibration import mean_frequency
 from engine.arrays import FloatArray
 
 GRAVITY = 9.81
@@ -285,8 +286,6 @@ def swinging_frequency(
 ) -> float:
     """Return the mean frequency [Hz] of a single span released from a horizontal sine of some loops.
 
-    It is released evenly strained: else longitudinal waves would run along the chain for ever.
-
     Parameters
     ----------
     conductor : Conductor
@@ -303,44 +302,70 @@ def swinging_frequency(
     RuntimeError
         If OpenSees finds no equilibrium at some instant.
     """
-    bars, steps = 24 * loops, 240
-    length = section.spans[0]
-    natural = 0.5 * loops / length * math.sqrt(conductor.horizontal_tension / conductor.mass)
     with empty_model():
-        nodes = chain(conductor, section, bars)
+        nodes = chain(conductor, section, 24 * loops)
         _equilibrium(conductor, section, nodes)
-        ops.loadConst("-time", 0.0)
-        for node in nodes:
-            ops.setNodeDisp(node.tag, 3, amplitude * math.sin(loops * math.pi * node.x / length), "-commit")
-            along = _even_strain(conductor, section, loops * math.pi / length, amplitude, node.x)
-            ops.setNodeDisp(node.tag, 1, ops.nodeDisp(node.tag, 1) + along, "-commit")
-        ops.wipeAnalysis()
-        ops.system("BandGeneral")
-        ops.numberer("RCM")
-        ops.constraints("Plain")
-        ops.test("NormDispIncr", 1e-9, 50)
-        ops.algorithm("Newton")
-        ops.integrator("Newmark", 0.5, 0.25)
-        ops.analysis("Transient")
-        watched, series = nodes[bars // (2 * loops)].tag, [amplitude]
-        for _ in range(periods * steps + steps):
-            if ops.analyze(1, 1.0 / (natural * steps)) != 0:
-                raise RuntimeError("OpenSees lost the chain's equilibrium while it swings")
-            series.append(ops.nodeDisp(watched, 3))
-    return _mean_frequency(np.array(series), natural * steps)
+        _release(conductor, section, nodes, (0.0, amplitude), loops)
+        return _swinging(conductor, section, loops, periods, {nodes[12].tag: (3, 1.0)})
 
 
-def _even_strain(conductor: Conductor, section: Section, wave: float, amplitude: float, x: float) -> float:
-    """Return U at x that strains a taut span evenly under W = amplitude sin(wave x), between its end springs [m]."""
-    length, (left, right) = section.spans[0], section.end_stiffness
-    square = (0.5 * wave * amplitude) ** 2
-    tension = square * length / (length / conductor.axial_rigidity + 1.0 / left + 1.0 / right)
-    own = square * (x + math.sin(2.0 * wave * x) / (2.0 * wave))
-    return tension / left + tension / conductor.axial_rigidity * x - own
+def twin_swinging_frequency(
+    conductor: Conductor, section: Section, loops: int, amplitude: float, periods: int = 24
+) -> float:
+    """Return the same of a horizontal twin whose chains are released from opposite vertical sines, as torsion is.
+
+    The chains move across the line together, but along it each by itself.
+    """
+    with empty_model():
+        one = chain(conductor, section, 24 * loops)
+        other = chain(conductor, section, 24 * loops, first=len(one) + 1)
+        for left, right in zip(one[1:-1], other[1:-1], strict=True):
+            ops.equalDOF(left.tag, right.tag, 3)
+        _equilibrium(conductor, section, one, other)
+        _release(conductor, section, one, (amplitude, 0.0), loops)
+        _release(conductor, section, other, (-amplitude, 0.0), loops)
+        return _swinging(conductor, section, loops, periods, {one[12].tag: (2, 1.0), other[12].tag: (2, -1.0)})
 
 
-def _mean_frequency(series: FloatArray, rate: float) -> float:
-    """Return the mean frequency between the first and the last upward zero crossing of samples at a rate [Hz]."""
-    upward = np.flatnonzero((series[:-1] < 0.0) & (series[1:] >= 0.0))
-    crossing = upward + series[upward] / (series[upward] - series[upward + 1])
-    return float((upward.size - 1) / (crossing[-1] - crossing[0]) * rate)
+def _release(
+    conductor: Conductor, section: Section, nodes: Sequence[Node], amplitude: tuple[float, float], loops: int
+) -> None:
+    """Displace a chain up and out by sines of some loops, evenly strained: else longitudinal waves would run for ever.
+
+    A bar of extent (dx, dy) gets longer by (dx dU + dy dV + (dV^2 + dW^2)/2)/ds, and N ds/dx stretches it by
+    N ds^2/(EA dx).
+    """
+    x, y = np.array([(node.x, node.y) for node in nodes]).T
+    sine = np.sin(loops * math.pi * x / section.spans[0])
+    up, out = amplitude[0] * sine, amplitude[1] * sine
+    dx, dy, give = np.diff(x), np.diff(y), 1.0 / np.array(section.end_stiffness)
+    own = (dy * np.diff(up) + 0.5 * (np.diff(up) ** 2 + np.diff(out) ** 2)) / dx
+    bars = np.hypot(dx, dy) ** 3 / dx**2 / conductor.axial_rigidity
+    tension = own.sum() / (bars.sum() + give.sum())
+    along = tension * give[0] + np.append(0.0, np.cumsum(tension * bars - own))
+    for node, *displacement in zip(nodes, along.tolist(), up.tolist(), out.tolist(), strict=True):
+        for direction, value in enumerate(displacement, start=1):
+            ops.setNodeDisp(node.tag, direction, ops.nodeDisp(node.tag, direction) + value, "-commit")
+
+
+def _swinging(
+    conductor: Conductor, section: Section, loops: int, periods: int, watched: dict[int, tuple[int, float]]
+) -> float:
+    """Integrate from the displaced state and return the mean frequency [Hz] of displacements of nodes, weighted."""
+    steps = 240
+    natural = 0.5 * loops / section.spans[0] * math.sqrt(conductor.horizontal_tension / conductor.mass)
+    ops.loadConst("-time", 0.0)
+    ops.wipeAnalysis()
+    ops.system("BandGeneral")
+    ops.numberer("RCM")
+    ops.constraints("Plain")
+    ops.test("NormDispIncr", 1e-9, 50)
+    ops.algorithm("Newton")
+    ops.integrator("Newmark", 0.5, 0.25)
+    ops.analysis("Transient")
+    series = []
+    for _ in range(periods * steps + steps):
+        if ops.analyze(1, 1.0 / (natural * steps)) != 0:
+            raise RuntimeError("OpenSees lost the chain's equilibrium while it swings")
+        series.append(sum(weight * ops.nodeDisp(tag, direction) for tag, (direction, weight) in watched.items()))
+    return mean_frequency(np.array(series), natural * steps)

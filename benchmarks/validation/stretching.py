@@ -9,9 +9,18 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.bundle_chain import stretched
-from benchmarks.free_vibration import EXACT_SHIFTS, SPANS, finite_element_shift, hybrid_shift
+from benchmarks.free_vibration import (
+    EXACT_SHIFTS,
+    SMALL,
+    SPANS,
+    finite_element_shift,
+    hybrid_shift,
+    released_shift,
+    twin,
+)
 from benchmarks.lines import source_line
 from benchmarks.models import discretized
+from benchmarks.opensees import Conductor, Section, twin_swinging_frequency
 from benchmarks.validation.common import percent, table
 from engine.arrays import FloatArray
 from engine.models.stretching import dynamic_tension, restoring_force, stretching_of, take_stretching
@@ -22,7 +31,7 @@ MOTIONS = (  # amplitudes of V, W [m] and Theta [rad] in one loop, then in two
     (0.6, 0.3, 0.3, 0.2, 0.2, -0.2),
     (0.2, 0.1, 0.1, 0.05, 0.05, -0.1),
 )
-SMALL = 1e-3
+RELEASED, PERIODS = (0.2, 0.36, 0.95), 8
 
 
 def section() -> Iterator[str]:
@@ -40,6 +49,14 @@ def section() -> Iterator[str]:
     )
     yield table(["span", "A m", "exact %", "hybrid %", "finite element %"], rows)
     yield (
+        "\nA twin between dead ends in free torsional vibration, released from a sine of Theta in which the\n"
+        "sub-conductors are A above and below their places: shift of the frequency over\n"
+        f"{PERIODS} periods, in percent. OpenSees has two chains of bars, released evenly strained, which move across\n"
+        "the line together and along it each by itself. The finite element model, with free and with rigid sections,\n"
+        "holds the modes of 1, 2, 3 and 5 loops.\n"
+    )
+    yield table(["loops", "A m", "OpenSees %", "free %", "rigid %"], list(_beside_opensees()))
+    yield (
         "\nFree sections (theory section 12.2): a bundle between dead ends is moved across the line, in one and in\n"
         "two loops together, by V and W in m and Theta in rad. P is the energy beyond that of the linear stiffness,\n"
         "N_i what each sub-conductor's horizontal tension gains. The chains of bars (benchmarks/bundle_chain.py) have\n"
@@ -47,6 +64,18 @@ def section() -> Iterator[str]:
     )
     head = ["n", "yokes", "V W Theta, one loop", "two loops", "P, J", "chains", "%", "N_i, N", "chains"]
     yield table(head, [row for n in (2, 3, 4) for yoke in Yoke for row in _beside_chains(n, yoke)])
+
+
+def _beside_opensees() -> Iterator[list[object]]:
+    conductor = source_line(2).conductor
+    peer, span = Conductor(conductor.axial_rigidity, conductor.mass, 30e3), Section((125.88,))
+    for loops in (1, 2):
+        small = twin_swinging_frequency(peer, span, loops, SMALL, PERIODS)
+        for amplitude in RELEASED:
+            expected = twin_swinging_frequency(peer, span, loops, amplitude, PERIODS) / small - 1.0
+            lines = twin(CrossSection.FREE), twin(CrossSection.RIGID)
+            own = (released_shift(line, loops, amplitude, PERIODS) for line in lines)
+            yield [loops, amplitude, *(f"{100.0 * shift:.3f}" for shift in (expected, *own))]
 
 
 def _beside_chains(subconductors: int, yoke: Yoke) -> Iterator[list[object]]:

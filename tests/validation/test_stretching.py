@@ -4,7 +4,16 @@ from types import ModuleType
 
 import pytest
 
-from benchmarks.free_vibration import EXACT_SHIFTS, SPANS, finite_element_shift, hybrid_shift
+from benchmarks.free_vibration import (
+    EXACT_SHIFTS,
+    SMALL,
+    SPANS,
+    finite_element_shift,
+    hybrid_shift,
+    released_shift,
+    twin,
+)
+from engine.spec import CrossSection
 
 
 @pytest.mark.parametrize(("name", "amplitude", "exact"), EXACT_SHIFTS[:-1])
@@ -30,3 +39,16 @@ def test_opensees_swings_at_the_same_frequency(peer: ModuleType) -> None:
     section = peer.Section((125.88,), end_stiffness=(1.285e5, 1.285e5))
     small, large = (peer.swinging_frequency(conductor, section, 2, size) for size in (1e-3, 0.95))
     assert hybrid_shift(line, 0.95) == pytest.approx(large / small - 1.0, rel=0.02)
+
+
+@pytest.mark.parametrize(("loops", "amplitude"), [(1, 0.95), (2, 0.36)])
+def test_two_chains_of_opensees_twist_at_the_frequency_of_free_sections(
+    peer: ModuleType, loops: int, amplitude: float
+) -> None:
+    conductor = twin(CrossSection.FREE).conductor
+    chain = peer.Conductor(conductor.axial_rigidity, conductor.mass, 30e3), peer.Section((125.88,)), loops
+    small, large = (peer.twin_swinging_frequency(*chain, size, periods=4) for size in (SMALL, amplitude))
+    lines = twin(CrossSection.FREE), twin(CrossSection.RIGID)
+    free, rigid = (released_shift(line, loops, amplitude, periods=4) for line in lines)
+    assert free == pytest.approx(large / small - 1.0, rel=0.03)
+    assert abs(rigid - free) > 0.1 * abs(free)
