@@ -11,6 +11,7 @@ from typing import Any
 from engine.progress import Progress, finished
 from engine.report.verdict import verdict
 from engine.result import TABLES, BifurcationRow, CriticalWindSpeedRow, Result
+from engine.risk.expectation import risk_rows
 from engine.spec import Analysis, Line
 
 STATES = 8  # static states from still air up to the limit whose critical wind speeds are starts
@@ -77,7 +78,8 @@ def analyse_lines(
     results = []
     for line in lines:
         result = (yield from _at_each_wind(line, analysis, in_one_state)) if line.follows_wind else next(together)
-        results.append(replace(result, verdict=(verdict(result, line, analysis),)))
+        found = replace(result, verdict=(verdict(result, line, analysis),))
+        results.append(replace(found, risk=risk_rows(found, line, analysis)))
     return results
 
 

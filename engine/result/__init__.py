@@ -26,6 +26,7 @@ from engine.result.motions import (
     TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
+from engine.result.risk import RiskRow
 from engine.result.tables import TABLES, Result, Tables
 from engine.result.verdict import VerdictRow
 
@@ -49,6 +50,7 @@ __all__ = [
     "PhysicsRow",
     "PlacedDeviceRow",
     "Result",
+    "RiskRow",
     "StaticEquilibriumRow",
     "StaticState",
     "Table",

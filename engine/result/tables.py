@@ -25,6 +25,7 @@ from engine.result.motions import (
     TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
+from engine.result.risk import RiskRow
 from engine.result.verdict import VerdictRow
 
 
@@ -59,6 +60,9 @@ class Tables:
     loop_competitions: Annotated[
         tuple[LoopCompetitionRow, ...],
         Title("Stable cycles tested with the other loops; empty unless loop_competition is checked"),
+    ] = ()
+    risk: Annotated[
+        tuple[RiskRow, ...], Title("Hours and probability of galloping a year; empty without the line's climate")
     ] = ()
     device_effects: Annotated[
         tuple[DeviceEffectRow, ...],

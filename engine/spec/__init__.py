@@ -22,6 +22,7 @@ from engine.spec.analysis import (
     TorusSearch,
     check_compatible,
 )
+from engine.spec.climate import YEAR_HOURS, Climate, Icing, Ranged, WindSector
 from engine.spec.devices import (
     THIS,
     AirflowSpoiler,
@@ -59,6 +60,7 @@ __all__ = [
     "GRAVITY",
     "THIS",
     "TURN",
+    "YEAR_HOURS",
     "AerodynamicLoad",
     "AerodynamicModel",
     "Aerodynamics",
@@ -68,6 +70,7 @@ __all__ = [
     "BlowOut",
     "Bundle",
     "Check",
+    "Climate",
     "Closure",
     "Coefficients",
     "Conductor",
@@ -79,6 +82,7 @@ __all__ = [
     "DeviceEffect",
     "Ice",
     "IceSegment",
+    "Icing",
     "InterphaseSpacer",
     "Line",
     "LongitudinalInertia",
@@ -92,6 +96,7 @@ __all__ = [
     "PhysicsRequest",
     "Placement",
     "PointDevice",
+    "Ranged",
     "Section",
     "SectionSpan",
     "Spacer",
@@ -106,6 +111,7 @@ __all__ = [
     "TorsionalDamper",
     "TorusSearch",
     "Wind",
+    "WindSector",
     "Yoke",
     "check_compatible",
     "check_placement",

@@ -117,7 +117,7 @@ class Analysis:
     `with_physics` fills in; lacks: the field of the line that kept an analysis for which no physics was asked from
     being full, None if there is none; critical_wind_limit: highest wind speed searched for critical wind speeds [m/s];
     harmonics: of the harmonic balance; finite_element_loops: loops of the modes that the finite element model combines.
-    If it is empty, that model gives its natural frequencies only.
+    If it is empty, that model gives its natural frequencies only; risk: whether a line with a climate gets its risk.
 
     Raises
     ------
@@ -144,6 +144,7 @@ class Analysis:
     amplitude_curves: AmplitudeCurves = AmplitudeCurves.NEGLECTED
     check: Check = Check.NONE
     quasi_periodic: TorusSearch = TorusSearch.LASTING
+    risk: bool = True
 
     def __post_init__(self) -> None:
         """Check the rules of every field."""

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from engine.outcome import Fault, require
+from engine.spec.climate import Climate
 from engine.spec.devices import Device, InterphaseSpacer, StretchDevice
 from engine.spec.environment import Aerodynamics, Damping, Ice, IceSegment, Wind
 from engine.spec.phases import Phase, phase_faults
@@ -17,7 +18,8 @@ from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 class Line:
     """One iced span with everything that its motion depends on, or the span of interest of a section of spans.
 
-    phases: other phases and wires of the same span, which clearances are taken to and interphase spacers tie.
+    phases: other phases and wires of the same span, which clearances are taken to and interphase spacers tie; climate:
+    how its winds and its icing are spread over the year, which no motion depends on.
 
     Raises
     ------
@@ -36,6 +38,7 @@ class Line:
     devices: tuple[Device, ...] = ()
     section: Section | None = None
     phases: tuple[Phase, ...] = ()
+    climate: Climate | None = None
 
     def __post_init__(self) -> None:
         """Check positions, overlaps of devices, that inertia is positive, that drag is known, and the section."""
