@@ -35,6 +35,7 @@ from app.routes import (
     health,
     jobs,
     lines,
+    own_aerodynamics,
     own_conductors,
     reference,
     results,
@@ -112,7 +113,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(HeadAsGet)
     for module in (jobs, lines, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)
-    for module in (events, deliveries, aerodynamics, own_conductors, reference, health, explorer):
+    for module in (events, deliveries, aerodynamics, own_aerodynamics, own_conductors, reference, health, explorer):
         app.include_router(module.router)
     app.mount(explorer.ASSETS, explorer.assets())
     return app

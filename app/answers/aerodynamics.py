@@ -36,6 +36,12 @@ class FitAnswer(Answer):
     den_hartog: DenHartog = described(
         "Den Hartog's criterion of the fit, at the static angle", convert.example_row(convert.DenHartog)
     )
+    doubts: list[str] = described("Slips that the table shows: units of angles, lift and drag swapped", [])
+    ice_direction_deg: float | None = described(
+        "Where the moments have the ice point at angle 0, clockwise from straight up; if that is the opposite side, "
+        "the moment has the other sign; null if no centre of pressure explains them [deg]",
+        287.0,
+    )
     den_hartog_over_angle: list[DenHartogRow] = described(
         "Den Hartog's criterion over the whole table", [example_of(DenHartogRow)]
     )

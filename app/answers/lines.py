@@ -43,4 +43,5 @@ class ResolvedLine(Answer):
     line: dict[str, Any] = described("The explicit line document", example("c11-twin"))
     assumptions: list[AssumptionRow] = described("Where each value came from", [example_of(AssumptionRow)])
     states: SpanStates = described("Tension and sag", example_of(SpanStates))
+    doubts: list[str] = described("Slips that the coefficients show, such as slopes per degree", [])
     kept: dict[str, Any] = described("Fields that resolving does not touch", {"required_clearance_m": 1.5})

@@ -12,6 +12,7 @@ import orjson
 from app import schemas
 from app.convert import parts, study
 from app.convert.assemble import SoundParts, gather
+from app.convert.fit import doubts_of
 from app.convert.ranking_figures import ranking_figures
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
@@ -207,7 +208,8 @@ def point_results(
     points: Iterable[tuple[int, dict[str, Any]]], lines: Sequence[spec.Line], results: Sequence[Result]
 ) -> Iterator[PointResult]:
     """Yield the engine's results of points as plain values; a value that is not finite becomes null."""
-    for (number, values), result, figures in zip(points, results, ranking_figures(lines, results), strict=True):
+    figures_of_lines = ranking_figures(lines, results)
+    for (number, values), line, result, figures in zip(points, lines, results, figures_of_lines, strict=True):
         yield PointResult(
             point=number,
             axes=values,
@@ -216,7 +218,7 @@ def point_results(
             ranking_figures=figures,
             tables_json=_json({name: getattr(result, name) for name in TABLES}),
             orbits_json=_json(result.orbits),
-            warnings=list(result.warnings),
+            warnings=[*(f"The line: {doubt}." for doubt in doubts_of(line.ice.aerodynamics)), *result.warnings],
             engine_version=result.engine_version,
             failure=None,
         )

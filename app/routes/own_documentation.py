@@ -3,7 +3,7 @@
 from typing import Any
 
 from app.answers.lines import ResolvedLine
-from app.answers.owned import OwnConductorRow
+from app.answers.owned import OwnConductorRow, OwnTableRow
 from app.answers.reference import ConductorRow
 from app.schemas.fields import example_of
 
@@ -22,6 +22,11 @@ SHEET_BODY: dict[str, Any] = {
         "content": {"text/csv": {"schema": {"type": "string"}, "example": SHEET}},
     }
 }
+
+_KEPT = example_of(OwnTableRow)
+OWN_TABLE: dict[str, Any] = _KEPT
+OWN_TABLES: dict[str, Any] = {"tables": [_KEPT]}
+OWN_TABLE_REQUESTS: dict[str, Any] = {"our-d": {"summary": "A table to name in lines", "value": _KEPT["table"]}}
 
 KNOWN_LINE: dict[str, Any] = {
     "name": "twin Drake, 300 m",

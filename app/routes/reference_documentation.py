@@ -33,6 +33,8 @@ FIT: dict[str, Any] = {
     "residual": {"vertical": 1e-05, "horizontal": 2e-05, "torsional": 2e-05},
     "rows_used": 9,
     "den_hartog": {"coefficient": -0.16671, "unstable": True},
+    "doubts": [],
+    "ice_direction_deg": 108.00089,
     "den_hartog_over_angle": [
         {"angle_deg": a, "coefficient": c, "unstable": c < 0.0}
         for a, c in (

@@ -5,7 +5,7 @@ from itertools import pairwise
 from pydantic import Field, field_validator
 from pydantic_core import PydanticCustomError
 
-from app.schemas.fields import Document, quantity
+from app.schemas.fields import Document, Label, quantity
 
 FULL_TURN = (-360.0, 360.0)
 _COEFFICIENT = (-1e3, 1e3)
@@ -43,3 +43,20 @@ class MeasuredCoefficients(Document):
                 message = "angles must increase, but row {number} (from 0) has {angle} after {before}"
                 raise PydanticCustomError("rising", message, found)
         return table
+
+
+class OwnTable(MeasuredCoefficients):
+    """A table of measured coefficients that an owner keeps, to name in lines."""
+
+    name: Label = Field(description='Name for `{"catalogue": name}` in a line\'s `aerodynamics`', examples=["Our D"])
+    reference_diameter: float | None = quantity(
+        "reference_diameter_m",
+        "Diameter to which the coefficients refer: forces over it, moments over its square; the bare one if null",
+        "m",
+        (1e-3, 0.5),
+        0.0286,
+        None,
+    )
+    source: Label | None = Field(
+        default=None, description="Where the table comes from", examples=["wind tunnel, report 12, Reynolds number 4e4"]
+    )

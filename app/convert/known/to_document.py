@@ -9,6 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from app import schemas
 from app.convert.check import request_faults
+from app.convert.fit import doubts_of
 from app.convert.known.own_rows import OwnRows
 from app.convert.known.to_engine import known_line, to_pointer
 from app.schemas import known as said
@@ -43,8 +44,8 @@ def resolved_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
     -------
     dict
         `line`: the explicit document, of which an analysis gives the same results; `assumptions`: a row for each value;
-        `states`: the span every day and under ice, null where its iced tension is given; `kept`: fields that resolving
-        does not touch.
+        `states`: the span every day and under ice, null where its iced tension is given; `doubts`: slips that the
+        coefficients show; `kept`: fields that resolving does not touch.
 
     Raises
     ------
@@ -63,6 +64,7 @@ def resolved_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
         "line": explicit,
         "assumptions": [_row(row) for row in resolved.assumptions],
         "states": _states(resolved),
+        "doubts": doubts_of(resolved.line.ice.aerodynamics),
         "kept": line.model_dump(mode="json", by_alias=True, include=set(_KEPT), exclude_defaults=True),
     }
 

@@ -12,9 +12,10 @@ from app.convert.known.own_rows import OwnRows
 from app.convert.pointers import json_names
 from app.reference import conductors, ice_shapes
 from app.reference.catalogue_row import CatalogueRow, name_key
-from app.schemas import IceSegment, MeasuredCoefficients
+from app.schemas import IceSegment
 from app.schemas import known as said
 from app.schemas.faults import Fault, json_pointer
+from app.schemas.measured import OwnTable
 from engine import spec
 from engine.known import description as known
 from engine.known.bundles import Arrangement, arranged
@@ -226,10 +227,11 @@ def _named_shape(form: said.CatalogueShape, part: said.KnownIce, own: OwnRows) -
     if table is not None:
         name, document = table
         angle = {} if form.angle is None else {"static_angle_deg": form.angle}
-        given = MeasuredCoefficients.model_validate({**document["measured"], **angle})
-        reference = form.reference_diameter or document.get("reference_diameter_m")
+        given = OwnTable.model_validate({**document, **angle})
+        reference = form.reference_diameter or given.reference_diameter
         made = parts.aerodynamics(given, part.at_rest)
-        return known.KnownAerodynamics(made, reference, origin=Origin.CATALOGUE, source=f"own table {name}")
+        source = f"own table {name}" + (f", {given.source}" if given.source else "")
+        return known.KnownAerodynamics(made, reference, origin=Origin.CATALOGUE, source=source)
     shape = ice_shapes.named(form.catalogue)
     if shape is None:
         rule = "must name an own table or a shape of GET /v1/ice-shapes"

@@ -119,3 +119,15 @@ def test_static_twist_is_asked_for_by_its_word() -> None:
     point = next(item for item in convert.run(asked) if isinstance(item, convert.PointResult))
     assert point.static["twist_rad"] == pytest.approx(-2.37, abs=0.3)
     assert {row["outcome"] for row in point.tables["frequencies"]} == {"converged"}
+
+
+def test_slopes_per_degree_are_a_warning_of_the_result_and_a_doubt_of_resolving() -> None:
+    line = example("c11-single")
+    for row in line["ice"]["aerodynamics"].values():
+        row[:] = [value * math.radians(1.0) ** (power + 1) for power, value in enumerate(row)]
+    asked = convert.read({"line": line, "analysis": {"loops": [1], "wind_speeds_m_per_s": [5.0]}}).kept()
+    (point,) = (item for item in convert.run(asked) if isinstance(item, convert.PointResult))
+    assert any("look like slopes per degree" in warning for warning in point.warnings)
+    (doubt,) = convert.resolve_document(line)["doubts"]
+    assert "look like slopes per degree" in doubt
+    assert convert.resolve_document(example("c11-single"))["doubts"] == []

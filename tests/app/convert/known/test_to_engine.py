@@ -32,7 +32,7 @@ def test_what_is_said_overrides_the_row() -> None:
 def test_an_own_table_lends_its_coefficients_at_any_angle() -> None:
     form = LINES["not in a catalogue, with a table"]["ice"]["aerodynamics"]
     measured = {key: form[key] for key in ("table", "static_angle_deg", "half_range_deg")}
-    own = convert.OwnRows(tables={"Our D": {"measured": measured, "reference_diameter_m": 0.05}})
+    own = convert.OwnRows(tables={"Our D": {"name": "Our D", **measured, "reference_diameter_m": 0.05}})
     ice = {**CONTRACT["ice"], "aerodynamics": {"catalogue": "our d", "angle_deg": 50.0}}
     resolved = convert.resolve_document(changed(ice=ice), own)
     table = resolved["line"]["ice"]["aerodynamics"]
