@@ -38,15 +38,34 @@ def _shown(value: Any) -> str:
 
 
 def write(document: Any, output: Path | None) -> None:
-    """Write a document as JSON to a file, or to standard output without one."""
+    """Write a document as JSON to a file, or to standard output without one or where the file cannot be written."""
     text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
     try:
-        if output is None:
-            sys.stdout.write(text)
-        else:
+        if output is not None:
             output.write_text(text, encoding="utf-8")
+            return
+    except OSError as error:
+        reason = error.strerror or error
+        typer.echo(f"{output} cannot be written: {reason}; the result follows on standard output", err=True)
+        _print(text)
+        raise typer.Exit(FAILED) from error
+    _print(text)
+
+
+def _print(text: str) -> None:
+    try:
+        sys.stdout.write(text)
     except OSError as error:
         end(f"the result cannot be written: {error.strerror or error}", BAD_INPUT)
+
+
+def try_output(path: Path | None) -> None:
+    """End if a file cannot be written, before any work is done for it; what it holds stays."""
+    try:
+        if path is not None:
+            path.open("a", encoding="utf-8").close()
+    except OSError as error:
+        end(f"{path} cannot be written: {error.strerror or error}", BAD_INPUT)
 
 
 def refuse(faults: Sequence["Fault"]) -> NoReturn:

@@ -3,14 +3,17 @@
 
 import json
 import os
+import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, write
+from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, try_output, write
 from app.cli.inputs import read_request
-from app.cli.options import AnalysisFile, LineFile, OutputFile, PlacementFile, StudyFile
+from app.cli.options import AnalysisFile, AsJson, CsvDirectory, LineFile, OutputFile, PlacementFile, StudyFile
+from app.cli.report import print_report
 from app.reference.source_lines import EXAMPLE_NAMES
 from app.reference.source_studies import STUDY_NAMES
 
@@ -18,20 +21,26 @@ if TYPE_CHECKING:
     from app.convert import PointResult
 
 
-def analyse(
+def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its arguments
     line: LineFile,
     analysis: AnalysisFile = None,
     study: StudyFile = None,
     placement: PlacementFile = None,
     output: OutputFile = None,
+    csv: CsvDirectory = None,
+    as_json: AsJson = False,
 ) -> None:
-    """Analyse a line in this process, without service or database."""
+    """Analyse a line in this process, without service or database.
+
+    On a terminal the verdict and the tables behind it are printed, else the whole result as JSON.
+    """
     from app.runtime.processes import ONE_BLAS_THREAD
 
     os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, because BLAS reads it once
     from app import convert
     from app.schemas.faults import BadInput
 
+    try_output(output)
     document = read_request(line, analysis, study, placement)
     try:
         request = convert.read(convert.explicit_request(document))
@@ -48,7 +57,27 @@ def analyse(
                     points.append(item)
     except (ArithmeticError, ValueError) as error:
         end(f"the computation failed: {error}", FAILED)
-    write(_result(complete, points), output)
+    result = _result(complete, points)
+    if csv is not None:
+        _write_tables(result, csv)
+    if output is not None or as_json or not sys.stdout.isatty():
+        write(result, output)
+    if not as_json and sys.stdout.isatty():
+        print_report(result)
+
+
+def _write_tables(result: Mapping[str, Any], directory: Path) -> None:
+    from app import convert
+    from app.export import formats
+
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for name in convert.TABLES:
+            if rows := result[name]:
+                text = "".join(formats.csv_text(list(rows[0]), rows))
+                (directory / f"{name}.csv").write_text(text, encoding="utf-8", newline="")
+    except OSError as error:
+        typer.echo(f"{directory} cannot be written: {error.strerror or error}", err=True)
 
 
 def resolve(line: LineFile, output: OutputFile = None) -> None:

@@ -17,5 +17,8 @@ PlacementFile = Annotated[Path | None, typer.Option("--placement", metavar="PLAC
 OutputFile = Annotated[
     Path | None, typer.Option("--output", metavar="RESULT.json", help="File for the result; standard output if absent.")
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
+CsvDirectory = Annotated[
+    Path | None, typer.Option("--csv", metavar="DIR", help="Write every table with rows there as a CSV file.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON also on a terminal.")]
 DataDirectory = Annotated[Path | None, typer.Option("--data-dir", help="Directory for all files of the service.")]

@@ -1,5 +1,6 @@
 """The house rules, held against small trees that break one of them each, and against this one."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,9 @@ def test_arguments_are_what_a_caller_gives(tmp_path: Path) -> None:
     assert house.offences(written(tmp_path, {"a.py": six})) == []
     seven = "def f(a, b, c, d=1, *, e, f, g): ...\n"
     assert house.offences(written(tmp_path, {"a.py": seven})) == ["engine/a.py:1: f takes 7 arguments, at most 6"]
+    (module,) = written(tmp_path, {"a.py": seven + seven.replace("f(", "_f(")})
+    offences = house.offences([replace(module, path=Path("app/cli/a.py"))])  # where options of commands are arguments
+    assert [sentence.split(": ")[1].split()[0] for sentence in offences] == ["_f"]
 
 
 def test_names_that_files_share_are_listed(tmp_path: Path) -> None:
