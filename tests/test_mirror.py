@@ -80,6 +80,7 @@ WITHOUT_A_TEST_FILE = {
     "engine.spec.placement": "tests/engine/studies/test_placement.py holds its rules.",
     "engine.spec.rules": RULES,
     "engine.spec.span": RULES,
+    "engine.spec.uncertainty": "tests/engine/test_spec.py holds its rules.",
     "engine.studies.field_branches": "tests/engine/studies/test_followed.py holds its branches, folds and Hopf points.",
     "engine.tori.spectrum": "tests/engine/tori/test_quasi_periodic.py holds its frequencies and ranges on exact tori.",
     "migrations.env": "tests/migrations/test_migrations.py runs every revision through it.",

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from engine.clearance import EllipseMethod, galloping_ellipse
 from engine.outcome import Outcome, Stability
+from engine.report.what_decides import overall, weighed, what_decides
 from engine.result import LimitCycleRow, Result, TensionRow, VerdictRow
 from engine.result.verdict import Gallops, Trust
 from engine.spec import Analysis, Check, Line
@@ -54,12 +55,13 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
     line : Line
     analysis : Analysis
     """
-    evidence = _evidence(result, analysis)
+    evidence, samples = _evidence(result, analysis), overall(result)
     worst = evidence.moving[0] if evidence.moving else None
     tension = None if worst is None else _tension(result.tensions, worst)
     trust = _trust(evidence, tension, analysis)
+    gallops, sentence = weighed(result, evidence.gallops, _sentences(evidence, tension))
     return VerdictRow(
-        gallops=evidence.gallops,
+        gallops=gallops,
         onset_m_per_s=evidence.onset,
         worst_wind_m_per_s=None if worst is None else worst.wind_speed_m_per_s,
         worst_loops=None if worst is None else worst.loops,
@@ -69,10 +71,10 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
         clearance_m=None,
         clearance_ok=None,
         ellipse_peak_to_peak_m=_ellipse(result, line),
-        probability_gallops=None,
+        probability_gallops=None if samples is None else samples.probability,
         trust=trust,
-        sentence=" ".join(_sentences(evidence, tension)),
-        what_decides=None,
+        sentence=sentence,
+        what_decides=what_decides(result),
     )
 
 

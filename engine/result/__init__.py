@@ -28,6 +28,7 @@ from engine.result.motions import (
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 from engine.result.risk import RiskRow
 from engine.result.tables import TABLES, Result, Tables
+from engine.result.uncertainty import SensitivityRow, UncertaintyRow
 from engine.result.verdict import VerdictRow
 
 __all__ = [
@@ -51,12 +52,14 @@ __all__ = [
     "PlacedDeviceRow",
     "Result",
     "RiskRow",
+    "SensitivityRow",
     "StaticEquilibriumRow",
     "StaticState",
     "Table",
     "Tables",
     "TensionRow",
     "Title",
+    "UncertaintyRow",
     "VerdictRow",
     "columns_of",
     "tables_of",

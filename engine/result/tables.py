@@ -26,6 +26,7 @@ from engine.result.motions import (
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 from engine.result.risk import RiskRow
+from engine.result.uncertainty import SensitivityRow, UncertaintyRow
 from engine.result.verdict import VerdictRow
 
 
@@ -34,6 +35,14 @@ class Tables:
     """Every table of flat rows that a result holds, in the order of the result document."""
 
     verdict: Annotated[tuple[VerdictRow, ...], Title("The verdict: one row, whatever the models and loops")] = ()
+    uncertainty: Annotated[
+        tuple[UncertaintyRow, ...],
+        Title("How samples of the assumed values behave; empty unless something is assumed and samples are asked for"),
+    ] = ()
+    sensitivities: Annotated[
+        tuple[SensitivityRow, ...],
+        Title("What each assumed value means for onset and amplitude; empty without samples"),
+    ] = ()
     physics: Annotated[tuple[PhysicsRow, ...], Title("Physics of the analysis")] = ()
     frequencies: Annotated[tuple[FrequencyRow, ...], Title("Natural frequencies")] = ()
     internal_resonances: Annotated[tuple[InternalResonanceRow, ...], Title("Ratios of the natural frequencies")] = ()

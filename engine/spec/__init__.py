@@ -54,6 +54,7 @@ from engine.spec.physics import PhysicsRequest, with_physics, with_section
 from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
 from engine.spec.section import Section, SectionSpan, SuspensionString
 from engine.spec.span import Bundle, Conductor, CrossSection, Span, Support, Supports, Yoke
+from engine.spec.uncertainty import Uncertainty
 
 __all__ = [
     "CLOSED",
@@ -110,6 +111,7 @@ __all__ = [
     "SuspensionString",
     "TorsionalDamper",
     "TorusSearch",
+    "Uncertainty",
     "Wind",
     "WindSector",
     "Yoke",

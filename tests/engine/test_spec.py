@@ -33,6 +33,7 @@ from engine.spec import (
     Stretching,
     Support,
     Supports,
+    Uncertainty,
     Wind,
     Yoke,
     check_compatible,
@@ -151,6 +152,9 @@ RULES: list[tuple[Callable[[], object], str, str]] = [
     (lambda: Analysis(critical_wind_limit=INF), "critical_wind_limit", "greater than zero"),
     (lambda: Analysis(harmonics=0), "harmonics", "from 1 to 20"),
     (lambda: Analysis(harmonics=21), "harmonics", "from 1 to 20"),
+    (lambda: Uncertainty(samples=-1), "uncertainty.samples", "from 0 to 16384"),
+    (lambda: Uncertainty(samples=16_385), "uncertainty.samples", "from 0 to 16384"),
+    (lambda: Uncertainty(seed=-1), "uncertainty.seed", "negative"),
     (
         lambda: Analysis(closure=Closure.PUBLISHED, aerodynamic_model=AerodynamicModel.RELATIVE_WIND),
         "closure",

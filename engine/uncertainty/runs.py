@@ -1,0 +1,98 @@
+"""Analyse samples side by side, in stacks of limited size, so that memory stays bounded and the caller can stop."""
+
+from collections.abc import Callable, Generator, Mapping, Sequence
+from dataclasses import replace
+
+from engine.analysis import analyse_stack
+from engine.outcome import InvalidSpec
+from engine.progress import Progress, finished
+from engine.result import Result
+from engine.spec import (
+    AmplitudeCurves,
+    Analysis,
+    Check,
+    DeviceEffect,
+    Line,
+    LoopCompetition,
+    Model,
+    TorusSearch,
+)
+from engine.uncertainty.outcomes import SampleOutcome, State, sample_outcome, without_answer
+
+STACK = 64
+
+LineOf = Callable[[Mapping[str, float]], Line]
+
+
+def sampled_analysis(analysis: Analysis) -> Analysis:
+    """Return what is asked of every sample: the hybrid model's motions, and nothing that only adds to a report."""
+    return replace(
+        analysis,
+        models=(Model.HYBRID,),
+        wind_speeds=tuple(sorted(set(analysis.wind_speeds))),
+        loop_competition=LoopCompetition.NEGLECTED,
+        device_effect=DeviceEffect.NEGLECTED,
+        amplitude_curves=AmplitudeCurves.NEGLECTED,
+        check=Check.NONE,
+        quasi_periodic=TorusSearch.LASTING,
+    )
+
+
+def outcomes(
+    chosen: Sequence[Mapping[str, float]], line_of: LineOf, analysis: Analysis
+) -> Generator[Progress, None, list[SampleOutcome]]:
+    """Return what becomes of a line with other values.
+
+    Parameters
+    ----------
+    chosen : sequence of mappings
+        Values by path, one mapping for each sample.
+    line_of : callable
+        Gives the line of chosen values; its `InvalidSpec` is an outcome of the sample.
+    analysis : Analysis
+
+    Yields
+    ------
+    Progress
+        Before every stack.
+    """
+    asked = sampled_analysis(analysis)
+    found: list[SampleOutcome] = []
+    for first in range(0, len(chosen), STACK):
+        last = min(first + STACK, len(chosen))
+        yield Progress(first / len(chosen), f"samples {first + 1} to {last} of {len(chosen)}")
+        found += _outcomes(chosen[first:last], line_of, asked)
+    return found
+
+
+def _outcomes(chosen: Sequence[Mapping[str, float]], line_of: LineOf, asked: Analysis) -> list[SampleOutcome]:
+    lines = [_line(values, line_of) for values in chosen]
+    results = iter(_results([line for line in lines if line is not None], asked))
+    answers: list[SampleOutcome] = []
+    for line in lines:
+        answer = State.IMPOSSIBLE if line is None else next(results)
+        if isinstance(answer, Result):
+            answers.append(sample_outcome(answer, asked.wind_speeds))
+        else:
+            answers.append(without_answer(answer, len(asked.wind_speeds)))
+    return answers
+
+
+def _line(values: Mapping[str, float], line_of: LineOf) -> Line | None:
+    try:
+        return line_of(values)
+    except InvalidSpec:
+        return None
+
+
+def _results(lines: Sequence[Line], asked: Analysis) -> list[Result | State]:
+    """Analyse a stack; if it fails, its halves, so that only the sample that fails has no answer."""
+    if not lines:
+        return []
+    try:
+        return list(finished(analyse_stack(lines, asked)))
+    except (ArithmeticError, ValueError) as error:  # ValueError covers numpy's LinAlgError and InvalidSpec
+        if len(lines) == 1:
+            return [State.IMPOSSIBLE if isinstance(error, InvalidSpec) else State.UNKNOWN]
+    middle = len(lines) // 2
+    return [*_results(lines[:middle], asked), *_results(lines[middle:], asked)]

@@ -1,0 +1,96 @@
+"""Analyse a line together with samples of what is assumed of it."""
+
+from collections.abc import Generator, Iterable
+from dataclasses import dataclass, replace
+from itertools import chain
+
+from engine.analysis import analyse
+from engine.known.provenance import Assumption, Origin
+from engine.progress import Progress, translated
+from engine.report.verdict import verdict
+from engine.result import Result
+from engine.spec import Analysis, Line, Uncertainty
+from engine.uncertainty.inputs import Interval, Uncertain
+from engine.uncertainty.runs import LineOf, outcomes
+from engine.uncertainty.sampling import sobol_samples
+from engine.uncertainty.tables import ends, sensitivity_rows, uncertainty_rows
+
+FREE_ZERO = ("rad", "degC")  # units of quantities whose zero is chosen freely
+SAMPLES_SHARE = 0.7  # of the progress; the rest is the line by itself
+
+
+@dataclass(frozen=True, slots=True)
+class Unknowns:
+    """What is uncertain of a line, and the line that follows from other values of it.
+
+    line_of: takes values by path, those left out being as assumed, and raises `InvalidSpec` where no line follows.
+    """
+
+    inputs: tuple[Uncertain, ...]
+    line_of: LineOf
+
+
+def intervals(assumptions: Iterable[Assumption]) -> tuple[Interval, ...]:
+    """Return the assumed values whose range is not a point."""
+    return tuple(
+        Interval(row.path, row.value, row.lowest, row.highest, row.unit not in FREE_ZERO)
+        for row in assumptions
+        if row.origin is Origin.ASSUMED
+        and row.lowest is not None
+        and row.highest is not None
+        and row.lowest < row.highest
+    )
+
+
+def analyse_with_samples(
+    line: Line, analysis: Analysis, unknowns: Unknowns, asked: Uncertainty
+) -> Generator[Progress, None, Result]:
+    """Analyse a line, then the samples of what is assumed of it.
+
+    Parameters
+    ----------
+    line : Line
+        With all values as assumed.
+    analysis : Analysis
+    unknowns : Unknowns
+    asked : Uncertainty
+
+    Yields
+    ------
+    Progress
+        As `analyse` does, and before every stack of samples.
+
+    Returns
+    -------
+    Result
+        As of `analyse`, with the tables `uncertainty` and `sensitivities` and a verdict that reads them; without them,
+        if nothing is uncertain or no samples are asked for.
+
+    Raises
+    ------
+    InvalidSpec
+        If the line itself cannot answer the analysis.
+    """
+    if not unknowns.inputs or asked.samples == 0:
+        return (yield from analyse(line, analysis))
+    result = yield from translated(analyse(line, analysis), _before)
+    samples = sobol_samples(unknowns.inputs, asked.samples, asked.seed)
+    chosen = [*samples.chosen(), *chain.from_iterable(ends(samples.inputs))]
+    found = yield from translated(outcomes(chosen, unknowns.line_of, analysis), _after)
+    of_samples, at_ends = found[: asked.samples], found[asked.samples :]
+    winds = sorted(set(analysis.wind_speeds))
+    weighed = replace(
+        result,
+        uncertainty=uncertainty_rows(of_samples, winds, asked),
+        sensitivities=sensitivity_rows(samples, of_samples, at_ends, analysis, asked),
+    )
+    yield Progress(1.0, "done")
+    return replace(weighed, verdict=(verdict(weighed, line, analysis),))
+
+
+def _before(step: Progress) -> Progress:
+    return Progress((1.0 - SAMPLES_SHARE) * step.fraction, step.step)
+
+
+def _after(step: Progress) -> Progress:
+    return Progress(1.0 - SAMPLES_SHARE + SAMPLES_SHARE * step.fraction, step.step)
