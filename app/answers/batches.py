@@ -89,6 +89,7 @@ class LineFault(Answer):
 
     number: int = described("Number of the line, from 1; headers and the analysis do not count [1]", 3)
     reference: str | None = described("The caller's reference of the line", "row-3")
+    row: int | None = described("Number of the row as the spreadsheet shows it; null if the body was none [1]", 4)
     pointer: str = described("JSON pointer from the root of the line", "/span/length_m")
     code: str = described("The kind of fault, for programs", "greater_than_equal")
     detail: str = described("What is wrong, in a sentence", "input should be greater than or equal to 1, got -5.0")
@@ -112,6 +113,9 @@ class BatchDocument(Answer):
     finished_at: datetime | None = described("When its last line ended", "2026-11-22T10:00:05+00:00")
     errors: list[LineFault] = described(
         "Faults of the first rejected lines; a link leads to all of them", [example_of(LineFault)]
+    )
+    notes: list[str] = described(
+        "How the body was read, where that is not plain", ["Row 4 is not UTF-8; read as Windows-1252."]
     )
     links: list[Link] = described(
         "Links to related addresses", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]

@@ -72,6 +72,12 @@ def accept(
     audit.record(session, caller, AuditAction.BATCH_SUBMITTED, batch_id, f"{lines} lines", at=now)
 
 
+def note(session: Session, batch_id: UUID, notes: Sequence[str]) -> None:
+    """Store sentences on how the body of a batch was read."""
+    if notes:
+        session.execute(update(Batch).where(Batch.id == batch_id).values(notes=list(notes)))
+
+
 def discard(session: Session, batch_id: UUID) -> None:
     """Remove a batch that was not accepted, with its lines."""
     session.execute(delete(Batch).where(Batch.id == batch_id))

@@ -52,13 +52,13 @@ def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
 
 
 def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterator[dict[str, Any]]:
-    """Yield the faults of rejected lines: number, reference, and pointer, code and sentence of each fault."""
+    """Yield the faults of rejected lines: number, reference, row, and pointer, code and sentence of each fault."""
     wanted = BatchItem.number, BatchItem.reference, BatchItem.faults
     rejected = BatchItem.batch_id == batch_id, BatchItem.chunk_id.is_(None)
     statement = select(*wanted).where(*rejected).order_by(BatchItem.number).limit(most)
     for number, reference, faults in session.execute(statement.execution_options(yield_per=_LINES_A_FETCH)):
         for fault in faults or ():
-            yield {"number": number, "reference": reference, **fault}
+            yield {"number": number, "reference": reference, "row": None, **fault}
 
 
 def _lines(session: Session, batch_id: UUID, *, unpacking: bool) -> Iterator[Row[Any]]:

@@ -40,6 +40,7 @@ _COUNTS = {
 FAULT = {
     "number": 3,
     "reference": "row-3",
+    "row": 4,
     "pointer": "/span/length_m",
     "code": "greater_than_equal",
     "detail": "input should be greater than or equal to 1",
@@ -54,7 +55,7 @@ _SUMMARY: dict[str, Any] = {
     "finished_at": None,
     "links": [{"rel": "self", "href": _ADDRESS}],
 }
-ACCEPTED: dict[str, Any] = {**_SUMMARY, "errors": []}
+ACCEPTED: dict[str, Any] = {**_SUMMARY, "errors": [], "notes": []}
 FINISHED: dict[str, Any] = {
     **ACCEPTED,
     "status": "successful",
@@ -109,7 +110,8 @@ def request_body() -> dict[str, Any]:
             "required": True,
             "description": "JSON; NDJSON whose first object is the analysis; or CSV with the analysis in the query. "
             "CSV columns are dotted field names such as `span.length_m`; a list is JSON in one cell, or one column "
-            "for each item (`ice.aerodynamics.vertical.0`). `Content-Encoding: gzip` is accepted.",
+            "for each item (`ice.aerodynamics.vertical.0`). Commas, semicolons or tabs separate cells; decimal commas, "
+            "UTF-16 and Windows-1252 are understood, and the status says so. `Content-Encoding: gzip` is accepted.",
             "content": {
                 "application/json": {"schema": schema, "example": {"lines": _LINES, "analysis": _ANALYSIS}},
                 "application/x-ndjson": {"schema": {"type": "string"}, "example": ndjson},

@@ -92,9 +92,9 @@ def line_counts(counts: Counts, rejected: int) -> dict[str, int]:
 
 
 def batch_document(session: Session, batch: Batch, counts: Counts) -> dict[str, Any]:
-    """Return the status document of a batch, with the faults of the first rejected lines."""
+    """Return the status document of a batch, with the faults of the first rejected lines and notes."""
     shown = list(line_results.errors(session, batch.id, _ERRORS_SHOWN)) if batch.rejected_lines else []
-    return {**batch_summary(batch, counts), "errors": shown[:_ERRORS_SHOWN]}
+    return {**batch_summary(batch, counts), "errors": shown[:_ERRORS_SHOWN], "notes": batch.notes or []}
 
 
 def accepted_batch(session: Session, caller: Caller, batch_id: UUID) -> JSONResponse:

@@ -1,5 +1,6 @@
 """Faults of a request: the place in the document, a code and a sentence. All are collected before any is reported."""
 
+import codecs
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -45,12 +46,15 @@ class BadInput(ValueError):
 def parse_json(raw: bytes) -> Any:
     """Return the value of a JSON text; NaN and infinities pass, and the schema then names their fields.
 
+    A byte order mark is passed over, and a text that begins with that of UTF-16, as PowerShell writes it, is read so.
+
     Raises
     ------
     BadInput
-        If the text is not JSON or not UTF-8, is nested too deeply, or an object repeats a name.
+        If the text is not JSON, neither UTF-8 nor UTF-16, nested too deeply, or an object repeats a name.
     """
     try:
+        raw = _in_utf8(raw)
         value = from_json(raw)
         repeated = list(islice(_repeated_names(raw.decode()), MOST_FAULTS))
     except ValueError as error:
@@ -58,6 +62,14 @@ def parse_json(raw: bytes) -> Any:
     if repeated:
         raise BadInput(repeated)
     return value
+
+
+def _in_utf8(raw: bytes) -> bytes:
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return raw.decode("utf-16").encode()
+    if b"\0" in raw[:4]:
+        raise ValueError("the text has zero bytes, like UTF-16 without a byte order mark; save it as UTF-8")
+    return raw.removeprefix(codecs.BOM_UTF8)
 
 
 @dataclass(frozen=True, slots=True)

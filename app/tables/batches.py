@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text
+from sqlalchemy import JSON, CheckConstraint, ForeignKey, Index, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.tables.base import Base
@@ -13,7 +13,8 @@ from app.tables.base import Base
 class Batch(Base):
     """Many lines under one analysis. Its chunks, the jobs with this batch_id, hold the lines and their states.
 
-    received_at is null while the lines arrive; the batch is invisible until then.
+    received_at is null while the lines arrive; the batch is invisible until then. notes are sentences on how its body
+    was read, null if there is nothing to tell.
     """
 
     __tablename__ = "batches"
@@ -25,6 +26,7 @@ class Batch(Base):
     analysis: Mapped[dict[str, Any]]
     rejected_lines: Mapped[int] = mapped_column(default=0)
     owner: Mapped[str] = mapped_column(String(64))
+    notes: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
 
 
 class BatchItem(Base):

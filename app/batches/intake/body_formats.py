@@ -1,14 +1,15 @@
 """Convert the pieces of a body to an analysis and its lines, one after another, however large the body is."""
 
-import codecs
-import csv
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from app.batches.intake.csv_columns import Columns
 from app.schemas.faults import BadInput, Fault, parse_json
+from app.sheets.delimited import read_delimited
+from app.sheets.encodings import as_utf8
 
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _INFLATED_A_STEP = 1 << 18
@@ -23,13 +24,15 @@ class BodyTooLarge(Exception):
 class Incoming:
     """An analysis document and the documents of the lines; a `BadInput` stands for an unreadable line.
 
-    With `anew`, workers compute the lines even if their results are stored.
+    With `anew`, workers compute the lines even if their results are stored. `notes` tells how the body was read; its
+    sentences are complete when the last line was taken.
     """
 
     analysis: object
     lines: Iterator[object]
     webhook_url: object = None
     anew: bool = False
+    notes: Callable[[], list[str]] = list
 
 
 def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
@@ -97,7 +100,7 @@ def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
     BadInput
         If the first object is not of this form.
     """
-    texts = (text for text in _text_lines(pieces, most_line_bytes) if not text.isspace())
+    texts = (text for text in _text_lines(as_utf8(pieces), most_line_bytes) if not text.isspace())
     first = parse_json(next(texts, b"{}"))
     if not isinstance(first, dict) or first.keys() - {"webhook_url"} != {"analysis"}:
         raise BadInput(
@@ -115,16 +118,17 @@ def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
 def read_csv(pieces: Iterable[bytes], analysis: object, most_line_bytes: int) -> Incoming:
     """Read a table whose header holds dotted field names; an empty cell means an absent field.
 
+    Cells are apart by commas, semicolons or tabs, in UTF-8, UTF-16 or Windows-1252 (`app.sheets.delimited`).
+
     Raises
     ------
     BodyTooLarge
         If a line of text is too long; raised now or while the lines are read.
     BadInput
-        If the header is missing or wrong, or if, while the lines are read, the text is not UTF-8 or not CSV.
+        If the header is missing or wrong; while the lines are read, if a text in UTF-16 breaks its rules.
     """
-    rows = _rows(csv.reader(_decoded(_text_lines(pieces, most_line_bytes)), strict=True))
-    columns = Columns.of(next(rows, []))
-    return Incoming(analysis, (columns.document(row) for row in rows))
+    table = read_delimited(pieces, partial(_text_lines, most_bytes=most_line_bytes))
+    return Incoming(analysis, map(Columns.of(table.header).line, table.rows), notes=table.notes.sentences)
 
 
 def _parsed(text: bytes) -> Any:
@@ -145,19 +149,3 @@ def _text_lines(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
             raise BodyTooLarge(f"A line is longer than {most_bytes} bytes.")
     if remaining:
         yield remaining
-
-
-def _decoded(texts: Iterable[bytes]) -> Iterator[str]:
-    decoder = codecs.getincrementaldecoder("utf-8-sig")()
-    try:
-        for text in texts:
-            yield decoder.decode(text)
-    except UnicodeDecodeError as error:
-        raise BadInput([Fault("", "not_utf8", f"not valid UTF-8: {error.reason}")]) from error
-
-
-def _rows(reader: Iterator[list[str]]) -> Iterator[list[str]]:
-    try:
-        yield from (row for row in reader if row)
-    except csv.Error as error:
-        raise BadInput([Fault("", "csv_invalid", f"not valid CSV: {error}")]) from error

@@ -1,17 +1,29 @@
-"""Convert CSV columns with dotted field names to line documents: `span.length_m`, `ice.aerodynamics.vertical.0`."""
+"""Convert columns with dotted field names to line documents: `span.length_m`, `ice.aerodynamics.vertical.0`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from app.schemas.faults import BadInput, Fault, json_pointer, parse_json
+from app.schemas.faults import BadInput, Fault, json_pointer
+from app.sheets.cells import WrongCell, value_of
+from app.sheets.delimited import SheetRow
 
 _MOST_COLUMNS = 500
 _MOST_TOKENS = 8
 _MOST_ITEMS = 200
 _TEXTS = frozenset({"reference", "name", "asset_id", "tags"})
+_TEXTS_WITHIN = frozenset({"name", "catalogue"})
 
 Path = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SheetLine:
+    """The document of a row, or a `BadInput`; the row's number in the spreadsheet, and faults of its cells."""
+
+    row: int
+    document: object
+    faults: tuple[Fault, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,16 +50,24 @@ class Columns:
             raise BadInput(faults)
         return cls(tuple(paths))
 
-    def document(self, row: Sequence[str]) -> Any:
-        """Return the document of a row, or a `BadInput` if its number of cells differs from the header."""
-        if len(row) != len(self.paths):
-            detail = f"the row has {len(row)} cells, but the header has {len(self.paths)}"
-            return BadInput([Fault("", "csv_row", detail)])
+    def line(self, row: SheetRow) -> SheetLine:
+        """Return the document of a row; cells beyond its end are empty, and cells beyond the header must be."""
+        if row.fault is not None:
+            return SheetLine(row.number, BadInput([Fault("", "csv_invalid", row.fault)]))
+        if any(not _is_empty(cell) for cell in row.cells[len(self.paths) :]):
+            detail = f"the row has {len(row.cells)} cells, but the header has {len(self.paths)}"
+            return SheetLine(row.number, BadInput([Fault("", "csv_row", detail)]))
         document: dict[str | int, Any] = {}
-        for path, cell in zip(self.paths, row, strict=True):
-            if cell.strip():
-                _put(document, path, _value(path, cell))
-        return _with_lists(document)
+        faults = []
+        for path, cell in zip(self.paths, row.cells, strict=False):
+            if _is_empty(cell):
+                continue
+            value = _value(path, cell, row)
+            if isinstance(value, WrongCell):
+                faults.append(Fault(json_pointer(path), "csv_value", value.sentence))
+            else:
+                _put(document, path, value)
+        return SheetLine(row.number, _with_lists(document), tuple(faults))
 
 
 def _path(name: str) -> Path:
@@ -86,14 +106,16 @@ def _put(document: dict[str | int, Any], path: Path, value: object) -> None:
     document[path[-1]] = value
 
 
-def _value(path: Path, cell: str) -> object:
-    """Return the text of a text field as it is, otherwise its JSON value; the schema judges a cell that is not JSON."""
-    if path[0] in _TEXTS:
+def _is_empty(cell: object) -> bool:
+    return cell is None or (isinstance(cell, str) and not cell.strip())
+
+
+def _value(path: Path, cell: object, row: SheetRow) -> object:
+    """Return the text of a text field as it is, otherwise what the cell means; the schema judges what is left."""
+    if isinstance(cell, str) and (path[0] in _TEXTS or path[-1] in _TEXTS_WITHIN):
         return cell
-    try:
-        return parse_json(cell.strip().encode())
-    except BadInput:
-        return cell.strip()
+    value = value_of(cell, comma=row.comma, others_comma=row.others_comma)
+    return str(value) if path[0] in _TEXTS or path[-1] in _TEXTS_WITHIN else value
 
 
 def _with_lists(node: Any) -> Any:

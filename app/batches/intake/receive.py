@@ -19,6 +19,7 @@ from app import convert, schemas
 from app.batches import batch_records
 from app.batches.batch_records import Chunk
 from app.batches.intake.body_formats import Incoming
+from app.batches.intake.csv_columns import SheetLine
 from app.owned import records
 from app.runtime.settings import Settings
 from app.schemas.faults import MOST_FAULTS, BadInput, Fault
@@ -91,6 +92,7 @@ def receive(
         _refuse_hopeless(draft)
         with sessions.begin() as session:
             batch_records.accept(session, caller, batch_id, draft.chunks, draft.rejected, anew=incoming.anew)
+            batch_records.note(session, batch_id, incoming.notes())
             on_accept(session, batch_id)
     except BaseException:
         with suppress(SQLAlchemyError), sessions.begin() as session:
@@ -119,16 +121,19 @@ def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Itera
 def _item(draft: _Draft, document: object) -> dict[str, Any]:
     draft.taken += 1
     reference, faults = None, []
+    row = document.row if isinstance(document, SheetLine) else None
     line: schemas.Line | None = None
     try:
-        reference, fields = _split(document)
+        reference, fields = _split(document.document if isinstance(document, SheetLine) else document)
+        if isinstance(document, SheetLine) and document.faults:
+            raise BadInput(document.faults)
         line = convert.read_line(convert.explicit_line(fields, draft.own), draft.analysis)
     except BadInput as error:
         faults = list(error.faults[:_FAULTS_A_LINE])
     if line is None:
         draft.rejected += 1
         room = max(0, MOST_FAULTS - len(draft.faults))
-        draft.faults += [_placed(draft.taken, fault) for fault in faults[:room]]
+        draft.faults += [_placed(draft.taken, row, fault) for fault in faults[:room]]
     return {
         "batch_id": draft.batch_id,
         "number": draft.taken,
@@ -138,7 +143,7 @@ def _item(draft: _Draft, document: object) -> dict[str, Any]:
         "document": line.model_dump(mode="json", by_alias=True) if line is not None else None,
         "faults": None
         if line is not None
-        else [{"pointer": fault.pointer, "code": fault.code, "detail": fault.detail} for fault in faults],
+        else [{"row": row, "pointer": fault.pointer, "code": fault.code, "detail": fault.detail} for fault in faults],
     }
 
 
@@ -172,8 +177,10 @@ def _chunk_id(draft: _Draft) -> UUID:
     return last.id
 
 
-def _placed(number: int, fault: Fault) -> Fault:
-    return Fault(f"/lines/{number - 1}{fault.pointer}", fault.code, f"line {number}: {fault.detail}")
+def _placed(number: int, row: int | None, fault: Fault) -> Fault:
+    """Return a fault of the whole batch; a row of a spreadsheet is named as the spreadsheet shows it."""
+    named = f"line {number}" if row is None else f"row {row}"
+    return Fault(f"/lines/{number - 1}{fault.pointer}", fault.code, f"{named}: {fault.detail}")
 
 
 def _refuse_hopeless(draft: _Draft) -> None:

@@ -1,4 +1,5 @@
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -84,3 +85,16 @@ def details(line: dict[str, Any]) -> list[str]:
     with pytest.raises(ValidationError) as caught:
         schemas.Line.model_validate(line)
     return [fault.detail for fault in faults_of(caught.value.errors(include_url=False), root="/line")]
+
+
+@pytest.mark.parametrize("name", ["utf8_bom", "powershell_utf16"])
+def test_json_as_windows_programs_save_it_is_read(name: str) -> None:
+    raw = (Path(__file__).parents[1] / "sheets" / "cases" / f"{name}.json").read_bytes()
+    assert not raw.startswith(b"{")
+    assert parse_json(raw)["conductor"]["diameter_m"] == 0.0286
+
+
+def test_utf16_without_a_mark_is_named() -> None:
+    with pytest.raises(BadInput, match="save it as UTF-8") as caught:
+        parse_json('{"a": 1}'.encode("utf-16-le"))
+    assert caught.value.faults[0].code == "json_invalid"

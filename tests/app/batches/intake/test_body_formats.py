@@ -25,6 +25,13 @@ def test_ndjson_is_the_same_however_it_is_cut(size: int) -> None:
     assert list(incoming.lines) == [{"n": 1}, {"n": "ä"}, {"n": 3}]
 
 
+def test_ndjson_may_begin_with_a_mark_or_be_utf16() -> None:
+    text = '{"analysis": {"loops": [1]}}\n{"n": "ä"}\n'
+    for encoding in ("utf-8-sig", "utf-16"):
+        incoming = read_ndjson(pieces(text.encode(encoding), 5), 100)
+        assert (incoming.analysis, list(incoming.lines)) == ({"loops": [1]}, [{"n": "ä"}])
+
+
 def test_ndjson_needs_its_analysis_first() -> None:
     for body in (b"", b'{"n": 1}\n', b"[1]\n", b'{"analysis": {}, "webhook": "http://x"}\n'):
         with pytest.raises(BadInput) as caught:
