@@ -33,6 +33,8 @@ MEANING = {
     "fleet_floor_ratio": "their time over the time of only the LAPACK calls of their numpy form",
     "fleet_compiled_gain": "time of the fleet's job with the numpy forms over its time with the compiled kernels",
     "branch_compiled_gain": "the same for a branch in a separate call",
+    "fleet_full_lines_per_s_core": "the same job under full physics: lines per second and core",
+    "fleet_full_ratio": "that rate over the source's, both taken in turn",
     "fleet_exponent": "exponent of the time as a power of the number of lines",
     "finite_element_over_hybrid": "time of the finite element model over that of the hybrid model",
     "service_overhead_ratio": "median time of a batch through HTTP, queue, worker, database over the engine's",
@@ -98,6 +100,7 @@ def _section(name: str, fleet: int, lines: int) -> Iterator[tuple[str, float]]:
             print("branch: skipped, because the development extra `bench` is not installed")
         case "fleet":
             yield from engine_speed.fleet(fleet)
+            yield from engine_speed.full_fleet()
             yield from engine_speed.hybrid_against_finite_element()
         case "machine":
             yield from cores.plain_python()

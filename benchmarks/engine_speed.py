@@ -6,13 +6,14 @@ import pstats
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from app.convert import STACK
 from benchmarks.auto import Branch, continued_branch
-from benchmarks.lines import random_line, source_line
+from benchmarks.lines import random_line, source_line, under_full_physics
 from benchmarks.measure import median_ratio, median_seconds, numpy_forms, recorded_lapack, side_by_side
 from benchmarks.models import discretized, hybrid_models, plain_rate
 from engine.analysis import analyse_stack
@@ -208,6 +209,20 @@ def fleet(largest: int) -> Iterator[tuple[str, float]]:
     yield "fleet_floor_ratio", float(np.median(floors))
     yield "fleet_compiled_gain", float(np.median(gains))
     yield "fleet_exponent", _exponent(lines, largest)
+
+
+def full_fleet() -> Iterator[tuple[str, float]]:
+    """Yield lines per second and core under full physics, and their rate over that of the source's, taken in turn."""
+    generator = np.random.default_rng(20260101)
+    full, source = [], []
+    for _ in range(PARTS):
+        lines = [random_line(generator) for _ in range(STACK)]
+        iced, analysis = under_full_physics(lines, STANDARD_JOB)
+        times = side_by_side(partial(analysed, iced, analysis), partial(analysed, lines, STANDARD_JOB), runs=3)
+        full += times[0]
+        source += times[1]
+    yield "fleet_full_lines_per_s_core", STACK / float(np.median(full))
+    yield "fleet_full_ratio", median_ratio(source, full)
 
 
 def profile() -> list[tuple[str, float]]:

@@ -1,13 +1,32 @@
 """The source's lines, and random lines for measurements."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from engine.spec import Aerodynamics, Bundle, Coefficients, Conductor, Damping, Ice, Line, Span, Wind
+from engine.spec import (
+    Aerodynamics,
+    Analysis,
+    Bundle,
+    Coefficients,
+    Conductor,
+    Damping,
+    Ice,
+    Line,
+    Physics,
+    PhysicsRequest,
+    Span,
+    StaticTwist,
+    Wind,
+    with_physics,
+    with_section,
+)
 
 AXIAL_RIGIDITY = 4.78033e10 * 594.48e-6  # theory section 9: E times the iced area
 C11_AT_40_DEG = Aerodynamics((-0.1667, -4.0547, 8.3581), (0.8605, 0.8325, 1.7815), (-0.7272, 0.2935, 5.9704))
+AT_REST = (0.0, 1.0, 0.0)  # assumed: the source gives no coefficients at rest, and a cylinder has these
 ORIENTATION_DEG = {1: 0.0, 2: 90.0, 3: 0.0, 4: 45.0}
 
 
@@ -48,3 +67,13 @@ def random_line(generator: np.random.Generator) -> Line:
         wind=Wind(1.2929),
         damping=Damping(about(0.000515, 0.5), about(0.000515, 0.5), float(generator.uniform(0.05, 0.35))),
     )
+
+
+def under_full_physics(lines: Sequence[Line], analysis: Analysis) -> tuple[list[Line], Analysis]:
+    """Return the lines with coefficients at rest, and the analysis under full physics as they hang, without twist."""
+    iced = [
+        replace(line, ice=replace(line.ice, aerodynamics=replace(line.ice.aerodynamics, at_rest=AT_REST)))
+        for line in lines
+    ]
+    free = [with_section(line, Physics.FULL) for line in iced]
+    return free, with_physics(free[0], analysis, PhysicsRequest(Physics.FULL, static_twist=StaticTwist.NEGLECTED))

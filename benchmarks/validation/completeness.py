@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.engine_speed import analysed
-from benchmarks.lines import random_line
+from benchmarks.lines import random_line, under_full_physics
 from benchmarks.models import discretized, hybrid_models, plain_rate
 from benchmarks.starts import LEVELS, LONGEST, LOOPS, MIXES, SOURCE, WINDS, Case, Ends, ends
 from benchmarks.validation.common import table
@@ -20,7 +20,7 @@ from engine.models.hybrid import loop_groups
 from engine.models.reduced_model import take
 from engine.outcome import Outcome
 from engine.result import LimitCycleRow, Orbit, Result
-from engine.spec import Aerodynamics, Analysis, Line, Physics, PhysicsRequest, StaticTwist, with_physics, with_section
+from engine.spec import Analysis, Line
 
 SEED, LINES = 20261122, 96
 COMPARED, COMPARED_LINES = 40, 8  # shortest periods, and lines, compared with DOP853
@@ -84,17 +84,6 @@ class Explored:
 def reported(lines: Sequence[Line], winds: Sequence[float] = WINDS, analysis: Analysis = SOURCE) -> list[Result]:
     """Analyse lines with the hybrid model."""
     return analysed(lines, replace(analysis, wind_speeds=tuple(winds)))
-
-
-def full_physics(lines: Sequence[Line]) -> tuple[list[Line], Analysis]:
-    """Return the lines with coefficients at rest, and the analysis of full physics as they hang."""
-    iced = [replace(line, ice=replace(line.ice, aerodynamics=_with_rest(line.ice.aerodynamics))) for line in lines]
-    iced = [with_section(line, Physics.FULL) for line in iced]
-    return iced, with_physics(iced[0], SOURCE, PhysicsRequest(Physics.FULL, static_twist=StaticTwist.NEGLECTED))
-
-
-def _with_rest(aerodynamics: Aerodynamics) -> Aerodynamics:
-    return replace(aerodynamics, at_rest=(0.0, 1.0, 0.0))
 
 
 def explored(lines: Sequence[Line], analysis: Analysis) -> Explored:
@@ -229,7 +218,7 @@ def section() -> Iterator[str]:
 def full_section() -> Iterator[str]:
     """Yield the text of the same under full physics."""
     generator = np.random.default_rng(SEED)
-    lines, analysis = full_physics([random_line(generator) for _ in range(LINES)])
+    lines, analysis = under_full_physics([random_line(generator) for _ in range(LINES)], SOURCE)
     found = explored(lines, analysis)
     yield "## Completeness under full physics\n"
     yield (

@@ -15,7 +15,7 @@ from engine.kernels import compiled
 from engine.models.reduced_model import ReducedModel, force, resultant, resultant_gradient, samples_in_period, take
 from engine.numerics.newton import NewtonOptions, Solution, newton
 
-SETTLED = 1e-8  # m, rad: largest change of a coefficient from twice the samples of an unexpanded load
+SETTLED = 1e-2  # m, rad times the tolerance: largest change of a coefficient from twice an unexpanded load's samples
 MOST_SAMPLES = 1024
 
 
@@ -128,7 +128,7 @@ def balance(
 ) -> tuple[Orbits, Solution]:
     """Solve the harmonic balance from many starts side by side.
 
-    The samples of an unexpanded load are doubled until no coefficient of a solution moves by more than `SETTLED`.
+    The samples of an unexpanded load are doubled until no coefficient moves by more than `SETTLED` tolerances.
 
     Parameters
     ----------
@@ -147,6 +147,7 @@ def balance(
     Solution
         Outcome and iterations; a start that falls to the equilibrium does not converge.
     """
+    options = options or NewtonOptions()
     orbits, solution = _balanced(model, member, start, options)
     moving = np.flatnonzero(solution.converged)
     while model.unexpanded is not None and moving.size and model.unexpanded.samples < MOST_SAMPLES:
@@ -155,13 +156,11 @@ def balance(
         change = np.abs(finer.coefficients - orbits.coefficients[moving]).max(axis=(1, 2))
         orbits.coefficients[moving], orbits.angular_frequency[moving] = finer.coefficients, finer.angular_frequency
         solution.outcome[moving] = again.outcome
-        moving = moving[again.converged & (change > SETTLED)]
+        moving = moving[again.converged & (change > SETTLED * options.tolerance)]
     return orbits, solution
 
 
-def _balanced(
-    model: ReducedModel, member: IntArray, start: Orbits, options: NewtonOptions | None
-) -> tuple[Orbits, Solution]:
+def _balanced(model: ReducedModel, member: IntArray, start: Orbits, options: NewtonOptions) -> tuple[Orbits, Solution]:
     """Solve the harmonic balance with a fixed number of samples."""
     _, m, size = start.coefficients.shape
     weight = np.sqrt(model.modal_masses)[member]
@@ -181,7 +180,6 @@ def _balanced(
         matrix = np.concatenate([jacobian(here, orbits), phase[:, None]], axis=1)
         return np.concatenate([rows, drift[:, None]], axis=-1), matrix
 
-    options = options or NewtonOptions()
     if compiled.AVAILABLE:
         solution = compiled.solved_balances(model, member, start.wind_speed, reference, (x, scale, options))
     else:

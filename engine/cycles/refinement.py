@@ -182,12 +182,12 @@ def _parts_needed(branch_set: BranchSet, known: KnownExponents) -> IntArray:
     candidate = np.flatnonzero(_candidates(branch_set))
     if candidate.size == 0:
         return parts
-    exponents = _exponents(branch_set, np.union1d(candidate, candidate + 1), known)
+    index = np.union1d(candidate, candidate + 1)
+    exponents, at = _exponents(branch_set, index, known), np.searchsorted(index, candidate)
     length = lengths((points.z[candidate + 1] - points.z[candidate]) / points.scale[candidate])
-    turned = points.tangent[candidate, -1] * points.tangent[candidate + 1, -1] < 0.0
-    for i, long, fold in zip(candidate.tolist(), (length > SHORTEST).tolist(), turned.tolist(), strict=True):
-        if long and not fold:
-            parts[i] = min(PARTS, int(np.ceil(_excess(exponents[i], exponents[i + 1]))))
+    fold = points.tangent[candidate, -1] * points.tangent[candidate + 1, -1] < 0.0
+    needed = np.minimum(PARTS, np.ceil(_excess(exponents[at], exponents[at + 1]))).astype(np.intp)
+    parts[candidate] = np.where((length > SHORTEST) & ~fold, needed, 0)
     return parts
 
 
@@ -210,14 +210,18 @@ def _candidates(branch_set: BranchSet) -> BoolArray:
     return np.asarray(segments & far[branch[:-1]])
 
 
-def _exponents(branch_set: BranchSet, index: IntArray, known: KnownExponents) -> dict[int, ComplexArray]:
-    """Return the signed exponents of points by point, and compute those that are not known yet."""
+def _exponents(branch_set: BranchSet, index: IntArray, known: KnownExponents) -> ComplexArray:
+    """Return the signed exponents of points (k,), computed where they are not known: (k, 2 m), padded with NaN."""
     points = branch_set.points
-    keys = {i: (int(points.branch[i]), points.z[i].tobytes()) for i in index.tolist()}
-    new = np.array([i for i, key in keys.items() if key not in known], dtype=np.intp)
+    keys = [(int(points.branch[i]), points.z[i].tobytes()) for i in index.tolist()]
+    new = np.array([i for i, key in zip(index.tolist(), keys, strict=True) if key not in known], dtype=np.intp)
     if new.size:
-        known.update({keys[i]: row for i, row in signed_exponents(branch_set, new).items()})
-    return {i: known[key] for i, key in keys.items()}
+        rows = signed_exponents(branch_set, new)
+        known.update({key: rows[i] for i, key in zip(index.tolist(), keys, strict=True) if i in rows})
+    result = np.full((index.size, branch_set.floquet.multipliers.shape[-1]), np.nan, dtype=np.complex128)
+    for row, key in zip(result, keys, strict=True):
+        row[: known[key].size] = known[key]
+    return result
 
 
 def signed_exponents(branch_set: BranchSet, index: IntArray) -> dict[int, ComplexArray]:
@@ -242,19 +246,19 @@ def signed_exponents(branch_set: BranchSet, index: IntArray) -> dict[int, Comple
     return {int(i): row[keep] for i, row, keep in zip(index, exponents, kept, strict=True)}
 
 
-def _excess(left: ComplexArray, right: ComplexArray) -> float:
-    """Return by how much the complex exponents move farther than they may from one point to the next."""
-    worst = 0.0
+def _excess(left: ComplexArray, right: ComplexArray) -> FloatArray:
+    """Return by how much complex exponents (k, n), padded with NaN, move farther than they may between points: (k,)."""
+    worst = np.zeros(left.shape[0])
     for here, there in ((left, right), (right, left)):
-        own = here[(here.imag != 0.0) & (np.abs(here.real) < LIGHT)]
-        if own.size == 0 or there.size == 0:
-            continue
-        difference = there[None] - own[:, None]
-        turn = np.abs(difference.real + 1j * ((difference.imag + np.pi) % (2.0 * np.pi) - np.pi))
-        nearest = turn.argmin(axis=1)
-        distance = np.minimum(_distance(own), _distance(there[nearest]))
-        allowed = np.clip(SHARE * distance, SHARPEST, FAR)
-        worst = max(worst, float((turn[np.arange(own.size), nearest] / allowed).max()))
+        own = np.asarray((here.imag != 0.0) & (np.abs(here.real) < LIGHT))
+        difference = there[:, None] - here[:, :, None]
+        turn = np.hypot(difference.real, (difference.imag + np.pi) % (2.0 * np.pi) - np.pi)
+        turn = np.where(np.isnan(turn), np.inf, turn)
+        nearest = turn.argmin(axis=-1)
+        moved = np.take_along_axis(turn, nearest[..., None], axis=-1)[..., 0]
+        distance = np.minimum(_distance(here), np.take_along_axis(_distance(there), nearest, axis=-1))
+        share = moved / np.clip(SHARE * distance, SHARPEST, FAR)
+        worst = np.maximum(worst, np.where(own & np.isfinite(moved), share, 0.0).max(axis=-1, initial=0.0))
     return worst
 
 

@@ -168,9 +168,9 @@ def dynamic_tension(stretching: StretchingForce, q: FloatArray) -> FloatArray:
 
     n is 1 where no line of the stack has free sections; all sub-conductors then have that tension.
     """
-    linear = q @ np.swapaxes(stretching.linear, -1, -2)
-    square = 0.5 * ((q[..., None, :, :] @ stretching.square) * q[..., None, :, :]).sum(axis=-1)
-    return np.asarray(linear + np.swapaxes(square, -1, -2))
+    half = polynomial.collected(0.5 * merge_axes(stretching.square, -2), q.shape[-1], 2)
+    forms = np.concatenate([stretching.linear, half], axis=-1)
+    return np.asarray(polynomial.powers(q, 2) @ np.swapaxes(forms, -1, -2))
 
 
 def tension_range(stretching: StretchingForce, q: FloatArray) -> FloatArray:

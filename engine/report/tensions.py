@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.cycles.harmonic_balance import states
+from engine.cycles.harmonic_balance import fourier
 from engine.mechanics.static_profile import end_steepness
 from engine.models.discretization import Discretization
-from engine.models.reduced_model import take
-from engine.models.stretching import tension_range
+from engine.models.stretching import take_stretching, tension_range
 from engine.outcome import Outcome
 from engine.report.cells import lists_by_line
 from engine.report.findings import ModelFindings, cycle_loops, torus_loops
@@ -48,21 +47,24 @@ def tension_rows(discretization: Discretization, findings: ModelFindings) -> lis
 def cycle_tensions(discretization: Discretization, findings: ModelFindings) -> FloatArray:
     """Return the smallest and the largest H + N_i of each cycle: (cycles, 2) [N], infinite without stretching."""
     cycles = findings.cycles
-    phases = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
-    return _ranges(discretization, findings, cycles.member, states(cycles.orbits, phases))
+    coefficients = cycles.orbits.coefficients
+    values = fourier(2.0 * np.pi * np.arange(SAMPLES) / SAMPLES, coefficients.shape[-1] // 2)
+    return _ranges(discretization, findings, cycles.member, (coefficients @ values.T).swapaxes(-1, -2))
 
 
 def torus_tensions(discretization: Discretization, findings: ModelFindings) -> FloatArray:
     """Return the smallest and the largest H + N_i of each quasi-periodic motion: (tori, 2) [N], as `cycle_tensions`."""
     known = findings.quasi_periodic
-    return _ranges(discretization, findings, known.member, sampled_states(known.tori))
+    return _ranges(
+        discretization, findings, known.member, sampled_states(known.tori)[..., : findings.model.mass.shape[-1]]
+    )
 
 
-def _ranges(discretization: Discretization, findings: ModelFindings, member: IntArray, state: FloatArray) -> FloatArray:
-    model = take(findings.model, member)
-    if model.stretching is None:
+def _ranges(discretization: Discretization, findings: ModelFindings, member: IntArray, q: FloatArray) -> FloatArray:
+    stretching = take_stretching(findings.model.stretching, member)
+    if stretching is None:
         return np.full((member.size, 2), np.inf)
-    ends = tension_range(model.stretching, state[..., : model.mass.shape[-1]])
+    ends = tension_range(stretching, q)
     return np.asarray(discretization.profile.horizontal_tension[findings.line[member], None] + ends)
 
 
