@@ -36,6 +36,7 @@ class _LineParts(TypedDict):
     wind: spec.Wind
     damping: spec.Damping
     devices: tuple[spec.Device, ...]
+    climate: spec.Climate | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,7 @@ class SoundParts:
     wind: schemas.Wind | None
     damping: schemas.Damping | None
     devices: Sequence[schemas.Device | None]
+    climate: schemas.Climate | None = None
 
     @classmethod
     def of(cls, line: schemas.Line) -> "SoundParts":
@@ -63,6 +65,7 @@ class SoundParts:
             wind=line.wind,
             damping=line.damping,
             devices=line.devices,
+            climate=line.climate,
         )
 
 
@@ -115,6 +118,8 @@ def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Li
     if line is not None and not gathered.neutral:
         slack = list(_slack_faults(line))
         gathered.faults.extend(slack or _string_faults(line))
+        if options is not None and options.risk and sound.climate is None:
+            gathered.faults.append(Fault("climate", None, "must be given for a risk"))
     analysis = gathered.make("analysis", options, parts.analysis, _NEUTRAL_ANALYSIS)
     comparable = line or _apart_from_positions(values)
     if comparable is not None and options is not None:
@@ -149,7 +154,12 @@ def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
         "wind": gathered.make("wind", sound.wind, parts.wind, spec.Wind()),
         "damping": gathered.make("damping", sound.damping, parts.damping, _NEUTRAL_DAMPING),
         "devices": tuple(_device(i, part, gathered) for i, part in enumerate(sound.devices)),
+        "climate": gathered.attempt("", partial(_climate, sound.climate)),
     }
+
+
+def _climate(part: schemas.Climate | None) -> spec.Climate | None:
+    return None if part is None else parts.climate(part)
 
 
 def _device(index: int, part: schemas.Device | None, gathered: Gathered) -> spec.Device:

@@ -24,6 +24,7 @@ DEVICES: Mapping[str, type[spec.Device]] = {
     "airflow_spoiler": spec.AirflowSpoiler,
     "torsional_damper": spec.TorsionalDamper,
 }
+_OF_ICING = ("hours", "events", "event_hours", "persistence")
 _CHOICES: Mapping[str, type[spec.PendulumChoice | spec.SpoilerChoice]] = {
     "detuning_pendulum": spec.PendulumChoice,
     "airflow_spoiler": spec.SpoilerChoice,
@@ -146,6 +147,36 @@ def _value(part: schemas.Document, name: str) -> Any:
     return math.radians(given) if unit == {"unit": "deg"} else given
 
 
+def climate(part: schemas.Climate) -> spec.Climate:
+    """Build the climate."""
+    return spec.Climate(
+        azimuth=math.radians(part.azimuth),
+        sectors=tuple(
+            spec.WindSector(
+                direction=math.radians(sector.direction),
+                share=sector.share,
+                shape=_required_range(sector, "shape"),
+                scale=_required_range(sector, "scale"),
+                width=None if sector.width is None else math.radians(sector.width),
+            )
+            for sector in part.sectors
+        ),
+        icing=tuple(
+            spec.Icing(icing.kind, icing.thickness, *(_range(icing, name) for name in _OF_ICING))
+            for icing in part.icing
+        ),
+    )
+
+
+def _range(part: schemas.Document, name: str) -> spec.Ranged | None:
+    """Return a number with its ends, None if it is not given."""
+    return None if getattr(part, name) is None else _required_range(part, name)
+
+
+def _required_range(part: schemas.Document, name: str) -> spec.Ranged:
+    return spec.Ranged(getattr(part, name), getattr(part, f"{name}_lowest"), getattr(part, f"{name}_highest"))
+
+
 def placement(part: schemas.Placement) -> spec.Placement:
     """Build a search for the placement of devices."""
     return spec.Placement(
@@ -195,6 +226,7 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
         device_effect=spec.DeviceEffect(part.device_effect),
         amplitude_curves=spec.AmplitudeCurves(part.amplitude_curves),
         check=spec.Check(part.check),
+        risk=part.risk is not False,
     )
 
 

@@ -81,6 +81,11 @@ class Ground:
         for number, device in enumerate(parts.devices):
             document["devices"].append(line["devices"][number] if device is None else _dumped(device))
             unsound |= {("devices", str(number))} if device is None else set()
+        if parts.climate is not None:
+            document["climate"] = _dumped(parts.climate)
+        elif line.get("climate") is not None:
+            document["climate"] = line["climate"]
+            unsound.add(("climate",))
         if not isinstance(line.get("devices", []), list):
             unsound.add(("devices",))
         known = {fault.pointer for fault in _document_faults(document, options)}

@@ -1,6 +1,7 @@
 """The JSON that comes in, as pydantic models: names, units, bounds, defaults and examples of the fields."""
 
 from app.schemas.analysis import Analysis, WindSpeedRange
+from app.schemas.climate import Climate, Icing, WindSector
 from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer, TorsionalDamper
 from app.schemas.environment import (
     Aerodynamics,
@@ -26,6 +27,7 @@ __all__ = [
     "Axis",
     "BlowOut",
     "Bundle",
+    "Climate",
     "CoefficientRow",
     "Conductor",
     "Damping",
@@ -34,6 +36,7 @@ __all__ = [
     "Document",
     "Ice",
     "IceSegment",
+    "Icing",
     "JobRequest",
     "Line",
     "MeasuredCoefficients",
@@ -48,5 +51,6 @@ __all__ = [
     "Supports",
     "TorsionalDamper",
     "Wind",
+    "WindSector",
     "WindSpeedRange",
 ]

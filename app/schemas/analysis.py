@@ -161,6 +161,12 @@ class Analysis(Document):
         examples=["direct"],
     )
 
+    risk: bool | None = Field(
+        default=None,
+        description="Whether to weigh the motions with the line's climate (table `risk`); if null, where it has one",
+        examples=[True],
+    )
+
     @model_validator(mode="after")
     def _distinct(self) -> Self:
         for name in ("loops", "models", "finite_element_loops"):

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from app.reference.source_lines import example
+from app.schemas.climate import CLIMATE, Climate
 from app.schemas.devices import Device
 from app.schemas.environment import Damping, Ice, Wind
 from app.schemas.fields import ICED_MASS, LENGTH_LIMIT_M, Document, Label, TagKey, quantity
@@ -228,4 +229,7 @@ class Line(Document):
     damping: Damping = Field(description="Structural damping", examples=[_TWIN["damping"]])
     devices: list[Device] = Field(
         default=[], max_length=200, description="What is mounted on the span", examples=[[_SPACER]]
+    )
+    climate: Climate | None = Field(
+        default=None, description="Winds and icing of the year, for the table `risk`", examples=[CLIMATE]
     )

@@ -99,8 +99,12 @@ def _stems(path: tuple[str, ...]) -> dict[str, str]:
 
 @cache
 def _everywhere() -> dict[str, str]:
-    """Return the dotted names of all fields by the words of their last part without the unit; the first one counts."""
-    return {_stem(full.rpartition(".")[2]): full for full in reversed(_names())}
+    """Return the dotted names of all fields by the words of their last part without the unit; the first one counts.
+
+    Those of a climate count last: it has the words of a line in another sense.
+    """
+    names = sorted(_names(), key=lambda full: full.startswith("line.climate."))
+    return {_stem(full.rpartition(".")[2]): full for full in reversed(names)}
 
 
 def _nearest(name: str, stems: Mapping[str, str]) -> str | None:

@@ -64,6 +64,8 @@ def line_warnings(line: Line) -> list[str]:
             f"The polar inertia about the mass centre is only {share:.1e} of that about the reference curve: the mass "
             "matrix is ill-conditioned, and torsional frequencies and motions lose a corresponding number of digits."
         )
+    if line.climate is not None and len(line.climate.icing) > 1:
+        result.append("The climate has several kinds of ice, and the line one: it stands for all of them in the risk.")
     return result
 
 

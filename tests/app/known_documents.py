@@ -29,7 +29,11 @@ CONTRACT: dict[str, Any] = {
     ],
     "required_clearance_m": 1.5,
     "design_wind_m_per_s": 10.0,
-    "climate": {"icing_hours_a_year": 40.0},
+    "climate": {
+        "line_azimuth_deg": 45.0,
+        "sectors": [{"direction_deg": 315.0, "share": 1.0, "weibull_shape": 2.0, "weibull_scale_m_per_s": 6.0}],
+        "icing": [{"kind": "glaze", "thickness_m": 0.012, "hours_a_year": 40.0}],
+    },
 }
 _TABLE = [
     {"angle_deg": float(angle), "lift": 0.1 + 0.01 * angle, "drag": 1.0 + 0.001 * angle, "moment": -0.002 * angle}

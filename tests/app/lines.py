@@ -68,6 +68,50 @@ FULL_LINE: dict[str, Any] = {
         {"type": "detuning_pendulum", "position_m": 62.94, "mass_kg": 12.0, "arm_m": 0.35, "angle_deg": 30.0},
         {"type": "airflow_spoiler", "from_m": 30.0, "to_m": 60.0, "aerodynamics": COEFFICIENTS, "mass_kg_per_m": 0.3},
     ],
+    "climate": {
+        "line_azimuth_deg": 90.0,
+        "sectors": [
+            {
+                "direction_deg": 45.0,
+                "width_deg": 30.0,
+                "share": 0.25,
+                "weibull_shape": 2.0,
+                "weibull_shape_lowest": 1.8,
+                "weibull_shape_highest": 2.2,
+                "weibull_scale_m_per_s": 6.0,
+                "weibull_scale_lowest_m_per_s": 5.0,
+                "weibull_scale_highest_m_per_s": 7.0,
+            },
+            {
+                "direction_deg": 180.0,
+                "width_deg": 0.0,
+                "share": 0.75,
+                "weibull_shape": 1.6,
+                "weibull_scale_m_per_s": 4.0,
+            },
+        ],
+        "icing": [
+            {
+                "kind": "glaze",
+                "thickness_m": 0.012,
+                "hours_a_year": 40.0,
+                "hours_a_year_lowest": 20.0,
+                "hours_a_year_highest": 80.0,
+            },
+            {
+                "kind": "wet snow",
+                "events_a_year": 2.0,
+                "events_a_year_lowest": 1.0,
+                "events_a_year_highest": 4.0,
+                "event_hours": 20.0,
+                "event_hours_lowest": 10.0,
+                "event_hours_highest": 40.0,
+                "wind_persistence_hours": 6.0,
+                "wind_persistence_hours_lowest": 1.0,
+                "wind_persistence_hours_highest": 12.0,
+            },
+        ],
+    },
 }
 SHORT = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 6.0]}
 

@@ -20,7 +20,8 @@ from engine.known.resolve import Resolved, resolve
 from engine.outcome import InvalidSpec
 
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
-_KEPT = ("phases", "required_clearance", "design_wind", "climate")
+_KEPT = ("phases", "required_clearance", "design_wind")
+_AS_SAID = {"name", "asset_id", "tags", "devices", "climate"}
 # What the document calls otherwise than the engine, and what only the engine has, with its unit.
 _OTHER_NAMES: Mapping[str, str] = {
     "conductor.modulus": "conductor.youngs_modulus_pa",
@@ -82,7 +83,7 @@ def _faults_of_whole(explicit: Mapping[str, Any]) -> list[Fault]:
 def _explicit(said_line: said.KnownLine, resolved: Resolved) -> dict[str, Any]:
     """Return the document of the resolved line; what was said in its own form stays as it was said."""
     line = resolved.line
-    document = said_line.model_dump(mode="json", by_alias=True, include={"name", "asset_id", "tags", "devices"})
+    document = said_line.model_dump(mode="json", by_alias=True, include=_AS_SAID)
     kept = {name: value for name, value in document.items() if value is not None}
     return kept | {
         "conductor": _conductor(line.conductor),

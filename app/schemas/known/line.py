@@ -1,9 +1,10 @@
 """The whole line as an engineer knows it."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
+from app.schemas.climate import CLIMATE, Climate
 from app.schemas.devices import Device
 from app.schemas.environment import Damping, Wind
 from app.schemas.fields import Document, Label, TagKey, quantity
@@ -89,6 +90,6 @@ class KnownLine(Document):
     design_wind: float | None = quantity(
         "design_wind_m_per_s", "Wind speed of design; kept as it is", "m/s", (0.1, 100.0), 10.0, None
     )
-    climate: dict[str, Any] | None = Field(
-        default=None, description="Climate of the line; kept as it is", examples=[{"icing_events_per_year": 2.0}]
+    climate: Climate | None = Field(
+        default=None, description="Winds and icing of the year, for the table `risk`", examples=[CLIMATE]
     )

@@ -42,6 +42,24 @@ def test_every_field_of_the_contract_arrives_in_the_engine_in_its_unit() -> None
             spec.DetuningPendulum(62.94, 12.0, 0.35, math.pi / 6),
             spec.AirflowSpoiler(30.0, 60.0, spec.Aerodynamics(vertical, horizontal, torsional), 0.3),
         ),
+        climate=spec.Climate(
+            azimuth=math.pi / 2,
+            sectors=(
+                spec.WindSector(
+                    math.pi / 4, 0.25, spec.Ranged(2.0, 1.8, 2.2), spec.Ranged(6.0, 5.0, 7.0), math.radians(30.0)
+                ),
+                spec.WindSector(math.pi, 0.75, spec.Ranged(1.6), spec.Ranged(4.0), 0.0),
+            ),
+            icing=(
+                spec.Icing("glaze", 0.012, hours=spec.Ranged(40.0, 20.0, 80.0)),
+                spec.Icing(
+                    "wet snow",
+                    events=spec.Ranged(2.0, 1.0, 4.0),
+                    event_hours=spec.Ranged(20.0, 10.0, 40.0),
+                    persistence=spec.Ranged(6.0, 1.0, 12.0),
+                ),
+            ),
+        ),
     )
 
 
@@ -73,6 +91,7 @@ def test_every_field_of_an_analysis_arrives_in_the_engine() -> None:
             "critical_wind_limit_m_per_s": 12.0,
             "harmonics": 7,
             "finite_element_loops": [2, 3],
+            "risk": False,
         },
     )
     assert analysis == spec.Analysis(
@@ -84,6 +103,7 @@ def test_every_field_of_an_analysis_arrives_in_the_engine() -> None:
         critical_wind_limit=12.0,
         harmonics=7,
         finite_element_loops=(2, 3),
+        risk=False,
     )
 
 
