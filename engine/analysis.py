@@ -2,24 +2,20 @@
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import chain
 
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merge_axes
-from engine.checks.bounded_motions import bounded_motions
-from engine.checks.confidence import confidence
-from engine.checks.direct_starts import direct_starts
-from engine.cycles.bifurcations import bifurcations
 from engine.cycles.harmonic_balance import Orbits, resized
 from engine.cycles.known_cycles import Starts, stacked
-from engine.cycles.search import Cycles, DirectIntegration, find_cycles
+from engine.cycles.search import Cycles
 from engine.cycles.starts import explicit_starts
 from engine.each_wind import analyse_lines
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
-from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds, no_crossings
+from engine.model_findings import ModelStack, findings_of
+from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
 from engine.models.discretization import Discretization, discretize, fields_in_space, in_wind, with_wind_twist
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_published_load
@@ -33,8 +29,8 @@ from engine.report.findings import ModelFindings
 from engine.report.frequencies import NaturalFrequencies, coupled_frequencies, full_frequencies
 from engine.report.line_results import line_results
 from engine.result import LoopCompetitionRow, Result
-from engine.spec import Analysis, Check, DeviceEffect, Line, LoopCompetition, Model, StaticTwist, check_compatible
-from engine.tori.quasi_periodic import check_by_integration, quasi_periodic_motions
+from engine.section_analysis import analyse_section
+from engine.spec import Analysis, DeviceEffect, Line, LoopCompetition, Model, StaticTwist, check_compatible
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,17 +44,6 @@ class _Discretized:
     shapes: DirectionalShapes
     modes: FullModes | None
     scan: Scan | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class _ModelStack:
-    """A stack of models before its motions are searched; fields as in ModelFindings."""
-
-    name: Model
-    model: ReducedModel
-    line: IntArray
-    loops: IntArray
-    crossings: Crossings
 
 
 def analyse(line: Line, analysis: Analysis) -> Generator[Progress, None, Result]:
@@ -108,6 +93,17 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
 
 
 def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
+    """Analyse lines, each in its one static state: single spans as one stack, every section by itself."""
+    spans = [line for line in lines if line.section is None]
+    together = iter((yield from _analyse_spans(spans, analysis)) if spans else [])
+    results = []
+    for line in lines:
+        result = next(together) if line.section is None else (yield from analyse_section(line, analysis))
+        results += [result]
+    return results
+
+
+def _analyse_spans(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
     yield Progress(0.0, "static state and modes")
     prepared = _discretized(lines, analysis)
     parts = _in_each_wind(prepared, analysis) if analysis.follows_twist else [(prepared, analysis)]
@@ -192,7 +188,7 @@ def _analyse_hybrid(prepared: _Discretized, loops: tuple[int, ...], analysis: An
 
     crossings = _crossings(prepared, model, line, analysis, model_of)
     loops_of = np.array(loops)[column][:, None] * np.ones(model.mass.shape[-1], dtype=np.intp)
-    return _findings(_ModelStack(Model.HYBRID, model, line, loops_of, crossings), winds, starts, analysis)
+    return findings_of(ModelStack(Model.HYBRID, model, line, loops_of, crossings), winds, starts, analysis)
 
 
 def _analyse_finite_element(
@@ -215,8 +211,8 @@ def _analyse_finite_element(
     line, coordinates = np.arange(len(prepared.discretization.lines)), model.shapes.shape[:2]
     own = np.resize(modes.loops, coordinates[1])  # those of each direction; a relief coordinate is never the largest
     loops = np.broadcast_to(own, coordinates)
-    stack = _ModelStack(Model.FINITE_ELEMENT, model, line, loops, crossings)
-    return _findings(stack, _winds(analysis), starts, analysis)
+    stack = ModelStack(Model.FINITE_ELEMENT, model, line, loops, crossings)
+    return findings_of(stack, _winds(analysis), starts, analysis)
 
 
 def _crossings(
@@ -230,31 +226,6 @@ def _crossings(
     if prepared.scan is not None:
         return crossings_in_wind(prepared.scan, line, model_of)
     return critical_wind_speeds(model, analysis.critical_wind_limit)
-
-
-def _findings(stack: _ModelStack, winds: FloatArray, starts: Starts, analysis: Analysis) -> ModelFindings:
-    """Find all motions of a stack of models at the wind speeds, and check them by direct integration if asked for."""
-    model, direct = stack.model, analysis.check is Check.DIRECT
-    integration = DirectIntegration(
-        starts=direct_starts(model, winds, analysis.harmonics) if direct else None,
-        settle=partial(bounded_motions, model, winds, analysis.harmonics),
-    )
-    cycles = find_cycles(model, stack.crossings, winds, starts, analysis.harmonics, integration)
-    bifurcation_points = bifurcations(cycles.branch_sets, cycles.followed, model, stack.crossings)
-    tori = quasi_periodic_motions(model, cycles, bifurcation_points, winds, analysis.quasi_periodic)
-    follows = analysis.follows_twist and analysis.wind_speeds  # crossings about this state hold at its wind speed only
-    return ModelFindings(
-        name=stack.name,
-        model=model,
-        line=stack.line,
-        loops=stack.loops,
-        crossings=no_crossings() if follows else stack.crossings,
-        cycles=cycles,
-        confidence=confidence(model, cycles, analysis.check),
-        bifurcations=bifurcation_points,
-        quasi_periodic=check_by_integration(model, tori) if direct else tori,
-        winds=winds,
-    )
 
 
 def _competitions(

@@ -37,11 +37,12 @@ class _LineParts(TypedDict):
     damping: spec.Damping
     devices: tuple[spec.Device, ...]
     climate: spec.Climate | None
+    section: spec.Section | None
 
 
 @dataclass(frozen=True, slots=True)
 class SoundParts:
-    """The parts of a line document that pass their schema; None for a part that does not."""
+    """The parts of a line document that pass their schema; None for a part that does not, and for no section."""
 
     conductor: schemas.Conductor | None
     bundle: schemas.Bundle | None
@@ -52,6 +53,7 @@ class SoundParts:
     damping: schemas.Damping | None
     devices: Sequence[schemas.Device | None]
     climate: schemas.Climate | None = None
+    section: schemas.Section | None = None
 
     @classmethod
     def of(cls, line: schemas.Line) -> "SoundParts":
@@ -66,6 +68,7 @@ class SoundParts:
             damping=line.damping,
             devices=line.devices,
             climate=line.climate,
+            section=line.section,
         )
 
 
@@ -117,7 +120,7 @@ def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Li
     line = gathered.attempt("", lambda: spec.Line(**values))
     if line is not None and not gathered.neutral:
         slack = list(_slack_faults(line))
-        gathered.faults.extend(slack or _string_faults(line))
+        gathered.faults.extend(slack or [*_string_faults(line), *_section_faults(line)])
         if options is not None and options.risk and sound.climate is None:
             gathered.faults.append(Fault("climate", None, "must be given for a risk"))
     analysis = gathered.make("analysis", options, parts.analysis, _NEUTRAL_ANALYSIS)
@@ -134,7 +137,8 @@ def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Li
 def _compare(gathered: Gathered, line: spec.Line, options: schemas.Analysis) -> None:
     """Check a line against the options of an analysis, and apart from these against its physics, to find all faults."""
     loops, more_loops = tuple(options.loops), tuple(options.finite_element_loops)
-    bare = _without_physics(loops, more_loops, spec.Closure(options.closure))
+    closure, competition = spec.Closure(options.closure), spec.LoopCompetition(options.loop_competition)
+    bare = replace(_without_physics(loops, more_loops, closure), loop_competition=competition)
     for choice in (bare, spec.with_physics(line, _NEUTRAL_ANALYSIS, parts.physics(options))):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
 
@@ -155,6 +159,7 @@ def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
         "damping": gathered.make("damping", sound.damping, parts.damping, _NEUTRAL_DAMPING),
         "devices": tuple(_device(i, part, gathered) for i, part in enumerate(sound.devices)),
         "climate": gathered.attempt("", partial(_climate, sound.climate)),
+        "section": None if sound.section is None else _section(sound.section, gathered),
     }
 
 
@@ -179,12 +184,33 @@ def _ice(ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
     return spec.Ice(coefficients, ice.eccentricity_y, ice.eccentricity_z, segments)
 
 
+def _section(section: schemas.Section, gathered: Gathered) -> spec.Section | None:
+    made = gathered.make("section", section, parts.section, None)
+    if made is None:
+        return None
+    own = [span.ice for span in section.spans]
+    spans = tuple(
+        replace(span, ice=None if ice is None else _ice_of_span(i, ice, gathered))
+        for i, (span, ice) in enumerate(zip(made.spans, own, strict=True))
+    )
+    return replace(made, spans=spans)
+
+
+def _ice_of_span(index: int, ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
+    alone = Gathered()
+    made = alone.make("ice", ice, lambda part: _ice(part, alone), spec.Ice(_STILL))
+    gathered.faults.extend(replace(fault, field=f"section.spans.{index}.{fault.field}") for fault in alone.faults)
+    gathered.neutral.extend(f"section.spans.{index}.{path}" for path in alone.neutral)
+    return made
+
+
 def _apart_from_positions(values: _LineParts) -> spec.Line | None:
     """Return a line with a neutral span and conductor, to check rules that do not depend on positions or inertia."""
     other: _LineParts = {
         **values,
         "span": replace(_NEUTRAL_SPAN, elements=values["span"].elements),
         "conductor": _NEUTRAL_CONDUCTOR,
+        "section": None,
     }
     return Gathered().attempt("", lambda: spec.Line(**other))
 
@@ -208,6 +234,13 @@ def _string_faults(line: spec.Line) -> Iterator[Fault]:
         from engine.mechanics.static_profile import string_faults  # noqa: PLC0415 - level spans need no numerics
 
         yield from string_faults(line)
+
+
+def _section_faults(line: spec.Line) -> Iterator[Fault]:
+    if line.section is not None:
+        from engine.assemblies.spans import section_faults  # noqa: PLC0415 - a span alone needs no numerics
+
+        yield from section_faults(line)
 
 
 def _sag(length: float, catenary_parameter: float) -> float:

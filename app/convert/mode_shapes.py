@@ -21,10 +21,12 @@ def mode_shapes(document: Mapping[str, object], point: int) -> list[dict[str, An
     LookupError
         If there is no such point.
     """
-    from engine.models.mode_shapes import mode_shapes as compute  # noqa: PLC0415 - the API and `galloping --help` need no solver
+    # The API and `galloping --help` need no solver.
+    from engine.assemblies.section_mode_shapes import section_mode_shapes  # noqa: PLC0415
+    from engine.models.mode_shapes import mode_shapes as compute  # noqa: PLC0415
 
     line, analysis = specification_of_point(document, point)
-    found = compute(line, analysis)
+    found = compute(line, analysis) if line.section is None else section_mode_shapes(line, analysis)
     return [
         {
             "model": model.value,

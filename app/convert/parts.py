@@ -79,6 +79,22 @@ def supports(part: schemas.Supports) -> spec.Supports:
     return spec.Supports(part.longitudinal_stiffness, support(part.left), support(part.right))
 
 
+def section(part: schemas.Section) -> spec.Section:
+    """Build a section without the ice of its spans, which `assemble` adds."""
+    return spec.Section(
+        spans=tuple(
+            spec.SectionSpan(
+                span.length,
+                span.level_difference,
+                profile=None if span.profile is None else tuple((p.position, p.factor) for p in span.profile),
+            )
+            for span in part.spans
+        ),
+        strings=tuple(spec.SuspensionString(string.length, string.weight) for string in part.strings),
+        span_of_interest=part.span_of_interest,
+    )
+
+
 def aerodynamics(
     part: schemas.Aerodynamics | schemas.MeasuredCoefficients, at_rest: schemas.AerodynamicsAtRest | None
 ) -> spec.Aerodynamics:

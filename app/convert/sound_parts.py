@@ -66,6 +66,7 @@ def sound_parts(line: Mapping[str, Any]) -> SoundParts:
         damping=_part(schemas.Damping, line, "damping"),
         devices=[_device(item) for item in devices[:_MOST_DEVICES]] if isinstance(devices, list) else [],
         climate=_sound(schemas.Climate, line["climate"]) if line.get("climate") is not None else None,
+        section=_part(schemas.Section, line, "section"),
     )
 
 

@@ -86,6 +86,11 @@ class Ground:
         elif line.get("climate") is not None:
             document["climate"] = line["climate"]
             unsound.add(("climate",))
+        if parts.section is not None:
+            document["section"] = _dumped(parts.section)
+        elif line.get("section") is not None:
+            document["section"] = line["section"]
+            unsound.add(("section",))
         if not isinstance(line.get("devices", []), list):
             unsound.add(("devices",))
         known = {fault.pointer for fault in _document_faults(document, options)}

@@ -18,6 +18,7 @@ from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
 from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
 from app.schemas.request import Axis, JobRequest, Study
+from app.schemas.section import Section, SectionSpan, SuspensionString
 
 __all__ = [
     "Aerodynamics",
@@ -43,12 +44,15 @@ __all__ = [
     "PendulumChoice",
     "Placement",
     "ProfilePoint",
+    "Section",
+    "SectionSpan",
     "Spacer",
     "Span",
     "SpoilerChoice",
     "Study",
     "Support",
     "Supports",
+    "SuspensionString",
     "TorsionalDamper",
     "Wind",
     "WindSector",

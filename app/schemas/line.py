@@ -10,6 +10,8 @@ from app.schemas.climate import CLIMATE, Climate
 from app.schemas.devices import Device
 from app.schemas.environment import Damping, Ice, Wind
 from app.schemas.fields import ICED_MASS, LENGTH_LIMIT_M, Document, Label, TagKey, quantity
+from app.schemas.section import EXAMPLE as SECTION
+from app.schemas.section import Section
 
 _TWIN = example("c11-twin")
 _SPACER = {"type": "spacer", "position_m": 62.94, "mass_kg": 6.5, "polar_inertia_kg_m2": 0.4}
@@ -207,7 +209,7 @@ class Supports(Document):
 
 
 class Line(Document):
-    """One iced span with everything that its motion depends on."""
+    """One iced span with everything that its motion depends on, by itself or in a section of spans."""
 
     name: Label | None = Field(default=None, description="Name to show to people", examples=["C11 twin, 126 m"])
     asset_id: Label | None = Field(default=None, description="Identity in the owner's records", examples=["L204-S017"])
@@ -232,4 +234,9 @@ class Line(Document):
     )
     climate: Climate | None = Field(
         default=None, description="Winds and icing of the year, for the table `risk`", examples=[CLIMATE]
+    )
+    section: Section | None = Field(
+        default=None,
+        description="The spans around this one between two dead ends, all of which then move, with their strings",
+        examples=[SECTION],
     )

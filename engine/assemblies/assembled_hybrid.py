@@ -12,13 +12,13 @@ from engine.assemblies.shared_tension import of_all_members, own_stiffness, shar
 from engine.mechanics.cross_sections import Sections
 from engine.mechanics.finite_elements import U, V, device_damping
 from engine.mechanics.modes import at_points, directional_shapes
-from engine.models import aerodynamic_load
+from engine.models import aerodynamic_load, unexpanded_load
 from engine.models.aerodynamic_load import PolynomialLoad, published_load, span_load
 from engine.models.discretization import discretize
 from engine.models.hybrid import condensed, hybrid_model, integrated, three_coordinates
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals
-from engine.models.relief import DAMPING_RATIO
 from engine.models.stretching import StretchingForce, stretching_of
+from engine.models.unexpanded_load import UnexpandedLoad, load_as_it_stands
 from engine.spec import Analysis, DampingModel, Stretching
 
 DIRECTIONS = 3
@@ -67,6 +67,7 @@ def assembled_hybrid(
         direction=np.arange(mass.shape[-1]) % DIRECTIONS,
         statically_unstable=np.asarray(unstable)[None],
         stretching=stretching_of_members(whole, fields, analysis),
+        unexpanded=load_of_members_as_it_stands(whole, blown, analysis),
     )
 
 
@@ -100,6 +101,12 @@ def load_on_members(whole: AssembledLine, blown: FloatArray, analysis: Analysis)
     return aerodynamic_load.of_all_members(load)
 
 
+def load_of_members_as_it_stands(whole: AssembledLine, blown: FloatArray, analysis: Analysis) -> UnexpandedLoad | None:
+    """Return the unexpanded load on all members, if it is asked for; parameters are those of `load_on_members`."""
+    own = load_as_it_stands(whole.members, at_points(whole.members.matrices, blown), analysis)
+    return unexpanded_load.of_all_members(own)
+
+
 def stretching_of_members(whole: AssembledLine, fields: FloatArray, analysis: Analysis) -> StretchingForce | None:
     """Return the stretching of coordinates with fields (members, groups, m, 4, nodes); None where it is neglected.
 
@@ -127,13 +134,17 @@ def squares_of_interest(whole: AssembledLine, analysis: Analysis) -> FloatArray:
 
 
 def _rates(whole: AssembledLine, squares: FloatArray, analysis: Analysis) -> FloatArray:
-    """Return 2 zeta omega of each coordinate, eq. (11), where squares (groups, m) are their squared frequencies."""
-    ratios = np.full(squares.shape[-1], DAMPING_RATIO)
-    ratios[:DIRECTIONS] = damping_ratios([whole.line])[0]
+    """Return 2 zeta omega of each coordinate, eq. (11), where squares (groups, m) are their squared frequencies.
+
+    The relief, too, has the structural damping of vertical motion: at twice the frequency of the motion it is not far
+    from resonance, where the large damping that it has in a single span would take energy from the motion.
+    """
+    ratios = damping_ratios([whole.line])[0]
     shared = squares.copy()
     if whole.line.damping.model is DampingModel.CONSTANT_COEFFICIENT:
-        shared[:, :DIRECTIONS] = squares_of_interest(whole, analysis)
-    return np.asarray(2.0 * ratios * np.sqrt(np.maximum(shared, 0.0)))
+        of_one_loop = squares_of_interest(whole, analysis)
+        shared[:, :DIRECTIONS], shared[:, DIRECTIONS:] = of_one_loop, of_one_loop[0]
+    return np.asarray(2.0 * ratios[np.arange(squares.shape[-1]) % DIRECTIONS] * np.sqrt(np.maximum(shared, 0.0)))
 
 
 def _in_one(sections: Sections) -> Sections:

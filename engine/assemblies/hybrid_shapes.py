@@ -3,7 +3,9 @@
 Theory sections 4, 12.1 and 16. The modes of several spans lie close together, and a vertical mode needs the motions in
 the other directions that the same wind drives. The horizontal shape is the mode of largest overlap. In torsion strings
 hold every span by itself, so equal spans have equal frequencies and no modes of their own: the torsional shape is in
-every span the mode of as many loops, as large as the vertical motion there.
+every span the mode of as many loops, as large as the vertical motion there. Relief is another vertical mode: in five
+equal spans the lowest modes move at nearly half the frequency of the mode that lifts all spans, which the tension of
+twice their frequency nearly meets, so an approximate shape would not do.
 """
 
 from dataclasses import dataclass
@@ -12,16 +14,13 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.assemblies.assembled_line import AssembledLine, product_along
-from engine.assemblies.assembly import by_member, side_by_side, static_response
-from engine.assemblies.numbered_modes import directional_modes, largest_member, loops_of, member_shares
+from engine.assemblies.assembly import by_member, side_by_side
+from engine.assemblies.numbered_modes import NumberedModes, directional_modes, largest_member, loops_of, member_shares
 from engine.assemblies.shared_tension import span_pulls
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
 from engine.mechanics.modes import directional_shapes
-from engine.models.relief import relief_displacement
 from engine.outcome import Fault, InvalidSpec
 from engine.spec import Analysis, Stretching
-
-OWN_RELIEF = 0.5  # squared cosine between a vertical shape and the relief from which on it relieves itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +53,8 @@ def hybrid_shapes(whole: AssembledLine, numbers: tuple[int, ...], analysis: Anal
             f"must not exceed the number of vertical modes that the elements of the section have ({vertical.count(0)})"
         )
         raise InvalidSpec(Fault("loops", max(numbers), rule))
-    rising = _upwards(whole, vertical.displacement[[vertical.place(0, k) for k in numbers]])
+    own = np.array([vertical.place(0, k) for k in numbers])
+    rising = _upwards(whole, vertical.displacement[own])
     across = by_member(horizontal.displacement, whole.assembly.members)[:, :, W]
     overlap = _sideways(rising) @ whole.assembly.mass @ horizontal.displacement.T
     partner = np.abs(overlap).argmax(axis=-1)
@@ -63,7 +63,7 @@ def hybrid_shapes(whole: AssembledLine, numbers: tuple[int, ...], analysis: Anal
     fields[:, :, W] = across[:, partner] * np.sign(np.take_along_axis(overlap, partner[:, None], axis=-1))
     fields[:, :, THETA] = _torsion(whole, rising[:, :, V])
     fields = _normalized(whole, fields)
-    relief, relieved = _relief(whole, fields, analysis)
+    relief, relieved = _relief(whole, fields, vertical, own, analysis)
     separate = fields[:, :, :, None] * np.eye(FIELDS)[:, :, None]
     return HybridShapes(numbers, side_by_side(separate), partner, relief, relieved)
 
@@ -103,36 +103,21 @@ def _normalized(whole: AssembledLine, fields: FloatArray) -> FloatArray:
     return np.asarray(fields / size[..., None])
 
 
-def _relief(whole: AssembledLine, fields: FloatArray, analysis: Analysis) -> tuple[FloatArray, BoolArray]:
+def _relief(
+    whole: AssembledLine, fields: FloatArray, vertical: NumberedModes, own: IntArray, analysis: Analysis
+) -> tuple[FloatArray, BoolArray]:
     """Return the relief of each model (k, freedoms), and which models need it (k,).
 
-    As for a single span, V is the static curve of each span and U follows statically. How far each span moves, it does
-    statically under the tension of the square stretch of the vertical shape.
+    The square stretch of a vertical shape pulls at all vertical modes. The one that gives way most relieves it; a shape
+    for which this is its own mode needs no other. own: (k,), indices of the vertical modes.
     """
-    members, assembly = whole.members, whole.assembly
-    count = fields.shape[1]
+    members = whole.members
+    count = own.size
     if analysis.stretching is Stretching.NEGLECTED:
-        return np.zeros((count, assembly.held.size)), np.zeros(count, dtype=np.bool_)
-    sagging = _sagging(whole)
+        return np.zeros((count, whole.assembly.held.size)), np.zeros(count, dtype=np.bool_)
     slopes = np.gradient(fields[:, :, V], axis=-1)
     stretch = (slopes**2).sum(axis=-1) / members.profile.arc_length[:, None]  # in proportion to h of each span
-    force = sagging @ span_pulls(whole).T @ stretch
-    moved = np.linalg.solve(sagging @ assembly.stiffness @ sagging.T, -force)
-    relief = moved.T @ sagging
-    vertical = side_by_side(fields * np.array([1.0, 1.0, 0.0, 0.0])[:, None])
-    inner = [
-        ((a @ assembly.mass) * b).sum(axis=-1) for a, b in ((relief, relief), (relief, vertical), (vertical, vertical))
-    ]
-    relief = relief * np.sqrt(inner[2] / inner[0])[:, None]
-    return relief, inner[1] ** 2 < OWN_RELIEF * inner[0] * inner[2]
-
-
-def _sagging(whole: AssembledLine) -> FloatArray:
-    """Return the displacement in which one span after the other sags: (members, freedoms)."""
-    own = relief_displacement(whole.members).reshape(whole.assembly.members, -1, FIELDS).swapaxes(-1, -2)
-    fields = np.zeros((whole.assembly.members, *own.shape))
-    row = np.arange(whole.assembly.members)
-    fields[row, row, V] = own[:, V]
-    vertical = side_by_side(fields)
-    force = -vertical @ whole.assembly.stiffness
-    return vertical + static_response(whole.assembly, force, (U,))
+    work = (stretch.T @ span_pulls(whole) @ vertical.displacement.T) ** 2
+    given = np.where((vertical.direction == 0) & (vertical.squares > 0.0), work / np.abs(vertical.squares), 0.0)
+    most = given.argmax(axis=-1)
+    return vertical.displacement[most], np.asarray(most != own)

@@ -8,7 +8,7 @@ from engine.arrays import FloatArray, IntArray
 from engine.assemblies.assembly import Assembly, by_member, natural_motions
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
 
-DEGENERATE = 1e-9  # relative difference of squared frequencies of modes that are free to mix
+DEGENERATE = 1e-6  # relative difference of squared frequencies of modes that are free to mix
 TIE = 1e-4  # difference of shares that is none
 _FIELDS = ((U, V), (W,), (THETA,))
 

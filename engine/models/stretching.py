@@ -173,10 +173,14 @@ def dynamic_tension(stretching: StretchingForce, q: FloatArray) -> FloatArray:
     return np.asarray(polynomial.powers(q, 2) @ np.swapaxes(forms, -1, -2))
 
 
-def tension_range(stretching: StretchingForce, q: FloatArray) -> FloatArray:
-    """Return the smallest and the largest N_i of all sub-conductors and samples q (..., samples, m): (..., 2) [N]."""
+def tension_range(stretching: StretchingForce, q: FloatArray, spans: int = 1) -> FloatArray:
+    """Return the smallest and the largest N_i of the sub-conductors of each span over samples q (..., samples, m).
+
+    Returns (..., spans, 2) [N].
+    """
     tension = dynamic_tension(stretching, q)
-    return np.stack([tension.min(axis=(-2, -1)), tension.max(axis=(-2, -1))], axis=-1)
+    by_span = tension.reshape(*tension.shape[:-1], spans, tension.shape[-1] // spans)
+    return np.stack([by_span.min(axis=(-3, -1)), by_span.max(axis=(-3, -1))], axis=-1)
 
 
 def take_stretching(stretching: StretchingForce | None, index: Any) -> StretchingForce | None:

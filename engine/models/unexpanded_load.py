@@ -58,6 +58,19 @@ def take_unexpanded(load: UnexpandedLoad | None, index: Any) -> UnexpandedLoad |
     return None if load is None else load.take(index)
 
 
+def of_all_members(load: UnexpandedLoad | None) -> UnexpandedLoad | None:
+    """Join the loads on the points of members (members, groups) to that on all points of their assembly (1, groups).
+
+    Members have the same sub-conductors.
+    """
+    if load is None:
+        return None
+    by_point = ("fields", "strength", "factor", "positions", "which", "rest_angle")
+    parts: dict[str, Any] = {name: np.concatenate(list(getattr(load, name)), axis=1)[None] for name in by_point}
+    parts |= {"diameter": load.diameter[:1], "present": load.present[:1]}
+    return replace(load, **parts, at_rest=load.at_rest.sum(axis=0, keepdims=True))
+
+
 def load_as_it_stands(discretization: Discretization, shapes: FloatArray, analysis: Analysis) -> UnexpandedLoad | None:
     """Return the unexpanded load where an analysis asks for it; parameters are those of `unexpanded_load`."""
     return unexpanded_load(discretization, shapes) if analysis.load_stands else None

@@ -5,18 +5,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import IntArray
 from engine.cycles.branch_set import BranchSet
 from engine.cycles.floquet import floquet
-from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak
-from engine.mechanics.static_profile import horizontal_position
-from engine.models.discretization import Discretization, observation
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, states
 from engine.report.cells import lists_by_line
 from engine.report.findings import ModelFindings
+from engine.report.observers.observer import Observer
 from engine.result.motions import AmplitudeCurveRow
 
+PHASES = 2.0 * np.pi * np.arange(24) / 24  # at which shares of spans are taken
 
-def amplitude_curve_rows(discretization: Discretization, findings: ModelFindings) -> list[list[AmplitudeCurveRow]]:
+
+def amplitude_curve_rows(observer: Observer, findings: ModelFindings) -> list[list[AmplitudeCurveRow]]:
     """Return a row for every computed point of every branch, one list per line, along each curve in turn."""
     table: list[list[AmplitudeCurveRow]] = lists_by_line(findings.line)
     curves: Counter[tuple[int, int]] = Counter()
@@ -28,7 +29,7 @@ def amplitude_curve_rows(discretization: Discretization, findings: ModelFindings
         for place in zip(members.tolist(), families.tolist(), strict=True):
             numbers.append(curves[place])
             curves[place] += 1
-        for line, row in _rows(discretization, findings, branch_set, families, np.array(numbers, dtype=np.intp)):
+        for line, row in _rows(observer, findings, branch_set, families, np.array(numbers, dtype=np.intp)):
             table[line].append(row)
         first += members.size
     for rows in table:
@@ -37,7 +38,7 @@ def amplitude_curve_rows(discretization: Discretization, findings: ModelFindings
 
 
 def _rows(
-    discretization: Discretization,
+    observer: Observer,
     findings: ModelFindings,
     branch_set: BranchSet,
     families: IntArray,
@@ -45,39 +46,27 @@ def _rows(
 ) -> Iterator[tuple[int, AmplitudeCurveRow]]:
     """Yield the rows of a set of branches, each with the index of its line; families and curves: (branches,)."""
     orbits, member, branch = branch_set.orbits, branch_set.member, branch_set.points.branch
-    line, loops = findings.line[member], _dominant_loops(findings, branch_set, orbits)
-    amplitude = _amplitudes(discretization, findings.model.shapes[member], loops, orbits)
-    position = np.empty(line.size)
-    for k in np.unique(loops):
-        here = loops == k
-        at = horizontal_position(discretization.profile, discretization.profile.arc_length / (2.0 * int(k)))
-        position[here] = at[line[here]]
+    line, coordinate = findings.line[member], _dominant_coordinates(findings, branch_set, orbits)
+    observed = observer.moving(findings, member, coordinate, states(orbits, PHASES))
+    amplitude = half_peak_to_peak(observed.shapes.swapaxes(-1, -2) @ orbits.coefficients)
     columns = (
-        loops,
+        findings.loops[member, coordinate],
         families[branch],
         curves[branch],
         np.arange(branch.size) - np.searchsorted(branch, branch),
         orbits.wind_speed,
         orbits.angular_frequency / (2.0 * np.pi),
-        position,
+        observed.position,
         *amplitude.T,
         floquet(findings.model, member, orbits).stability,
+        np.array(observed.span, dtype=np.object_),
     )
     for number, *cells in zip(line.tolist(), *(column.tolist() for column in columns), strict=True):
         yield number, AmplitudeCurveRow(findings.name, *cells)
 
 
-def _amplitudes(discretization: Discretization, shapes: FloatArray, loops: IntArray, orbits: Orbits) -> FloatArray:
-    """Return half of the peak-to-peak of V, W [m] and Theta [rad] where each cycle is observed: (cycles, 3)."""
-    series = np.empty((loops.size, 3, orbits.coefficients.shape[-1]))
-    for k in np.unique(loops):
-        here = loops == k
-        series[here] = observation(discretization, shapes[here], int(k)).swapaxes(-1, -2) @ orbits.coefficients[here]
-    return half_peak_to_peak(series)
-
-
-def _dominant_loops(findings: ModelFindings, branch_set: BranchSet, orbits: Orbits) -> IntArray:
-    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 at each point.
+def _dominant_coordinates(findings: ModelFindings, branch_set: BranchSet, orbits: Orbits) -> IntArray:
+    """Return the coordinate of largest M_ii |q_i|^2 at each point.
 
     Nothing moves at a Hopf point: the next point of its branch decides there.
     """
@@ -86,4 +75,4 @@ def _dominant_loops(findings: ModelFindings, branch_set: BranchSet, orbits: Orbi
     following = np.minimum(np.arange(branch.size) + 1, branch.size - 1)
     still = ~energy.any(axis=-1) & (branch[following] == branch)
     energy[still] = energy[following[still]]
-    return np.asarray(findings.loops[member, energy.argmax(axis=-1)])
+    return np.asarray(energy.argmax(axis=-1))

@@ -83,15 +83,25 @@ def _marked(grid: BoolArray, places: IntArray) -> BoolArray:
     return marks
 
 
-def cycle_loops(findings: ModelFindings) -> IntArray:
-    """Return the number of loops of the coordinate of largest M_ii |q_i|^2 in each cycle: (cycles,)."""
+def cycle_coordinates(findings: ModelFindings) -> IntArray:
+    """Return the coordinate of largest M_ii |q_i|^2 in each cycle: (cycles,)."""
     cycles = findings.cycles
     energy = findings.model.modal_masses[cycles.member] * (cycles.orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
-    return np.asarray(findings.loops[cycles.member, energy.argmax(axis=-1)])
+    return np.asarray(energy.argmax(axis=-1))
+
+
+def torus_coordinates(findings: ModelFindings) -> IntArray:
+    """Return the coordinate of largest kinetic energy in each quasi-periodic motion: (tori,)."""
+    known = findings.quasi_periodic
+    energy = findings.model.modal_masses[known.member] * mean_square_velocity(known.tori)
+    return np.asarray(energy.argmax(axis=-1))
+
+
+def cycle_loops(findings: ModelFindings) -> IntArray:
+    """Return the number of loops of the coordinate that moves most in each cycle: (cycles,)."""
+    return np.asarray(findings.loops[findings.cycles.member, cycle_coordinates(findings)])
 
 
 def torus_loops(findings: ModelFindings) -> IntArray:
-    """Return the number of loops of the coordinate of largest kinetic energy in each quasi-periodic motion: (tori,)."""
-    known = findings.quasi_periodic
-    energy = findings.model.modal_masses[known.member] * mean_square_velocity(known.tori)
-    return np.asarray(findings.loops[known.member, energy.argmax(axis=-1)])
+    """Return the number of loops of the coordinate that moves most in each quasi-periodic motion: (tori,)."""
+    return np.asarray(findings.loops[findings.quasi_periodic.member, torus_coordinates(findings)])

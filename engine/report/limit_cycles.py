@@ -10,14 +10,21 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
 from engine.checks.data_limits import motion_outcomes
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
-from engine.mechanics.static_profile import horizontal_position
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
-from engine.models.discretization import Discretization, nodal_motion, observation
 from engine.models.relative_wind import FASTEST, largest_reach
 from engine.outcome import Outcome, Stability
 from engine.report.cells import finite_or_none, lists_by_line
-from engine.report.findings import MissingMotions, ModelFindings, cycle_loops, missing_motions, torus_loops
+from engine.report.findings import (
+    MissingMotions,
+    ModelFindings,
+    cycle_coordinates,
+    cycle_loops,
+    missing_motions,
+    torus_coordinates,
+    torus_loops,
+)
 from engine.report.internal_resonances import divide_by_direction, motion_shares
+from engine.report.observers.observer import Observed, Observer
 from engine.report.tensions import cycle_tensions, torus_tensions
 from engine.result import LimitCycleRow
 from engine.spec import AerodynamicModel, Analysis
@@ -43,13 +50,13 @@ class Motion:
 
 
 def limit_cycle_rows(
-    discretization: Discretization, findings: ModelFindings, analysis: Analysis, lowest: FloatArray
+    observer: Observer, findings: ModelFindings, analysis: Analysis, lowest: FloatArray
 ) -> list[list[Motion]]:
     """Return a row for the equilibrium, every cycle and every torus at each wind speed, one list per line.
 
     Parameters
     ----------
-    discretization : Discretization
+    observer : Observer
     findings : ModelFindings
     analysis : Analysis
         Its loops, for each of which the equilibrium has a row, and its aerodynamic model.
@@ -57,16 +64,8 @@ def limit_cycle_rows(
         Lowest vertical frequency of each line [Hz].
     """
     table: list[list[Motion]] = lists_by_line(findings.line)
-    scales = _Scales(
-        sag=discretization.profile.sag,
-        speed=lowest * discretization.profile.span_length,
-        observed={k: _observed_at(discretization, k) for k in {*analysis.loops, *np.unique(findings.loops).tolist()}},
-    )
-    for line, motion in chain(
-        _equilibria(findings, analysis.loops, scales),
-        _cycles(discretization, findings, analysis.aerodynamic_model, scales),
-        _quasi_periodic_motions(discretization, findings, analysis.aerodynamic_model, scales),
-    ):
+    seen = _Seen(observer, findings, lowest * observer.span_length, analysis.aerodynamic_model)
+    for line, motion in chain(_equilibria(seen, analysis.loops), _cycles(seen), _quasi_periodic_motions(seen)):
         table[line].append(motion)
     for motions in table:
         motions.sort(key=lambda m: (m.row.loops, m.row.wind_speed_m_per_s, m.row.kind != "equilibrium"))
@@ -74,25 +73,33 @@ def limit_cycle_rows(
 
 
 @dataclass(frozen=True, slots=True)
-class _Scales:
-    """Static sag [m] and f L_x [m/s] of each line, and its position of observation [m] by number of loops."""
+class _Seen:
+    """The findings with who observes them, f L_x [m/s] of each line (lines,), and the aerodynamic model."""
 
-    sag: FloatArray
+    observer: Observer
+    findings: ModelFindings
     speed: FloatArray
-    observed: dict[int, FloatArray]
+    model: AerodynamicModel
+
+    @property
+    def is_expanded(self) -> bool:
+        """Whether the load is expanded in velocities, and so holds for small ones only."""
+        return self.model is not AerodynamicModel.PUBLISHED and self.findings.model.unexpanded is None
 
 
 @dataclass(frozen=True, slots=True)
 class _RowKeys:
-    """Index of the line, number of loops and wind speed [m/s] of each row: (k,) each."""
+    """Index of the line, number of loops and wind speed [m/s] of each row, (k,) each, and where it is observed."""
 
     line: IntArray
     loops: IntArray
     wind_speed: FloatArray
+    observed: Observed
 
 
-def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales) -> Iterator[tuple[int, Motion]]:
+def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[tuple[int, Motion]]:
     """Yield rows of the static state, and of wind speeds where it is unstable and no stable motion is known."""
+    findings = seen.findings
     members, winds = findings.line.size, findings.winds.size
     values = eigenvalues(at_wind(state_matrices(findings.model), np.broadcast_to(findings.winds, (members, winds))))
     size = np.abs(values).max(axis=-1, initial=0.0)
@@ -102,60 +109,57 @@ def _equilibria(findings: ModelFindings, loops: tuple[int, ...], scales: _Scales
     verdict = np.where(undecided & ~static[:, None], 0, np.where(growing, 1, 2))
     known = (findings.loops[:, :, None] == np.array(loops, dtype=np.intp)).any(axis=1)
     member, at, wind = np.nonzero(np.broadcast_to(known[:, :, None], (members, len(loops), winds)))
-    keys = _RowKeys(findings.line[member], np.array(loops, dtype=np.intp)[at], findings.winds[wind])
+    number = np.array(loops, dtype=np.intp)[at]
+    keys = _RowKeys(
+        findings.line[member], number, findings.winds[wind], seen.observer.resting(findings, member, number)
+    )
     amplitude = np.where(static[member], np.nan, 0.0)
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("equilibrium"),
         "stability": [_VERDICTS[finite_or_none] for finite_or_none in verdict[member, wind].tolist()],
         "outcome": [_UNSTABLE if missing else Outcome.CONVERGED for missing in static[member].tolist()],
     }
-    yield from _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
+    yield from _rows(seen, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
     # One row, with the loops of the first coordinate, stands for all unstable modes of a member.
     shown = np.isin(findings.loops[:, :1], loops) & ~static[:, None]
-    yield from _without_motion(findings, scales, missing_motions(findings, growing & shown))
+    yield from _without_motion(seen, missing_motions(findings, growing & shown))
 
 
-def _without_motion(findings: ModelFindings, scales: _Scales, missing: MissingMotions) -> Iterator[tuple[int, Motion]]:
+def _without_motion(seen: _Seen, missing: MissingMotions) -> Iterator[tuple[int, Motion]]:
     """Yield a row for each wind speed where a stable motion must exist but none is known."""
-    member = missing.member
-    keys = _RowKeys(findings.line[member], findings.loops[member, 0], findings.winds[missing.wind])
+    findings, member = seen.findings, missing.member
+    loops = findings.loops[member, 0]
+    observed = seen.observer.resting(findings, member, loops)
+    keys = _RowKeys(findings.line[member], loops, findings.winds[missing.wind], observed)
     labels: dict[str, Iterable[Any]] = {
         "kind": missing.kind,
         "stability": repeat(Stability.UNKNOWN),
         "outcome": missing.outcome,
     }
-    return _rows(findings, scales, keys, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), labels)
+    return _rows(seen, keys, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), labels)
 
 
-def _cycles(
-    discretization: Discretization, findings: ModelFindings, model: AerodynamicModel, scales: _Scales
-) -> Iterator[tuple[int, Motion]]:
+def _cycles(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all cycles with their Fourier series at the point of observation."""
-    cycles = findings.cycles
+    observer, findings, cycles = seen.observer, seen.findings, seen.findings.cycles
     if cycles.member.size == 0:
         return iter(())
-    line, loops = findings.line[cycles.member], cycle_loops(findings)
-    shapes = findings.model.shapes[cycles.member]
-    series = np.empty((cycles.member.size, 3, cycles.orbits.coefficients.shape[-1]))
-    for k in np.unique(loops):
-        here = loops == k
-        observed_shapes = observation(discretization, shapes[here], int(k))
-        series[here] = observed_shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients[here]
     state = states(cycles.orbits, 2.0 * np.pi * np.arange(REACH_SAMPLES) / REACH_SAMPLES)
-    motion = nodal_motion(discretization, findings.line, findings.model.shapes, model)
-    reach = largest_reach(motion, cycles.member, state)
+    observed = observer.moving(findings, cycles.member, cycle_coordinates(findings), state)
+    series = observed.shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients
+    reach = largest_reach(observer.local_motion(findings, seen.model), cycles.member, state)
     measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
-    slack = cycle_tensions(discretization, findings)[:, 0] <= 0.0
+    slack = cycle_tensions(observer, findings)[..., 0].min(axis=-1) <= 0.0
+    keys = _RowKeys(findings.line[cycles.member], cycle_loops(findings), cycles.orbits.wind_speed, observed)
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
         "stability": cycles.floquet.stability.tolist(),
         "branch": cycles.branch.tolist(),
         "found_by": cycles.found_by,
         "harmonics": cycles.harmonics.tolist(),
-        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, _is_expanded(findings, model))),
+        "outcome": _slack_first(slack, _outcomes(seen, keys, measures)),
     }
-    keys = _RowKeys(line, loops, cycles.orbits.wind_speed)
-    return _rows(findings, scales, keys, measures, labels, series)
+    return _rows(seen, keys, measures, labels, series)
 
 
 def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
@@ -173,23 +177,23 @@ def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArr
     }
 
 
-def _quasi_periodic_motions(
-    discretization: Discretization, findings: ModelFindings, model_of_wind: AerodynamicModel, scales: _Scales
-) -> Iterator[tuple[int, Motion]]:
+def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     """Yield the rows of all quasi-periodic motions."""
-    known, model, expanded = findings.quasi_periodic, findings.model, _is_expanded(findings, model_of_wind)
-    tori, member, line = known.tori, known.member, findings.line[known.member]
+    observer, findings = seen.observer, seen.findings
+    known, model = findings.quasi_periodic, findings.model
+    tori, member = known.tori, known.member
     frequency, _ = base_frequencies(model, member, tori)
     energy = model.modal_masses[member] * mean_square_velocity(tori)
-    loops = torus_loops(findings)
-    slack = torus_tensions(discretization, findings)[:, 0] <= 0.0
-    motion = nodal_motion(discretization, findings.line, model.shapes, model_of_wind)
+    state = sampled_states(tori)
+    observed = observer.moving(findings, member, torus_coordinates(findings), state)
+    slack = torus_tensions(observer, findings)[..., 0].min(axis=-1) <= 0.0
+    motion = observer.local_motion(findings, seen.model)
     ranges, reach = np.empty((2, 3, member.size)), np.empty((2, member.size))
     for i in range(member.size):
         one = tori.select(np.array([i]))
-        series = observation(discretization, model.shapes[member[i]], int(loops[i])).T @ one.coefficients[0]
+        series = observed.shapes[i].T @ one.coefficients[0]
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
-        reach[:, [i]] = largest_reach(motion, member[[i]], sampled_states(one))
+        reach[:, [i]] = largest_reach(motion, member[[i]], state[[i]])
     measures = {
         **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
         **dict(zip(_SHARES, divide_by_direction(energy, model.direction).T, strict=True)),
@@ -199,31 +203,24 @@ def _quasi_periodic_motions(
         "truncation": known.truncation,
         "direct_difference": known.direct,
     }
+    keys = _RowKeys(findings.line[member], torus_loops(findings), tori.wind_speed, observed)
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("quasi_periodic"),
         "stability": known.stability.tolist(),
         "branch": known.branch.tolist(),
         "found_by": known.found_by,
         "harmonics": repeat(tori.order[0]),
-        "outcome": _slack_first(slack, _outcomes(discretization, line, measures, expanded)),
+        "outcome": _slack_first(slack, _outcomes(seen, keys, measures)),
     }
-    return _rows(findings, scales, _RowKeys(line, loops, tori.wind_speed), measures, labels)
+    return _rows(seen, keys, measures, labels)
 
 
-def _is_expanded(findings: ModelFindings, model: AerodynamicModel) -> bool:
-    """Return whether the load is expanded in velocities, and so holds for small ones only."""
-    return model is not AerodynamicModel.PUBLISHED and findings.model.unexpanded is None
-
-
-def _outcomes(
-    discretization: Discretization, line: IntArray, measures: Mapping[str, FloatArray], expanded: bool
-) -> list[Outcome]:
-    """Return the outcomes of computed motions of lines (motions,)."""
+def _outcomes(seen: _Seen, keys: _RowKeys, measures: Mapping[str, FloatArray]) -> list[Outcome]:
+    """Return the outcomes of computed motions."""
     angle, velocity = (measures[name] for name in _REACH)
     amplitudes = np.stack([measures[name] for name in _AMPLITUDES[:2]])
-    sag, fitted_range = discretization.profile.sag[line], discretization.sections.fitted_range[line]
-    too_fast = (velocity > FASTEST) & expanded
-    return motion_outcomes(angle, fitted_range, too_fast, amplitudes, sag)
+    too_fast = (velocity > FASTEST) & seen.is_expanded
+    return motion_outcomes(angle, seen.observer.fitted_range[keys.line], too_fast, amplitudes, keys.observed.sag)
 
 
 def _slack_first(slack: BoolArray, outcomes: list[Outcome]) -> list[Outcome]:
@@ -232,8 +229,7 @@ def _slack_first(slack: BoolArray, outcomes: list[Outcome]) -> list[Outcome]:
 
 
 def _rows(
-    findings: ModelFindings,
-    scales: _Scales,
+    seen: _Seen,
     keys: _RowKeys,
     measures: Mapping[str, FloatArray],
     labels: Mapping[str, Iterable[Any]],
@@ -243,21 +239,21 @@ def _rows(
 
     measures: columns of numbers, which include the amplitudes; labels: all others.
     """
-    sag, speed = scales.sag[keys.line], scales.speed[keys.line]
-    observed = {k: at.tolist() for k, at in scales.observed.items()}
-    lines, loops = keys.line.tolist(), keys.loops.tolist()
+    sag, speed = keys.observed.sag, seen.speed[keys.line]
+    lines = keys.line.tolist()
     with np.errstate(invalid="ignore"):  # the speed of a line without a vertical frequency is infinite
         reduced = np.where(np.isfinite(speed), keys.wind_speed / speed, np.nan)
     numbers = dict(measures) | {
         "wind_speed_m_per_s": keys.wind_speed,
+        "observed_at_m": keys.observed.position,
         "vertical_ratio": measures["vertical_m"] / sag,
         "horizontal_ratio": measures["horizontal_m"] / sag,
         "reduced_wind_speed": reduced,
     }
     columns: dict[str, Iterable[Any]] = dict.fromkeys(_NAMES, repeat(None))
     columns |= {name: _numbers(column) for name, column in numbers.items()} | dict(labels)
-    columns |= {"model": repeat(findings.name), "loops": loops}
-    columns["observed_at_m"] = [observed[k][line] for k, line in zip(loops, lines, strict=True)]
+    columns |= {"model": repeat(seen.findings.name), "loops": keys.loops.tolist()}
+    columns |= {"span": keys.observed.span, "span_shares": keys.observed.shares}
     return zip(lines, map(Motion, map(LimitCycleRow, *columns.values()), series), strict=False)
 
 
@@ -265,8 +261,3 @@ def _numbers(column: FloatArray) -> list[Any]:
     """Return the numbers of a column, None in place of those that are not finite."""
     values: list[Any] = column.tolist()
     return values if np.isfinite(column).all() else [finite_or_none(value) for value in values]
-
-
-def _observed_at(discretization: Discretization, loops: int) -> FloatArray:
-    """Return the horizontal position of s = L/(2 loops) on each line [m]."""
-    return horizontal_position(discretization.profile, discretization.profile.arc_length / (2.0 * loops))

@@ -20,6 +20,7 @@ from engine.report.findings import ModelFindings
 from engine.report.frequencies import NaturalFrequencies, frequency_rows
 from engine.report.internal_resonances import internal_resonance_rows
 from engine.report.limit_cycles import Motion, limit_cycle_rows
+from engine.report.observers.observer import SpanObserver
 from engine.report.static_equilibria import static_equilibrium_rows
 from engine.report.tensions import tension_rows
 from engine.report.warnings import (
@@ -34,7 +35,16 @@ from engine.report.warnings import (
     twist_warnings,
     wind_twist_warnings,
 )
-from engine.result import DenHartog, LimitCycleRow, LoopCompetitionRow, Orbit, PhysicsRow, Result, StaticState
+from engine.result import (
+    DenHartog,
+    LimitCycleRow,
+    LoopCompetitionRow,
+    Neighbours,
+    Orbit,
+    PhysicsRow,
+    Result,
+    StaticState,
+)
 from engine.spec import AmplitudeCurves, Analysis, CrossSection, Line
 
 
@@ -68,28 +78,29 @@ def line_results(
     lowest = np.nanmin(shapes.angular_frequency[:, :, 0], axis=1, initial=np.inf) / (2.0 * np.pi)
     frequencies = [frequency_rows(table, analysis.loops) for table in natural_frequencies]
     longitudinal = longitudinal_share(discretization.matrices, shapes)
-    motions = [limit_cycle_rows(discretization, one, analysis, lowest) for one in findings]
+    observer = SpanObserver(discretization)
+    motions = [limit_cycle_rows(observer, one, analysis, lowest) for one in findings]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     tables: dict[str, list[Any]] = {
         "critical_wind_speeds": [critical_wind_speed_rows(one, shapes.loops, longitudinal) for one in findings],
-        "tensions": [tension_rows(discretization, one) for one in findings],
+        "tensions": [tension_rows(observer, one) for one in findings],
         "bifurcations": [bifurcation_rows(one) for one in findings],
-        "amplitude_curves": [amplitude_curve_rows(discretization, one) for one in reported],
+        "amplitude_curves": [amplitude_curve_rows(observer, one) for one in reported],
     }
     about_lines = _warnings_about_lines(discretization, shapes, findings, analysis)
     dropped = [dropped_warnings(one, len(discretization.lines)) for one in findings]
     equilibria = static_equilibrium_rows(discretization, np.unique(analysis.wind_speeds))
     results = []
     for i in range(len(discretization.lines)):
-        cycles, orbits = _cycles_and_orbits(_of_line(motions, i))
+        cycles, orbits = cycles_and_orbits(_of_line(motions, i))
         own_frequencies = tuple(_of_line(frequencies, i))
         about_motions = fit_warnings(cycles, analysis) + motion_warnings(cycles)
         own: dict[str, Any] = {name: tuple(_of_line(parts, i)) for name, parts in tables.items()}
         results.append(
             Result(
-                static=_static_state(discretization, i),
-                den_hartog=_den_hartog(discretization, i),
-                physics=(_physics(discretization.lines[i], analysis),),
+                static=static_state(discretization, i),
+                den_hartog=den_hartog(discretization, i),
+                physics=(physics_row(discretization.lines[i], analysis),),
                 frequencies=own_frequencies,
                 internal_resonances=internal_resonance_rows(own_frequencies),
                 static_equilibria=tuple(equilibria[i]),
@@ -110,10 +121,24 @@ def _of_line(parts: Sequence[Sequence[Sequence[Any]]], line: int) -> list[Any]:
     return [item for part in parts for item in part[line]]
 
 
-def _physics(line: Line, analysis: Analysis) -> PhysicsRow:
+def physics_row(line: Line, analysis: Analysis) -> PhysicsRow:
+    """Return the physics that a line was analysed with."""
     single = len(line.bundle.positions) == 1
-    options = {field.name: getattr(analysis, field.name) for field in fields(PhysicsRow) if field.name != "section"}
-    return PhysicsRow(**options, section=None if single else line.bundle.section or CrossSection.RIGID)
+    names = [field.name for field in fields(PhysicsRow) if field.name not in ("section", "neighbours")]
+    return PhysicsRow(
+        **{name: getattr(analysis, name) for name in names},
+        section=None if single else line.bundle.section or CrossSection.RIGID,
+        neighbours=_neighbours(line),
+    )
+
+
+def _neighbours(line: Line) -> Neighbours:
+    ends = line.supports.left, line.supports.right
+    if line.section is not None:
+        return "moving"
+    if line.supports.longitudinal_stiffness is not None:
+        return "given_springs"
+    return "dead_ends" if all(end.dead_end for end in ends) else "static_springs"
 
 
 def _warnings_about_lines(
@@ -146,7 +171,7 @@ def _statically_unstable(findings: tuple[ModelFindings, ...], lines: int) -> Boo
     return unstable
 
 
-def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...], tuple[Orbit, ...]]:
+def cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...], tuple[Orbit, ...]]:
     """Return the rows of motions, and the Fourier series of those that are cycles."""
     orbits = []
     for i, motion in enumerate(motions):
@@ -156,14 +181,15 @@ def _cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...]
     return tuple(motion.row for motion in motions), tuple(orbits)
 
 
-def _den_hartog(discretization: Discretization, line: int) -> DenHartog:
+def den_hartog(discretization: Discretization, line: int) -> DenHartog:
     """Return the smallest a_y1 on the span: under partial ice a single piece below zero can feed the motion."""
     here = discretization.sections.local_weight[line] > 0.0
     coefficient = float(discretization.sections.aerodynamics[line, here, 0, 1].min())
     return DenHartog(coefficient, coefficient < 0.0)
 
 
-def _static_state(discretization: Discretization, line: int) -> StaticState:
+def static_state(discretization: Discretization, line: int) -> StaticState:
+    """Return the row of the static state of a line, by its index."""
     profile = discretization.profile
     stiffness = float(profile.end_stiffness[line].min())
     return StaticState(

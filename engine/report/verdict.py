@@ -168,7 +168,7 @@ def _motion(evidence: _Evidence) -> str:
         return f"{text}; how far was not found."
     worst = evidence.moving[0]
     size = _doubled(worst.vertical_m) or 0.0
-    return f"{text}; at {worst.wind_speed_m_per_s:g} m/s in {_in_words(worst.loops)}, {_metres(size)} m peak to peak."
+    return f"{text}; at {worst.wind_speed_m_per_s:g} m/s in {_in_words(worst)}, {_metres(size)} m peak to peak."
 
 
 def _reasons(evidence: _Evidence) -> list[str]:
@@ -193,5 +193,8 @@ def _metres(length: float) -> str:
     return f"{length:.2f}" if length >= 0.1 else f"{length:.2g}"
 
 
-def _in_words(loops: int) -> str:
+def _in_words(motion: LimitCycleRow) -> str:
+    loops = motion.loops
+    if motion.span is not None:
+        return f"mode {loops} of the section, most in span {motion.span}"
     return {1: "one loop", 2: "two loops", 3: "three loops"}.get(loops, f"{loops} loops")

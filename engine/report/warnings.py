@@ -106,6 +106,17 @@ def longitudinal_warnings(loops: Sequence[int], shares: FloatArray, analysis: An
     return [known]
 
 
+def section_warnings(analysis: Analysis) -> list[str]:
+    """Return sentences on what the hybrid model of a section leaves out."""
+    if Model.HYBRID not in analysis.models or not analysis.wind_speeds:
+        return []
+    return [
+        "The hybrid model of a section moves one vertical mode at a time. Modes of several spans have nearly equal "
+        "frequencies and critical wind speeds, so a motion that is stable by itself may give way to another mode; the "
+        "finite element model, which moves the modes of finite_element_loops together, tells."
+    ]
+
+
 def relief_warnings(analysis: Analysis, relieved: float) -> list[str]:
     """Return a sentence if one relief coordinate is not enough for the hybrid model; relieved: its k_0/k."""
     several = [k for k in analysis.loops if k > 1]

@@ -17,9 +17,17 @@ from engine.spec import (
 )
 
 Direction = Literal["vertical", "horizontal", "torsional", "longitudinal"]
+Neighbours = Literal["static_springs", "given_springs", "dead_ends", "moving"]
 ModelColumn = Annotated[Model, Column("Model that the row comes from", "hybrid")]
-LoopsColumn = Annotated[int, Column("Loops per span", 1, unit="1")]
+LoopsColumn = Annotated[int, Column("Loops per span; in a section the number of the mode", 1, unit="1")]
 OutcomeColumn = Annotated[Outcome, Column("How the computation ended", "converged")]
+SpanColumn = Annotated[
+    int | None, Column("Span of a section, from 1, that moves most; null for a single span and at rest", 3, unit="1")
+]
+SpanSharesColumn = Annotated[
+    str | None,
+    Column("Shares of all spans of a section in the kinetic energy, from left to right", "0.04 0.26 0.40 0.26 0.04"),
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +77,14 @@ class PhysicsRow:
         CrossSection | None,
         Column("Whether the sub-conductors move along the span alike or each by itself; null for a single one", "free"),
     ]
+    neighbours: Annotated[
+        Neighbours,
+        Column(
+            "What holds the ends along the line: static_springs (A10) take the adjacent spans as equal ones at rest "
+            "that only give way statically; moving: the spans of a section, with swinging strings",
+            "static_springs",
+        ),
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +100,26 @@ class FrequencyRow:
     horizontal_hz: Annotated[float | None, Column("Dominantly horizontal", 0.4460, unit="Hz")]
     torsional_hz: Annotated[float | None, Column("Dominantly torsional", 0.6343, unit="Hz")]
     outcome: OutcomeColumn = Outcome.CONVERGED
+
+
+@dataclass(frozen=True, slots=True)
+class SectionModeRow:
+    """A natural mode of a section without wind, numbered by frequency within its direction.
+
+    Theory section 16. Of the hybrid model these are modes of each direction by itself.
+    """
+
+    model: ModelColumn
+    direction: Annotated[Direction, Column("Direction of the largest kinetic energy", "vertical")]
+    mode: Annotated[int, Column("Number of the mode within its direction, from 1, by frequency", 1, unit="1")]
+    frequency_hz: Annotated[
+        float | None, Column("Frequency; null where the static state is unstable", 0.18698, unit="Hz")
+    ]
+    span: Annotated[int, Column("Span that moves most, from 1; the first one of several alike", 3, unit="1")]
+    span_shares: Annotated[
+        str,
+        Column("Shares of all spans in the kinetic energy, from left to right", "0.0385 0.2616 0.3998 0.2617 0.0384"),
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +153,8 @@ class CriticalWindSpeedRow:
     direction: Annotated[Direction, Column("Dominant direction of the growing motion", "vertical")]
     frequency_hz: Annotated[float, Column("Frequency of the growing motion; 0 for a divergence", 0.4816, unit="Hz")]
     unstable_pairs_after: Annotated[int, Column("Unstable pairs of eigenvalues above this wind speed", 1, unit="1")]
+    span: SpanColumn = None
+    span_shares: SpanSharesColumn = None
 
 
 @dataclass(frozen=True, slots=True)

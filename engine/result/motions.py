@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from engine.outcome import Stability
-from engine.result.at_rest import LoopsColumn, ModelColumn, OutcomeColumn
+from engine.result.at_rest import LoopsColumn, ModelColumn, OutcomeColumn, SpanColumn, SpanSharesColumn
 from engine.result.columns import Column
 
 FoundBy = Literal[
@@ -100,6 +100,8 @@ class LimitCycleRow:
         ),
     ]
     outcome: OutcomeColumn
+    span: SpanColumn = None
+    span_shares: SpanSharesColumn = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,6 +145,9 @@ class TensionRow:
         Column("Largest tension at the higher support over the rated strength, null without one", 0.23, unit="1"),
     ]
     outcome: OutcomeColumn
+    span: Annotated[
+        int | None, Column("Span of a section, from 1, whose tension it is; null for a single span", None, unit="1")
+    ] = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,6 +170,7 @@ class AmplitudeCurveRow:
     horizontal_m: Annotated[float, Column("Horizontal amplitude", 0.0021, unit="m")]
     torsional_rad: Annotated[float, Column("Torsional amplitude", 0.0006, unit="rad")]
     stability: Annotated[Stability, Column("Stability of the motion; unknown if it could not be decided", "stable")]
+    span: SpanColumn = None
 
 
 @dataclass(frozen=True, slots=True)

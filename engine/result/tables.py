@@ -10,6 +10,7 @@ from engine.result.at_rest import (
     FrequencyRow,
     InternalResonanceRow,
     PhysicsRow,
+    SectionModeRow,
     StaticEquilibriumRow,
     StaticState,
 )
@@ -46,6 +47,9 @@ class Tables:
     physics: Annotated[tuple[PhysicsRow, ...], Title("Physics of the analysis")] = ()
     frequencies: Annotated[tuple[FrequencyRow, ...], Title("Natural frequencies")] = ()
     internal_resonances: Annotated[tuple[InternalResonanceRow, ...], Title("Ratios of the natural frequencies")] = ()
+    section_modes: Annotated[
+        tuple[SectionModeRow, ...], Title("Natural modes of a section of spans; empty for a single span")
+    ] = ()
     critical_wind_speeds: Annotated[
         tuple[CriticalWindSpeedRow, ...],
         Title("Wind speeds at which the resting span loses or regains stability"),

@@ -204,19 +204,18 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
         the relative wind is asked for without coefficients at rest, or the table model with no table or one with gaps.
     """
     most = max(analysis.loops + analysis.finite_element_loops)
+    elements = line.span.elements * (1 if line.section is None else len(line.section.spans))
     published = analysis.closure is Closure.PUBLISHED
     relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
     table = analysis.aerodynamic_model is AerodynamicModel.TABLE
     require(
-        Fault("section", None, "must be absent: sections are not analysed yet") if line.section is not None else None,
         *_spacer_faults(line),
+        *_section_faults(line, analysis),
         Fault("ice.aerodynamics", None, "must be a measured table for the table model")
         if table and line.ice.aerodynamics.measured is None
         else None,
         *(line.curve_faults() if table else ()),
-        Fault("loops", most, f"must not exceed the number of elements ({line.span.elements})")
-        if most > line.span.elements
-        else None,
+        Fault("loops", most, f"must not exceed the number of elements ({elements})") if most > elements else None,
         Fault("closure", analysis.closure.value, "must be exact for a wind profile")
         if published and line.wind.profile
         else None,
@@ -230,3 +229,17 @@ def _spacer_faults(line: Line) -> Iterator[Fault]:
     for i, device in enumerate(line.devices):
         if isinstance(device, InterphaseSpacer):
             yield Fault(f"devices.{i}", None, "must be absent: phases that spacers tie are not analysed yet")
+
+
+def _section_faults(line: Line, analysis: Analysis) -> Iterator[Fault]:
+    """Check that an analysis asks nothing that sections do not have."""
+    if line.section is None:
+        return
+    if analysis.closure is Closure.PUBLISHED:
+        yield Fault("closure", analysis.closure.value, "must be exact for a section")
+    if analysis.aerodynamic_model is AerodynamicModel.TABLE:
+        rule = "must not be table for a section, whose spans have no common static state in the wind"
+        yield Fault("aerodynamic_model", analysis.aerodynamic_model.value, rule)
+    if analysis.loop_competition is LoopCompetition.CHECKED:
+        rule = "must be neglected for a section; the finite element model moves its modes together"
+        yield Fault("loop_competition", analysis.loop_competition.value, rule)

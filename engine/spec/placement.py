@@ -125,6 +125,9 @@ def check_placement(line: Line, analysis: Analysis, placement: Placement) -> Non
     require(
         Fault("choice.position.highest", last, off_span) if last > line.span.length else None,
         Fault("choice", None, "must not place a spoiler on a line that has one") if second_spoiler else None,
+        Fault("choice", None, "must be for a span alone: devices are not placed on a section")
+        if line.section
+        else None,
         Fault("objective", placement.objective.value, "needs wind speeds in the analysis") if no_wind else None,
     )
 

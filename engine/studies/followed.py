@@ -55,6 +55,9 @@ def followed(line_at: LineAt, values: Sequence[float], results: Sequence[Result]
     rule = "must be given where cycles are followed over a field"
     moving = any(line_at(value).follows_wind for value in values)
     require(Fault("wind.blow_out.wind_speed", None, rule) if moving else None)
+    rule = "must be absent where cycles are followed over a field"
+    several = any(line_at(value).section is not None for value in values)
+    require(Fault("section", None, rule) if several else None)
     study = _Study(line_at, np.array(values, dtype=np.float64), analysis)
     discretization, grid = study.models_of([line_at(value) for value in values])
     known = study.starts(discretization, grid, results)

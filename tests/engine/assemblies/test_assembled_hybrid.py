@@ -12,6 +12,7 @@ from engine.assemblies.assembly import by_member
 from engine.assemblies.hybrid_shapes import hybrid_shapes
 from engine.assemblies.shared_tension import shared_stiffness
 from engine.mechanics.finite_elements import U, V, W
+from engine.mechanics.modes import directional_shapes
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.models.stretching import dynamic_tension, restoring_force, slope_points, span_stiffness
@@ -45,7 +46,10 @@ def test_a_span_between_strings_that_cannot_swing_is_a_single_span(
     section = model_of(whole, number, analysis)
     single = take(hybrid(whole.members.lines[2], loops, analysis), [0])
     assert section.uncoupled_squares[:, :3] == pytest.approx(single.uncoupled_squares[:, :3], rel=1e-6)
-    assert section.uncoupled_squares[:, 3:] == pytest.approx(single.uncoupled_squares[:, 3:], rel=1e-4)  # relief
+    if loops == 2:  # relieved by the mode of one loop of the same span
+        shapes = directional_shapes(whole.members.matrices, whole.members.profile.arc_length, (1,))
+        one_loop = shapes.angular_frequency[2, 0, 0] ** 2
+        assert section.uncoupled_squares[0, 3] == pytest.approx(one_loop, rel=1e-6)
     found, expected = (critical_wind_speeds(model, 30.0) for model in (section, single))
     assert found.wind_speed.size
     assert found.wind_speed == pytest.approx(expected.wind_speed, rel=1e-6)

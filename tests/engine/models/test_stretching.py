@@ -108,7 +108,7 @@ def test_upward_motion_slackens_and_sideways_motion_tightens() -> None:
 def test_the_range_of_tension_is_over_sub_conductors_and_samples() -> None:
     linear = np.array([[[2.0, 0.0], [0.0, -3.0]]])
     stretching = StretchingForce(np.zeros(0), np.zeros(0), linear, np.zeros((1, 2, 2, 2)))
-    assert tension_range(stretching, np.array([[[1.0, 2.0], [-4.0, 1.0]]])) == pytest.approx(np.array([[-8.0, 2.0]]))
+    assert tension_range(stretching, np.array([[[1.0, 2.0], [-4.0, 1.0]]])) == pytest.approx(np.array([[[-8.0, 2.0]]]))
 
 
 def test_the_sag_relieves_a_parabola_by_its_slopes() -> None:
