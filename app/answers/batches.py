@@ -31,11 +31,12 @@ class LineCounts(Answer):
 
 
 class LineSummary(Answer):
-    """The result of one line in a row, together with its static state and Den Hartog's criterion."""
+    """The result of one line in a row, together with its verdict, static state and Den Hartog's criterion."""
 
     number: int = described("Number of the line, from 1; headers and the analysis do not count [1]", 1)
     reference: str | None = described("The caller's reference of the line", "row-1")
     asset_id: str | None = described("Identity of the line in the owner's records", "L204-S017")
+    name: str | None = described("Name of the line", "C11 twin, 126 m")
     status: str = described("State of the line", "successful")
     failure: str | None = described("Why there are no results, in a sentence", "The job ran longer than 3600 s.")
     lowest_critical_wind_speed_m_per_s: float | None = described("Wind speed from which the line gallops [m/s]", 2.403)

@@ -5,7 +5,7 @@ from typing import Any
 from uuid import UUID
 
 import orjson
-from sqlalchemy import Row, and_, select
+from sqlalchemy import Row, and_, case, select
 from sqlalchemy.orm import Session
 
 from app import convert
@@ -13,6 +13,7 @@ from app.storage.stored_results import (
     RANKING_FIGURES,
     STATIC,
     UNKNOWN_MOTIONS,
+    VERDICT,
     ranking_columns,
     tables_of,
     unpacked,
@@ -28,13 +29,14 @@ _HARTOG = ("den_hartog_coefficient", "den_hartog_unstable")
 def columns(table: str) -> list[str]:
     """Return the names of a table's columns in order."""
     if table == "summary":
-        return [*_LABELS, "status", "failure", *STATIC, *_HARTOG, *RANKING_FIGURES, UNKNOWN_MOTIONS, "engine_version"]
+        figures = *STATIC, *_HARTOG, *RANKING_FIGURES, UNKNOWN_MOTIONS
+        return [*_LABELS, "name", "status", "failure", *VERDICT, *figures, "engine_version"]
     return [*_LABELS, *convert.columns(table)]
 
 
 def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any]]:
     """Yield the rows of a table: one for every line in the summary, otherwise the rows of each line's results."""
-    for item in _lines(session, batch_id, unpacking=table != "summary"):
+    for item in _lines(session, batch_id, in_short=table == "summary"):
         if table == "summary":
             yield _summary(item)
         elif _is_solved(item):
@@ -45,7 +47,7 @@ def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any
 
 def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
     """Yield for each line a JSON object, with a line end, that holds all its results or its failure."""
-    for item in _lines(session, batch_id, unpacking=True):
+    for item in _lines(session, batch_id, in_short=False):
         # The packed tables are JSON already; splice them into the object without parsing.
         head = orjson.dumps({**_labels(item), **_state(item), **_point(item)})
         yield b"%b,%b\n" % (head[:-1], unpacked(item.tables if _is_solved(item) else None)[1:])
@@ -61,22 +63,20 @@ def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterato
             yield {"number": number, "reference": reference, "row": None, **fault}
 
 
-def _lines(session: Session, batch_id: UUID, *, unpacking: bool) -> Iterator[Row[Any]]:
-    """Yield the lines with the state of their chunk and their result, reading a page at a time."""
+def _lines(session: Session, batch_id: UUID, *, in_short: bool) -> Iterator[Row[Any]]:
+    """Yield the lines with the state of their chunk and their result, reading a page at a time.
+
+    In short, they have their name and verdict, and their tables only if these were stored without the verdict.
+    """
     of_line = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number)
-    names = (
-        *STATIC,
-        *_HARTOG,
-        *RANKING_FIGURES,
-        "warnings",
-        "engine_version",
-        "failure",
-        *(("tables",) if unpacking else ()),
-    )
+    names = (*STATIC, *_HARTOG, *RANKING_FIGURES, "warnings", "engine_version", "failure")
+    older = case((PointRow.verdict.is_(None), PointRow.tables), else_=None).label("tables")
+    name = BatchItem.document["name"].as_string().label("name")
+    contents = (PointRow.verdict, older, name) if in_short else (PointRow.tables,)
     statement = (
         select(BatchItem.number, BatchItem.reference, BatchItem.asset_id, BatchItem.chunk_id, BatchItem.faults)
         .add_columns(Job.status, Job.failure_kind, Job.failure_detail, PointRow.point)
-        .add_columns(*(getattr(PointRow, name) for name in names))
+        .add_columns(*(getattr(PointRow, name) for name in names), *contents)
         .outerjoin(Job, Job.id == BatchItem.chunk_id)
         .outerjoin(PointRow, of_line)
         .where(BatchItem.batch_id == batch_id)
@@ -91,10 +91,15 @@ def _lines(session: Session, batch_id: UUID, *, unpacking: bool) -> Iterator[Row
 
 def _summary(item: Row[Any]) -> dict[str, Any]:
     state = _state(item)
+    verdict = item.verdict
+    if verdict is None and _is_solved(item):
+        verdict = next(iter(tables_of(item.tables).get("verdict", ())), None)
     return {
         **_labels(item),
+        "name": item.name,
         "status": state["status"],
         "failure": state["failure"]["detail"] if state["failure"] else None,
+        **{name: (verdict or {}).get(name) for name in VERDICT},
         **{name: getattr(item, name) for name in (*STATIC, *_HARTOG)},
         **ranking_columns(item),
         "engine_version": item.engine_version,

@@ -34,7 +34,8 @@ class Advance:
 class PointResult:
     """Everything found at one point of a study, as plain values; failure is the sentence why there is nothing.
 
-    input_hash is that of a line by itself or in a batch, and reused tells whether the result was stored before.
+    input_hash is that of a line by itself or in a batch, and reused tells whether the result was stored before. verdict
+    is the row of that table, which stands beside the others so that summaries need not unpack them.
     tables_json is a JSON object that holds the rows of every table, orbits_json a JSON list: the texts are what is
     stored and sent, so that the hundreds of values of a line are turned over once.
     """
@@ -51,6 +52,7 @@ class PointResult:
     failure: str | None
     input_hash: str | None = None
     reused: bool = False
+    verdict: dict[str, Any] | None = None
 
     @cached_property
     def tables(self) -> dict[str, list[dict[str, Any]]]:
@@ -221,6 +223,7 @@ def point_results(
             warnings=[*(f"The line: {doubt}." for doubt in doubts_of(line.ice.aerodynamics)), *result.warnings],
             engine_version=result.engine_version,
             failure=None,
+            verdict=next(iter(orjson.loads(_json(result.verdict))), None),
         )
 
 

@@ -100,6 +100,7 @@ def _kind(annotation: Any) -> Kind:
 
 _SUMMARY: Mapping[str, ExportedColumn] = {
     **_labels(),
+    **_declared(convert.TABLES["verdict"].row),
     **_declared(convert.StaticState),
     **_declared(convert.DenHartog, "den_hartog_"),
 }

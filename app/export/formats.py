@@ -9,6 +9,7 @@ import orjson
 
 Row = Mapping[str, Any]
 Format = Literal["json", "csv", "parquet"]
+Dialect = Literal["plain", "excel", "excel_semicolon"]
 Name = TypeVar("Name", bound=str)
 PARQUET = "application/vnd.apache.parquet"
 MEDIA_TYPES: Mapping[Format, str] = {
@@ -52,14 +53,22 @@ def _joined(block: Sequence[AnyStr]) -> AnyStr:
     return block[0][:0].join(block)
 
 
-def csv_text(columns: Sequence[str], rows: Iterable[Row]) -> Iterator[str]:
-    """Yield the lines of a table, header first (RFC 4180); no cell can act as a spreadsheet formula."""
+def csv_text(columns: Sequence[str], rows: Iterable[Row], dialect: Dialect = "plain") -> Iterator[str]:
+    """Yield the lines of a table, header first (RFC 4180); no cell can act as a spreadsheet formula.
+
+    Excel's dialects begin with a byte order mark, without which it takes UTF-8 for another encoding;
+    `excel_semicolon` has semicolons between cells and decimal commas, as Excel expects in most of Europe.
+    """
     buffer = io.StringIO()
-    writer = csv.writer(buffer)
+    if dialect != "plain":
+        buffer.write("\ufeff")
+    european = dialect == "excel_semicolon"
+    writer = csv.writer(buffer, delimiter=";" if european else ",")
     writer.writerow([_harmless(name) for name in columns])
     yield _drain(buffer)
     for row in rows:
-        writer.writerow([_harmless(row.get(name)) for name in columns])
+        cells = (_harmless(row.get(name)) for name in columns)
+        writer.writerow([_with_comma(cell) for cell in cells] if european else list(cells))
         yield _drain(buffer)
 
 
@@ -139,6 +148,10 @@ def _harmless(cell: Any) -> Any:
     if isinstance(cell, str) and cell.startswith(_FORMULA_STARTS):
         return "'" + cell
     return cell
+
+
+def _with_comma(cell: Any) -> Any:
+    return repr(cell).replace(".", ",") if isinstance(cell, float) else cell
 
 
 def _weight(accept: str, media_type: str) -> float:

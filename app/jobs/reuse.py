@@ -157,4 +157,5 @@ def _as_result(row: PointRow, number: int) -> PointResult:
         failure=None,
         input_hash=row.input_hash,
         reused=True,
+        verdict=row.verdict,
     )

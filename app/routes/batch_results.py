@@ -14,8 +14,9 @@ from app.answers.batches import BatchErrors, BatchTableName
 from app.batches import line_results
 from app.export import formats
 from app.export.exported_columns import exported_columns
+from app.export.formats import Dialect
 from app.http.conditional import strong_tag, unless_known
-from app.http.problems import ProblemError, ProblemKind
+from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import require_results
 from app.routes.dependencies import PREFIX, CallerOf, Readers
@@ -40,6 +41,7 @@ class ResultsQuery(BaseModel):
         description="One table of flat rows; without it, NDJSON has all results, CSV and Parquet the summary",
     )
     format: BatchFormat | None = Field(default=None, description="Format; takes precedence over the Accept header")
+    dialect: Dialect = Field(default="plain", description=documentation.DIALECT)
     partial: bool = Field(default=False, description="Return the results so far, even if lines still wait or run")
 
 
@@ -72,9 +74,11 @@ def batch_results(
         raise ProblemError(
             ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {formats.PARQUET}."
         )
+    if asked.dialect != "plain" and form != "csv":
+        raise query_fault("dialect", "is for CSV only")
     state = require_results(readers, caller, batch_id, partial=asked.partial)
     # Results that may still change get no tag: it would have to be known before the last row is read.
-    headers = unless_known(known, strong_tag(state, form)) if state else {"Vary": "Accept"}
+    headers = unless_known(known, strong_tag(state, form, asked.dialect)) if state else {"Vary": "Accept"}
     name = convert.TABLES_BY_ADDRESS.get(asked.table or "summary", "summary")
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
@@ -85,8 +89,9 @@ def batch_results(
             from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
             return parquet.parquet_bytes(exported_columns(name, line_results.columns(name)), rows)
-        text = formats.csv_text(line_results.columns(name), rows) if form == "csv" else formats.ndjson_text(rows)
-        return formats.in_blocks(text)
+        if form == "csv":
+            return formats.in_blocks(formats.csv_text(line_results.columns(name), rows, asked.dialect))
+        return formats.in_blocks(formats.ndjson_text(rows))
 
     return streamed(readers, pieces, _MEDIA_TYPES[form], headers)
 

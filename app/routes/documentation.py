@@ -31,6 +31,12 @@ def _marked(value: Any) -> Any:
     return _NULL if value is None else value
 
 
+DIALECT = (
+    "Form of a CSV: plain (RFC 4180), excel (with a byte order mark), or excel_semicolon (that, with semicolons and "
+    "decimal commas, as Excel expects in most of Europe)"
+)
+
+
 def table_as_csv(name: str, before: Mapping[str, object] = MappingProxyType({})) -> str:
     """Return an example of a table as CSV, after the columns `before`."""
     (row,) = convert.example_tables()[name]

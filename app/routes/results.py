@@ -13,8 +13,8 @@ from app.answers.results import ResultDocument, TableName
 from app.batches import batch_records
 from app.export import formats
 from app.export.exported_columns import axis_columns, exported_columns
-from app.export.formats import Format
-from app.http.problems import ProblemError, ProblemKind
+from app.export.formats import Dialect, Format
+from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, Readers
 from app.routes.finished_jobs import FinishedJob
@@ -76,12 +76,15 @@ def result_table(
     finished: FinishedJob,
     readers: Readers,
     format: Annotated[Format | None, Query(description="Format; takes precedence over the Accept header")] = None,  # noqa: A002
+    dialect: Annotated[Dialect, Query(description=documentation.DIALECT)] = "plain",
 ) -> StreamingResponse:
     """Return one table of flat rows as JSON, CSV or Parquet, chosen by `?format=` or the Accept header."""
     chosen = format or formats.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {formats.PARQUET}.")
-    job, headers = finished.job, finished.headers(chosen)
+    if dialect != "plain" and chosen != "csv":
+        raise query_fault("dialect", "is for CSV only")
+    job, headers = finished.job, finished.headers(f"{chosen} {dialect}")
     name = convert.TABLES_BY_ADDRESS[table]
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
@@ -89,7 +92,7 @@ def result_table(
         if chosen == "parquet":
             return _parquet(job, name, rows)
         if chosen == "csv":
-            return formats.in_blocks(formats.csv_text([*_axes(job), *convert.columns(name)], rows))
+            return formats.in_blocks(formats.csv_text([*_axes(job), *convert.columns(name)], rows, dialect))
         return formats.in_blocks(formats.json_text(name, rows))
 
     return streamed(readers, pieces, formats.MEDIA_TYPES[chosen], headers)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 STATIC = tuple(columns_of(StaticState))
 RANKING_FIGURES = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
 UNKNOWN_MOTIONS = "unknown_motions"
+VERDICT = tuple(columns_of(TABLES["verdict"].row))
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})
 _POINTS_A_FETCH = 100
 _THREAD = threading.local()
@@ -120,4 +121,5 @@ def _as_columns(point: "PointResult", compressor: zstandard.ZstdCompressor) -> d
         "tables": None if failed else compressor.compress(point.tables_json),
         "orbits": None if failed else compressor.compress(point.orbits_json),
         "input_hash": point.input_hash,
+        "verdict": point.verdict,
     }

@@ -3,7 +3,7 @@
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ForeignKey, Index, LargeBinary, String, Text
+from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.tables.base import Base
@@ -14,7 +14,7 @@ class PointRow(Base):
 
     tables and orbits are JSON compressed by Zstandard (`app.storage.stored_results`), null for a point that failed. The
     indexed figures rank the lines of a batch. input_hash finds the result of a line again (`app.jobs.reuse`); it is
-    null for points of a study.
+    null for points of a study. verdict is the row of that table; it is null in rows that were stored before the column.
     """
 
     __tablename__ = "results"
@@ -49,3 +49,4 @@ class PointRow(Base):
     largest_height_m: Mapped[float | None]
     largest_width_m: Mapped[float | None]
     input_hash: Mapped[str | None] = mapped_column(String(64), index=True)
+    verdict: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))

@@ -16,6 +16,8 @@ from app.jobs import idempotency, leases, webhooks
 from app.jobs.idempotency import Answer, Kept, new_key
 from app.jobs.leases import Failure
 from app.operation import workers
+from app.owned import records
+from app.reference import conductors
 from app.runtime.settings import Settings
 from app.security import keys
 from app.security.caller import LOCAL, Scope
@@ -51,6 +53,8 @@ def fill(sessions: sessionmaker[Session], settings: Settings) -> None:
         keys.create(session, "acme", tuple(Scope), "SCADA", None)
         idempotency.keep(session, [Kept(new_key("acme", "k"), "f", Answer(202, {"a": "b"}, "{}"))])
         workers.report(session, settings, "here")
+        records.put_conductors(session, LOCAL.owner, conductors.named("Drake"))
+        records.put_aerodynamics(session, LOCAL.owner, "crescent", {"coefficients": [0.0]})
     batch_id, (first, second, _open) = add_batch(sessions, 2, 2, 1, rejected=1)
     run(sessions, first)
     run(sessions, second, failing=frozenset({3}))

@@ -71,6 +71,13 @@ def test_numbers_are_left_alone_by_the_guard() -> None:
     assert "".join(csv_text(["a"], [{"a": -1.5}])) == "a\r\n-1.5\r\n"
 
 
+def test_excel_gets_a_mark_and_its_commas() -> None:
+    rows: list[dict[str, Any]] = [{"a": "1.5", "b": -1.5}, {"a": "=x;y", "b": 1e-05}, {"a": True, "b": None}]
+    assert "".join(csv_text(["a", "b"], rows[:1], "excel")) == "\ufeffa,b\r\n1.5,-1.5\r\n"
+    european = "".join(csv_text(["a", "b"], rows, "excel_semicolon"))
+    assert european == '\ufeffa;b\r\n1.5;-1,5\r\n"\'=x;y";1e-05\r\nTrue;\r\n'
+
+
 @given(
     st.lists(
         st.dictionaries(st.text(max_size=5), st.integers(-(2**53), 2**53) | st.text(max_size=5) | st.none(), max_size=3)

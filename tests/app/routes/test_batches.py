@@ -8,6 +8,7 @@ from typing import Any
 import httpx
 import pyarrow.parquet as pq
 import pytest
+from sqlalchemy import update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.export.formats import PARQUET
@@ -16,7 +17,8 @@ from app.jobs.leases import Failure
 from app.main import create_app
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
-from app.tables import FailureKind
+from app.storage.database import make_engine
+from app.tables import FailureKind, PointRow
 from tests.app import service
 from tests.app.lines import SHORT, changed, close
 from tests.app.service import chunks, work_off
@@ -121,6 +123,43 @@ def test_csv_has_labels_and_the_summary_every_line(client: httpx.Client, setting
     assert (second["status"], second["sag_m"]) == ("rejected", "")
     rows = list(csv.DictReader(io.StringIO(client.get(f"{address}/results?table=frequencies&format=csv").text)))
     assert [row["number"] for row in rows] == ["1"] * len(cycle["frequencies"])
+
+
+def test_the_summary_has_name_and_verdict_of_every_line(client: httpx.Client, settings: Settings) -> None:
+    address = accepted(client, MIXED)
+    work_off(client, settings, address)
+    whole = [line for line in ndjson(client, f"{address}/results") if line["status"] == "successful"]
+    first, rejected, third = ndjson(client, f"{address}/results?table=summary")
+    for row, line in zip((first, third), whole, strict=True):
+        (verdict,) = line["verdict"]
+        assert {name: row[name] for name in verdict} == verdict
+        assert row["sentence"] and row["name"] == TWIN["name"]
+    assert (rejected["name"], rejected["gallops"], rejected["sentence"]) == (None, None, None)
+    assert first["onset_m_per_s"] != third["onset_m_per_s"]
+
+
+def test_a_verdict_stored_before_it_had_a_column_is_found(client: httpx.Client, settings: Settings) -> None:
+    address = accepted(client, [TWIN])
+    work_off(client, settings, address)
+    before = ndjson(client, f"{address}/results?table=summary")
+    engine = make_engine(settings)
+    with engine.begin() as connection:
+        connection.execute(update(PointRow).values(verdict=None))
+    engine.dispose()
+    assert ndjson(client, f"{address}/results?table=summary") == before
+
+
+def test_excel_opens_the_summary_in_any_country(client: httpx.Client, settings: Settings) -> None:
+    address = accepted(client, MIXED)
+    work_off(client, settings, address)
+    plain = client.get(f"{address}/results?format=csv").content.decode()
+    assert client.get(f"{address}/results?format=csv&dialect=excel").content.decode("utf-8") == "\ufeff" + plain
+    european = client.get(f"{address}/results?format=csv&dialect=excel_semicolon").content.decode("utf-8-sig")
+    rows = list(csv.DictReader(io.StringIO(european), delimiter=";"))
+    for row, usual in zip(rows, csv.DictReader(io.StringIO(plain)), strict=True):
+        assert row["sag_m"].replace(",", ".") == usual["sag_m"] and "." not in row["onset_m_per_s"]
+        assert row["sentence"] == usual["sentence"]
+    assert client.get(f"{address}/results?format=ndjson&dialect=excel").status_code == 400
 
 
 def test_parquet_says_the_same_as_ndjson(client: httpx.Client, settings: Settings) -> None:
