@@ -2,7 +2,7 @@
 
 import typer
 
-from app.cli import catalogue, keys, lines, operate, service
+from app.cli import catalogue, climate, keys, lines, operate, service
 
 app = typer.Typer(
     help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
@@ -20,6 +20,7 @@ for command in (
     lines.example,
     lines.ellipse,
     lines.resolve,
+    climate.climate,
     catalogue.conductors,
     catalogue.ice_shapes,
     operate.status,

@@ -181,6 +181,9 @@ def climate(part: schemas.Climate) -> spec.Climate:
             spec.Icing(icing.kind, icing.thickness, *(_range(icing, name) for name in _OF_ICING))
             for icing in part.icing
         ),
+        record=None
+        if part.record is None
+        else spec.IcedRecord(part.record.years, tuple(tuple(winds) for winds in part.record.events)),
     )
 
 

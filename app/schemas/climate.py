@@ -11,6 +11,8 @@ _HOURS = (0.0, 8784.0)
 _EVENTS = (0.0, 1000.0)
 _SHAPE = (0.2, 20.0)
 _SCALE = (0.05, 60.0)
+_YEARS = (1e-3, 1000.0)
+_Wind = Annotated[float, Field(ge=0.0, le=100.0)]
 
 
 def _end(name: str, which: str, of: str, unit: str, bounds: tuple[float, float], example: float) -> Any:
@@ -85,18 +87,39 @@ class Icing(Document):
         return self
 
 
+class IcedRecord(Document):
+    """Iced hours of a weather record, as `galloping climate` prints them."""
+
+    years: float = quantity("years", "Length of the record without what is missing in it, in years", "1", _YEARS, 9.7)
+    events: Annotated[list[Annotated[list[_Wind], Field(min_length=1)]], Field(min_length=1, max_length=10_000)] = (
+        Field(
+            description="For each event of icing, the wind across the line in each of its hours [m/s]",
+            examples=[[[4.1, 5.2, 3.9], [7.7]]],
+            json_schema_extra={"unit": "m/s"},
+        )
+    )
+
+
 class Climate(Document):
-    """The wind while the line is iced, and the icing; wind and icing are independent but for what it says."""
+    """The wind while the line is iced, by sector, and the icing; or a record of iced hours."""
 
     azimuth: float = quantity(
         "line_azimuth_deg", "Direction of the line, clockwise from north, either way", "deg", (-360.0, 360.0), 45.0
     )
-    sectors: Annotated[list[WindSector], Field(min_length=1, max_length=72)] = Field(
+    sectors: Annotated[list[WindSector], Field(max_length=72)] = Field(
+        default=[],
         description="The wind by sector, while there is ice on the line",
         examples=[[{"direction_deg": 0.0, "share": 1.0, "weibull_shape": 2.0, "weibull_scale_m_per_s": 6.0}]],
     )
-    icing: Annotated[list[Icing], Field(min_length=1, max_length=20)] = Field(
-        description="Icing by kind of ice", examples=[[{"kind": "glaze", "thickness_m": 0.012, "hours_a_year": 40.0}]]
+    icing: Annotated[list[Icing], Field(max_length=20)] = Field(
+        default=[],
+        description="Icing by kind of ice",
+        examples=[[{"kind": "glaze", "thickness_m": 0.012, "hours_a_year": 40.0}]],
+    )
+    record: IcedRecord | None = Field(
+        default=None,
+        description="Instead of sectors and icing, iced hours of a weather record",
+        examples=[{"years": 9.7, "events": [[4.1, 5.2, 3.9], [7.7]]}],
     )
 
 

@@ -7,18 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.result import Result, RiskRow
+from engine.risk.recorded import Range, recorded_hours, recorded_probability
 from engine.risk.wind_speeds import share_of_time
 from engine.risk.winds import Interval, WindRanges, united, wind_ranges
-from engine.spec import Analysis, Climate, Icing, Line, Model, Ranged
+from engine.spec import Analysis, Climate, IcedRecord, Icing, Line, Model, Ranged
 
 PERSISTENCE_HOURS = Ranged(6.0, 1.0)  # assumed: the wind keeps its speed from one hour to the whole event
 QUANTILES = (0.025, 0.975)
 
 Motion = tuple[Model, int | None]
 """A model and a number of loops, None for any."""
-
-_Range = tuple[float, float, float]
-"""Value, lowest and highest."""
 
 _Label = tuple[str | None, float | None]
 """Kind and thickness of the ice."""
@@ -28,9 +26,9 @@ _Label = tuple[str | None, float | None]
 class _Exposure:
     """What one kind of icing makes of a line: hours of galloping a year, unknown hours, and probability of a year."""
 
-    hours: _Range
+    hours: Range
     unknown: float
-    probability: _Range | None
+    probability: Range | None
 
 
 def risk_rows(result: Result, line: Line, analysis: Analysis) -> tuple[RiskRow, ...]:
@@ -77,6 +75,10 @@ def rows_over_samples(samples: Sequence[Mapping[Motion, WindRanges]], climate: C
     """
     rows: list[RiskRow] = []
     for motion in samples[0]:
+        if climate.record is not None:
+            recorded = _over_samples([_recorded(sample[motion], climate.record) for sample in samples])
+            rows.append(_row(motion, (None, None), recorded, len(samples)))
+            continue
         of_ice = [
             _over_samples([_exposure(sample[motion], climate, ice) for sample in samples]) for ice in climate.icing
         ]
@@ -98,11 +100,22 @@ def _exposure(ranges: WindRanges, climate: Climate, icing: Icing) -> _Exposure:
     )
 
 
+def _recorded(ranges: WindRanges, record: IcedRecord) -> _Exposure:
+    possible = _sorted(ranges.moving, ranges.unknown)
+    hours, most = recorded_hours(record, ranges.moving), recorded_hours(record, possible)
+    probability, likeliest = recorded_probability(record, ranges.moving), recorded_probability(record, possible)
+    return _Exposure(
+        hours=(hours[0], hours[1], most[2]),
+        unknown=most[0] - hours[0],
+        probability=(probability[0], probability[1], likeliest[2]),
+    )
+
+
 def _sorted(*parts: Sequence[Interval]) -> tuple[Interval, ...]:
     return tuple(sorted(interval for part in parts for interval in part))
 
 
-def _probability(icing: Icing, share: _Range) -> _Range | None:
+def _probability(icing: Icing, share: Range) -> Range | None:
     """Return the probability of a year with galloping; events come as a Poisson process.
 
     In an event the wind is drawn anew each time that it has kept its speed for the persistence.
@@ -130,7 +143,7 @@ def _over_samples(exposures: Sequence[_Exposure]) -> _Exposure:
     )
 
 
-def _mean(ranges: Sequence[_Range]) -> _Range:
+def _mean(ranges: Sequence[Range]) -> Range:
     value, lowest, highest = np.array(ranges).T
     low, high = QUANTILES
     return float(value.mean()), float(np.quantile(lowest, low)), float(np.quantile(highest, high))

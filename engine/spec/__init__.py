@@ -22,7 +22,7 @@ from engine.spec.analysis import (
     TorusSearch,
     check_compatible,
 )
-from engine.spec.climate import YEAR_HOURS, Climate, Icing, Ranged, WindSector
+from engine.spec.climate import YEAR_HOURS, Climate, IcedRecord, Icing, Ranged, WindSector
 from engine.spec.devices import (
     THIS,
     AirflowSpoiler,
@@ -83,6 +83,7 @@ __all__ = [
     "DeviceEffect",
     "Ice",
     "IceSegment",
+    "IcedRecord",
     "Icing",
     "InterphaseSpacer",
     "Line",

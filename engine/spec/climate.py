@@ -102,8 +102,31 @@ class Icing:
 
 
 @dataclass(frozen=True, slots=True)
+class IcedRecord:
+    """Iced hours of a weather record: for each event of icing, the wind across the line in each of its hours [m/s].
+
+    years: length of the record without what is missing in it.
+    """
+
+    years: float
+    events: tuple[tuple[float, ...], ...]
+
+    def faults(self, path: str) -> Iterator[Fault | None]:
+        """Check the rules of every field, and that the hours fit into the years."""
+        yield positive(f"{path}.years", self.years)
+        rule = "must hold an event: a record without icing does not say how long icing lasts"
+        yield None if self.events else Fault(f"{path}.events", (), rule)
+        for i, winds in enumerate(self.events):
+            yield None if winds else Fault(f"{path}.events.{i}", (), "must hold an hour")
+            yield from (not_negative(f"{path}.events.{i}.{j}", wind) for j, wind in enumerate(winds))
+        hours = sum(map(len, self.events))
+        if hours > self.years * YEAR_HOURS:
+            yield Fault(f"{path}.years", self.years, f"must hold the {hours} hours of the events")
+
+
+@dataclass(frozen=True, slots=True)
 class Climate:
-    """The wind by sector while the line is iced, at its height, and the icing.
+    """The wind by sector while the line is iced, at its height, and the icing; or a record of iced hours.
 
     azimuth: direction of the line, clockwise from north [rad]; which way along the line does not matter.
 
@@ -114,11 +137,21 @@ class Climate:
     """
 
     azimuth: float
-    sectors: tuple[WindSector, ...]
-    icing: tuple[Icing, ...]
+    sectors: tuple[WindSector, ...] = ()
+    icing: tuple[Icing, ...] = ()
+    record: IcedRecord | None = None
 
     def __post_init__(self) -> None:
         """Check every field and what they make together."""
+        if self.record is not None:
+            rule = "must be absent with a record of iced hours"
+            require(
+                finite("climate.azimuth", self.azimuth),
+                Fault("climate.sectors", len(self.sectors), rule) if self.sectors else None,
+                Fault("climate.icing", len(self.icing), rule) if self.icing else None,
+                *self.record.faults("climate.record"),
+            )
+            return
         require(
             finite("climate.azimuth", self.azimuth),
             None if self.sectors else Fault("climate.sectors", (), "must hold a sector"),
