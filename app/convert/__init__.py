@@ -8,6 +8,8 @@ from app.convert.known import (
     explicit_line,
     explicit_request,
     is_known_form,
+    is_known_request,
+    known_of,
     resolve_document,
     resolve_line,
 )
@@ -43,6 +45,8 @@ __all__ = [
     "explicit_request",
     "fit",
     "is_known_form",
+    "is_known_request",
+    "known_of",
     "mode_shapes",
     "read",
     "read_analysis",

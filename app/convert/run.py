@@ -13,11 +13,12 @@ from app import schemas
 from app.convert import parts, study
 from app.convert.assemble import SoundParts, gather
 from app.convert.fit import doubts_of
+from app.convert.known import known_of
 from app.convert.ranking_figures import ranking_figures
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
 from engine.progress import Progress, translated
-from engine.result import TABLES, Result
+from engine.result import TABLES, AssumptionRow, Result
 
 _NO_ROWS = orjson.dumps({name: [] for name in TABLES})
 
@@ -153,11 +154,22 @@ def _point(
         line, analysis = specification(request, values)
         steps = _steps(request.placement, line, analysis)
         result = yield from translated(steps, lambda step: Advance(step.fraction, step.step))
+        result = replace(result, assumptions=_assumptions(request))
         yield _Solved(number, values, line, result)
     except (ArithmeticError, ValueError) as error:  # both also cover numpy's, and what a specification raises
         if request.study is None:
             raise
         yield failed_point(error, number, values)
+
+
+def _assumptions(request: schemas.JobRequest) -> tuple[AssumptionRow, ...]:
+    """Return where the values of the line came from; nothing for a line that was given explicitly."""
+    known = known_of(request)
+    if known is None:
+        return ()
+    from app.convert.known.to_document import assumption_rows  # noqa: PLC0415 - explicit lines need no estimates
+
+    return assumption_rows(known)
 
 
 def _steps(

@@ -15,7 +15,7 @@ class KnownLineRoute(StrictJsonRoute):
 
     async def prepared(self, request: Request, document: Any) -> Any:
         """Return the document with an explicit line."""
-        if not isinstance(document, dict) or not convert.is_known_form(document.get("line")):
+        if not convert.is_known_request(document):
             return document
 
         def resolved() -> Any:

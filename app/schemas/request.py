@@ -120,6 +120,13 @@ class JobRequest(Document):
         examples=["https://assets.example.com/galloping"],
     )
 
+    known: dict[str, Any] | None = Field(
+        default=None,
+        description="The line as it was said, with the own rows that it names, of which `line` is the explicit form; "
+        "the service writes it",
+        examples=[{"line": {"conductor": {"catalogue": "Drake"}}, "conductors": [], "tables": []}],
+    )
+
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
         if self.study is not None and self.placement is not None:
@@ -127,6 +134,6 @@ class JobRequest(Document):
         return self
 
     def kept(self) -> dict[str, Any]:
-        """Return the request with all defaults, as it is stored and returned, without an absent study or placement."""
-        absent = {name for name in ("study", "placement") if getattr(self, name) is None}
+        """Return the request with all defaults, as it is stored and returned, without parts that are absent."""
+        absent = {name for name in ("study", "placement", "known") if getattr(self, name) is None}
         return self.model_dump(mode="json", by_alias=True, exclude={*absent, "webhook_url"})

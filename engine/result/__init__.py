@@ -4,6 +4,7 @@ A column declares its description, unit and a typical value, and its name carrie
 JSON, CSV, Parquet and the OpenAPI document. A new table is a dataclass of rows and a field of `Tables`.
 """
 
+from engine.result.assumptions import AssumptionRow
 from engine.result.at_rest import (
     CriticalWindSpeedRow,
     DenHartog,
@@ -35,6 +36,7 @@ from engine.result.verdict import VerdictRow
 
 __all__ = [
     "TABLES",
+    "AssumptionRow",
     "BifurcationRow",
     "Column",
     "CriticalWindSpeedRow",

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
+from engine.result.assumptions import AssumptionRow
 from engine.result.at_rest import (
     CriticalWindSpeedRow,
     DenHartog,
@@ -43,6 +44,10 @@ class Tables:
     sensitivities: Annotated[
         tuple[SensitivityRow, ...],
         Title("What each assumed value means for onset and amplitude; empty without samples"),
+    ] = ()
+    assumptions: Annotated[
+        tuple[AssumptionRow, ...],
+        Title("Where the values of the line came from; empty for a line that was given explicitly"),
     ] = ()
     physics: Annotated[tuple[PhysicsRow, ...], Title("Physics of the analysis")] = ()
     frequencies: Annotated[tuple[FrequencyRow, ...], Title("Natural frequencies")] = ()

@@ -15,13 +15,14 @@ from app import convert
 from app.answers.batches import BatchTableName
 from app.answers.results import ResultDocument, TableName
 from app.answers.rows import row_schema, with_tables
-from app.convert.run import point_results
+from app.convert.run import point_results, specification_of_point
 from app.export.exported_columns import exported_columns
 from app.export.formats import csv_text
 from app.export.parquet import parquet_bytes
+from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.schemas.fields import Answer
-from engine import result, spec
+from engine import result
 from engine.outcome import Stability
 from engine.result import Column, DenHartog, Result, StaticState, Table, Title, tables_of
 from tests.app import service
@@ -54,10 +55,11 @@ def sways(monkeypatch: pytest.MonkeyPatch) -> Iterator[Table]:
 
 
 def found() -> Any:
-    (point,) = point_results([(0, {})], [cast("spec.Line", None)], [_SWAYING])
+    (point,) = point_results([(0, {})], [_LINE], [_SWAYING])
     return orjson.loads(point.tables_json)["sways"]
 
 
+_LINE = specification_of_point({"line": example("c11-twin")}, 0)[0]
 _SWAYING = _Swaying(
     static=StaticState(30000.0, 1285.0, 1.5, None, None),
     den_hartog=DenHartog(-0.2, True),

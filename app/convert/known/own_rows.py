@@ -1,10 +1,10 @@
 """What lines of an owner may name."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from app.reference.catalogue_row import CatalogueRow
+from app.reference.catalogue_row import CatalogueRow, name_key
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,3 +13,23 @@ class OwnRows:
 
     conductors: Sequence[CatalogueRow] = ()
     tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    def named_in(self, line: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the rows that a line document may name, as a document."""
+        ice = line.get("ice")
+        coefficients = ice.get("aerodynamics") if isinstance(ice, Mapping) else None
+        wanted = {_named(line.get("conductor")), _named(coefficients)} - {None}
+        rows = [row for row in self.conductors if wanted & {name_key(row.name), name_key(row.designation)}]
+        tables = [document for name, document in self.tables.items() if name_key(name) in wanted]
+        return {"conductors": [asdict(row) for row in rows], "tables": tables}
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> "OwnRows":
+        """Return the rows of a document that `named_in` made."""
+        rows = [CatalogueRow(**row) for row in document["conductors"]]
+        return cls(rows, {table["name"]: table for table in document["tables"]})
+
+
+def _named(part: object) -> str | None:
+    name = part.get("catalogue") if isinstance(part, Mapping) else None
+    return name_key(name) if isinstance(name, str) else None

@@ -15,9 +15,11 @@ from app.convert.known.to_engine import known_line, to_pointer
 from app.schemas import known as said
 from app.schemas.faults import BadInput, Fault, faults_of
 from engine import spec
+from engine.known import description as known
 from engine.known.provenance import Assumption
 from engine.known.resolve import Resolved, resolve
 from engine.outcome import InvalidSpec
+from engine.result import AssumptionRow
 
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
 _KEPT = ("phases", "required_clearance", "design_wind")
@@ -190,6 +192,11 @@ def _row(row: Assumption) -> dict[str, Any]:
         "lowest": lowest,
         "highest": highest,
     }
+
+
+def assumption_rows(line: known.KnownLine) -> tuple[AssumptionRow, ...]:
+    """Return the rows of a result about where the values of a line came from."""
+    return tuple(AssumptionRow(**_row(row)) for row in resolve(line).assumptions)
 
 
 def document_path(path: str) -> str:
