@@ -292,4 +292,7 @@ def test_an_analysis_takes_a_line_as_an_engineer_knows_it(tmp_path: Path) -> Non
         assert ended.returncode == 0, ended.stderr
         results.append(json.loads(ended.stdout))
     assert results[0]["critical_wind_speeds"]
+    assert {row["origin"] for row in results[0].pop("assumptions")} == {"given", "catalogue", "computed", "assumed"}
+    assert results[1].pop("assumptions") == []
+    assert results[0]["input"].pop("known")["line"] == CONTRACT
     assert results[0] == results[1]
