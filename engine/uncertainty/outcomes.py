@@ -1,6 +1,6 @@
 """What became of each sample: whether it gallops at each wind speed, how far, and from which onset."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -9,6 +9,8 @@ import numpy as np
 from engine.arrays import FloatArray
 from engine.outcome import Outcome, Stability
 from engine.result import CriticalWindSpeedRow, LimitCycleRow, Result
+from engine.risk.expectation import Motion
+from engine.risk.winds import WindRanges
 
 _BEYOND = {Outcome.OUTSIDE_FIT, Outcome.BEYOND_DATA}
 DIRECTIONS = ("vertical_m", "horizontal_m", "torsional_rad")
@@ -40,11 +42,15 @@ class AtWind:
 
 @dataclass(frozen=True, slots=True)
 class SampleOutcome:
-    """A sample at each wind speed and at all of them; onset [m/s]: infinite without one, NaN if not known."""
+    """A sample at each wind speed and at all of them; onset [m/s]: infinite without one, NaN if not known.
+
+    ranges: of the wind across the line in which it gallops, where a risk is asked for.
+    """
 
     onset: float
     winds: tuple[AtWind, ...]
     overall: AtWind
+    ranges: Mapping[Motion, WindRanges] | None = None
 
 
 NOTHING = (np.nan, np.nan, np.nan)

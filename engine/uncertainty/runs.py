@@ -7,6 +7,7 @@ from engine.analysis import analyse_stack
 from engine.outcome import InvalidSpec
 from engine.progress import Progress, finished
 from engine.result import Result
+from engine.risk.expectation import ranges_across
 from engine.spec import (
     AmplitudeCurves,
     Analysis,
@@ -71,10 +72,12 @@ def _outcomes(chosen: Sequence[Mapping[str, float]], line_of: LineOf, asked: Ana
     answers: list[SampleOutcome] = []
     for line in lines:
         answer = State.IMPOSSIBLE if line is None else next(results)
-        if isinstance(answer, Result):
-            answers.append(sample_outcome(answer, asked.wind_speeds))
-        else:
+        if isinstance(answer, State):
             answers.append(without_answer(answer, len(asked.wind_speeds)))
+            continue
+        assert line is not None, "only a line has a result"
+        ranges = ranges_across(answer, line, asked) if asked.risk else None
+        answers.append(replace(sample_outcome(answer, asked.wind_speeds), ranges=ranges))
     return answers
 
 

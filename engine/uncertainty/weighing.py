@@ -11,6 +11,7 @@ from engine.report.verdict import verdict
 from engine.result import Result
 from engine.spec import Analysis, Line, Uncertainty
 from engine.uncertainty.inputs import Interval, Uncertain
+from engine.uncertainty.risk import risk_over_samples
 from engine.uncertainty.runs import LineOf, outcomes
 from engine.uncertainty.sampling import sobol_samples
 from engine.uncertainty.tables import ends, sensitivity_rows, uncertainty_rows
@@ -63,7 +64,8 @@ def analyse_with_samples(
     Returns
     -------
     Result
-        As of `analyse`, with the tables `uncertainty` and `sensitivities` and a verdict that reads them; without them,
+        As of `analyse`, with the tables `uncertainty` and `sensitivities`, a verdict that reads them, and the risk over
+        the samples, if the line has a climate; without them,
         if nothing is uncertain or no samples are asked for.
 
     Raises
@@ -76,7 +78,8 @@ def analyse_with_samples(
     result = yield from translated(analyse(line, analysis), _before)
     samples = sobol_samples(unknowns.inputs, asked.samples, asked.seed)
     chosen = [*samples.chosen(), *chain.from_iterable(ends(samples.inputs))]
-    found = yield from translated(outcomes(chosen, unknowns.line_of, analysis), _after)
+    of_line = replace(analysis, risk=analysis.risk and line.climate is not None)
+    found = yield from translated(outcomes(chosen, unknowns.line_of, of_line), _after)
     of_samples, at_ends = found[: asked.samples], found[asked.samples :]
     winds = sorted(set(analysis.wind_speeds))
     weighed = replace(
@@ -84,6 +87,8 @@ def analyse_with_samples(
         uncertainty=uncertainty_rows(of_samples, winds, asked),
         sensitivities=sensitivity_rows(samples, of_samples, at_ends, analysis, asked),
     )
+    if of_line.risk and line.climate is not None:
+        weighed = replace(weighed, risk=risk_over_samples(weighed.risk, of_samples, line.climate))
     yield Progress(1.0, "done")
     return replace(weighed, verdict=(verdict(weighed, line, analysis),))
 
