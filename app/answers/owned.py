@@ -54,4 +54,4 @@ class OwnConductorList(Answer):
 class StoredConductors(OwnConductorList):
     """The conductors that a sheet stored, and how it was read."""
 
-    notes: list[str] = described("How the text was read", ["read as UTF-8, cells apart by semicolons"])
+    notes: list[str] = described("How the text was read", ["Cells are separated by semicolons."])

@@ -73,10 +73,10 @@ def read_conductors(sheet: Sheet) -> list[CatalogueRow]:
     Raises
     ------
     BadInput
-        With every fault; pointers are `/rows/7/diameter` with the number that the spreadsheet shows.
+        With every fault; pointers are `/header/diameter`, or `/rows/7/diameter` with the number that the spreadsheet
+        shows.
     """
-    header, *rows = sheet.rows
-    columns, rows = _columns(header, rows)
+    columns, rows = _columns(sheet.header, sheet.rows)
     if not 1 <= len(rows) <= MOST_ROWS:
         raise BadInput([Fault("", "csv_rows", f"the sheet must have 1 to {MOST_ROWS} conductors, got {len(rows)}")])
     faults: list[Fault] = []
@@ -87,7 +87,7 @@ def read_conductors(sheet: Sheet) -> list[CatalogueRow]:
     return [row for row in made if row is not None]
 
 
-def _columns(header: Row, rows: Sequence[Row]) -> tuple[list[_Column], list[Row]]:
+def _columns(header: Sequence[str], rows: Sequence[Row]) -> tuple[list[_Column], list[Row]]:
     """Return the columns, and the rows without one that only declares units.
 
     Raises
@@ -97,7 +97,7 @@ def _columns(header: Row, rows: Sequence[Row]) -> tuple[list[_Column], list[Row]
     """
     second = rows[0] if rows and _declares_units(header, rows[0]) else None
     found = []
-    for place, text in enumerate(header.cells):
+    for place, text in enumerate(header):
         declared = _DECLARED.fullmatch(text)
         name, unit = (declared[1], declared[2]) if declared else (text, None)
         key = re.sub(r"[\s_-]+", "_", name.strip().casefold())
@@ -111,19 +111,19 @@ def _columns(header: Row, rows: Sequence[Row]) -> tuple[list[_Column], list[Row]
     return found, list(rows if second is None else rows[1:])
 
 
-def _declares_units(header: Row, second: Row) -> bool:
+def _declares_units(header: Sequence[str], second: Row) -> bool:
     """Tell whether the second row holds units: no cell of it is a number, and the one of the diameter is not empty."""
     numbers = any(_number(cell) is not None for cell in second.cells)
-    names = [cell.casefold() for cell in header.cells]
+    names = [name.casefold() for name in header]
     place = names.index("diameter") if "diameter" in names else None
     return not numbers and place is not None and place < len(second.cells) and second.cells[place] != ""
 
 
-def _wrong_columns(header: Row, columns: Sequence[_Column]) -> list[Fault]:
+def _wrong_columns(header: Sequence[str], columns: Sequence[_Column]) -> list[Fault]:
     faults = []
     names = [column.name for column in columns]
     for column in columns:
-        at = json_pointer(["rows", header.number, header.cells[column.place]])
+        at = json_pointer(["header", header[column.place]])
         if column.name not in _QUANTITIES and column.name not in _TEXTS:
             known = ", ".join((*_TEXTS, *_QUANTITIES))
             faults.append(Fault(at, "csv_header", f"unknown column; the columns are {known}"))
@@ -137,7 +137,7 @@ def _wrong_columns(header: Row, columns: Sequence[_Column]) -> list[Fault]:
             if isinstance(tried, WrongUnit):
                 faults.append(Fault(at, "unit", tried.sentence))
     absent = [name for name in _NEEDED if name not in names]
-    return [*faults, *(Fault(json_pointer(["rows", header.number]), "csv_header", f"no column {n}") for n in absent)]
+    return [*faults, *(Fault("/header", "csv_header", f"no column {n}") for n in absent)]
 
 
 def _conductor(row: Row, columns: Sequence[_Column], faults: list[Fault]) -> CatalogueRow | None:

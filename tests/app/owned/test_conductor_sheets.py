@@ -52,11 +52,11 @@ def test_faults_name_the_row_that_the_spreadsheet_shows() -> None:
 @pytest.mark.parametrize(
     ("text", "pointer", "words"),
     [
-        ("name,diameter,mass [kg/m]\nA,1,1", "/rows/1/diameter", "must declare its unit, such as `diameter [m]`"),
-        ("name,diameter [lb],mass [kg/m]\nA,1,1", "/rows/1/diameter [lb]", "lb is a mass, but a length is wanted"),
-        ("name,diameter [mm]\nA,1", "/rows/1", "no column mass"),
-        ("name,diameter [mm],mass [kg/m],colour\nA,1,1,red", "/rows/1/colour", "unknown column"),
-        ("name,diameter [mm],mass [kg/m],weight [kg/m]\nA,1,1,1", "/rows/1/mass [kg~1m]", "two columns hold mass"),
+        ("name,diameter,mass [kg/m]\nA,1,1", "/header/diameter", "must declare its unit, such as `diameter [m]`"),
+        ("name,diameter [lb],mass [kg/m]\nA,1,1", "/header/diameter [lb]", "lb is a mass, but a length is wanted"),
+        ("name,diameter [mm]\nA,1", "/header", "no column mass"),
+        ("name,diameter [mm],mass [kg/m],colour\nA,1,1,red", "/header/colour", "unknown column"),
+        ("name,diameter [mm],mass [kg/m],weight [kg/m]\nA,1,1,1", "/header/mass [kg~1m]", "two columns hold mass"),
         ("name,diameter [mm],mass [kg/m]\n", "", "1 to 1000 conductors, got 0"),
     ],
 )
