@@ -22,6 +22,7 @@ from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_pu
 from engine.models.reduced_model import ReducedModel, take
 from engine.models.scanned_wind_speeds import Scan, crossings_in_wind, scan_of
 from engine.outcome import Fault, InvalidSpec
+from engine.phases_analysis import analyse_phases
 from engine.progress import Progress
 from engine.report.comparisons.device_effects import device_effects
 from engine.report.comparisons.loop_competitions import loop_competitions
@@ -93,14 +94,22 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
 
 
 def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
-    """Analyse lines, each in its one static state: single spans as one stack, every section by itself."""
-    spans = [line for line in lines if line.section is None]
-    together = iter((yield from _analyse_spans(spans, analysis)) if spans else [])
+    """Analyse lines, each in its one static state: single spans as one stack, every assembly by itself."""
+    together = iter((yield from _analyse_spans(spans, analysis)) if (spans := _single_spans(lines)) else [])
     results = []
     for line in lines:
-        result = next(together) if line.section is None else (yield from analyse_section(line, analysis))
-        results += [result]
+        if line.section is not None:
+            result = yield from analyse_section(line, analysis)
+        elif line.interphase_spacers:
+            result = yield from analyse_phases(line, analysis)
+        else:
+            result = next(together)
+        results.append(result)
     return results
+
+
+def _single_spans(lines: Sequence[Line]) -> list[Line]:
+    return [line for line in lines if line.section is None and not line.interphase_spacers]
 
 
 def _analyse_spans(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from engine.progress import Progress, finished
+from engine.report.phases.clearances import with_clearances
 from engine.report.verdict import verdict
 from engine.result import TABLES, BifurcationRow, CriticalWindSpeedRow, Result
 from engine.risk.expectation import risk_rows
@@ -78,6 +79,7 @@ def analyse_lines(
     results = []
     for line in lines:
         result = (yield from _at_each_wind(line, analysis, in_one_state)) if line.follows_wind else next(together)
+        result = with_clearances(result, line)
         found = replace(result, verdict=(verdict(result, line, analysis),))
         results.append(replace(found, risk=risk_rows(found, line, analysis)))
     return results

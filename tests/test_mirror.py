@@ -94,6 +94,7 @@ WITHOUT_A_TEST_FILE = {
 
 # An entry stands for a test file, or for all of a folder.
 OF_NO_SINGLE_MODULE = {
+    "tests/app/convert/test_phases.py": "Phases of a request pass check, assembly and studies of the border.",
     "tests/app/convert/test_placement.py": "A search for places passes check, run and columns of the border.",
     "tests/app/convert/test_whole_lines.py": "Requests made by Hypothesis pass the whole border and the engine.",
     "tests/app/routes/test_further_tables.py": "Tables that are asked for are fetched in every form.",

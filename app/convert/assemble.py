@@ -5,18 +5,16 @@ parts. The neutral part itself causes no fault.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from typing import TypedDict, TypeVar
+from typing import TypedDict
 
 from app import schemas
 from app.convert import parts
+from app.convert.gathered import Gathered
 from engine import spec
-from engine.outcome import Fault, InvalidSpec
-
-Made = TypeVar("Made")
-Source = TypeVar("Source")
+from engine.outcome import Fault
 
 _STEEPEST = 100.0  # far beyond a sag equal to the length, and far below overflow
 _STILL = spec.Aerodynamics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), at_rest=(0.0, 0.0, 0.0))
@@ -38,6 +36,8 @@ class _LineParts(TypedDict):
     devices: tuple[spec.Device, ...]
     climate: spec.Climate | None
     section: spec.Section | None
+    phases: tuple[spec.Phase, ...]
+    required_clearance: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +54,8 @@ class SoundParts:
     devices: Sequence[schemas.Device | None]
     climate: schemas.Climate | None = None
     section: schemas.Section | None = None
+    phases: Sequence[schemas.Phase] | None = ()
+    required_clearance: float | None = None
 
     @classmethod
     def of(cls, line: schemas.Line) -> "SoundParts":
@@ -69,38 +71,9 @@ class SoundParts:
             devices=line.devices,
             climate=line.climate,
             section=line.section,
+            phases=line.phases,
+            required_clearance=line.required_clearance,
         )
-
-
-@dataclass(frozen=True, slots=True)
-class Gathered:
-    """The faults found so far, with paths from the root of the line or the analysis, and the paths of neutral parts."""
-
-    faults: list[Fault] = field(default_factory=list)
-    neutral: list[str] = field(default_factory=list)
-
-    def make(self, path: str, source: Source | None, maker: Callable[[Source], Made], neutral: Made) -> Made:
-        """Return what `maker` builds from a source, or the neutral part if there is no source or it is wrong."""
-        return self.settle(path, None if source is None else self.attempt(f"{path}.", lambda: maker(source)), neutral)
-
-    def settle(self, path: str, made: Made | None, neutral: Made) -> Made:
-        """Return what was built, or the neutral part, whose faults are ignored."""
-        if made is None:
-            self.neutral.append(path)
-            return neutral
-        return made
-
-    def attempt(self, prefix: str, make: Callable[[], Made]) -> Made | None:
-        """Return what is built, or collect its faults and return None."""
-        try:
-            return make()
-        except InvalidSpec as error:
-            found = [replace(fault, field=_rooted(prefix, fault.field)) for fault in error.faults]
-            self.faults.extend(fault for fault in found if not self._is_neutral(fault.field))
-            return None
-
-    def _is_neutral(self, path: str) -> bool:
-        return any(f"{path}.".startswith(f"{place}.") for place in self.neutral)
 
 
 def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Line | None, spec.Analysis, list[Fault]]:
@@ -119,7 +92,7 @@ def gather(sound: SoundParts, options: schemas.Analysis | None) -> tuple[spec.Li
     values = _values(sound, gathered)
     line = gathered.attempt("", lambda: spec.Line(**values))
     if line is not None and not gathered.neutral:
-        slack = list(_slack_faults(line))
+        slack = [*_slack_faults(line), *_slack_phases(line)]
         gathered.faults.extend(slack or [*_string_faults(line), *_section_faults(line)])
         if options is not None and options.risk and sound.climate is None:
             gathered.faults.append(Fault("climate", None, "must be given for a risk"))
@@ -138,7 +111,12 @@ def _compare(gathered: Gathered, line: spec.Line, options: schemas.Analysis) -> 
     """Check a line against the options of an analysis, and apart from these against its physics, to find all faults."""
     loops, more_loops = tuple(options.loops), tuple(options.finite_element_loops)
     closure, competition = spec.Closure(options.closure), spec.LoopCompetition(options.loop_competition)
-    bare = replace(_without_physics(loops, more_loops, closure), loop_competition=competition)
+    bare = replace(
+        _without_physics(loops, more_loops, closure),
+        loop_competition=competition,
+        models=tuple(spec.Model(model) for model in options.models),
+        device_effect=spec.DeviceEffect(options.device_effect),
+    )
     for choice in (bare, spec.with_physics(line, _NEUTRAL_ANALYSIS, parts.physics(options))):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
 
@@ -149,7 +127,7 @@ def _without_physics(loops: tuple[int, ...], more_loops: tuple[int, ...], closur
 
 
 def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
-    return {
+    values: _LineParts = {
         "conductor": gathered.make("conductor", sound.conductor, parts.conductor, _NEUTRAL_CONDUCTOR),
         "bundle": gathered.make("bundle", sound.bundle, parts.bundle, spec.Bundle()),
         "span": gathered.make("span", sound.span, parts.span, _NEUTRAL_SPAN),
@@ -157,18 +135,59 @@ def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
         "ice": gathered.make("ice", sound.ice, lambda ice: _ice(ice, gathered), spec.Ice(_STILL)),
         "wind": gathered.make("wind", sound.wind, parts.wind, spec.Wind()),
         "damping": gathered.make("damping", sound.damping, parts.damping, _NEUTRAL_DAMPING),
-        "devices": tuple(_device(i, part, gathered) for i, part in enumerate(sound.devices)),
         "climate": gathered.attempt("", partial(_climate, sound.climate)),
+        "devices": tuple(_device(f"devices.{i}", part, gathered) for i, part in enumerate(sound.devices)),
         "section": None if sound.section is None else _section(sound.section, gathered),
+        "phases": (),
+        "required_clearance": sound.required_clearance,
     }
+    if sound.phases is None:  # then nothing is said of the phases that spacers name
+        gathered.neutral.append("phases")
+        return {**values, "devices": _without_interphase_spacers(values["devices"])}
+    phases = (_phase(i, part, values, gathered) for i, part in enumerate(sound.phases))
+    return {**values, "phases": tuple(phases)}
 
 
 def _climate(part: schemas.Climate | None) -> spec.Climate | None:
     return None if part is None else parts.climate(part)
 
 
-def _device(index: int, part: schemas.Device | None, gathered: Gathered) -> spec.Device:
-    path = f"devices.{index}"
+def _phase(index: int, part: schemas.Phase, values: _LineParts, gathered: Gathered) -> spec.Phase:
+    """Build a phase; a neutral one lies beyond all others under the same name."""
+    path = f"phases.{index}"
+    ice = None if part.ice is None else _ice_at(f"{path}.ice", part.ice, gathered)
+    own = None if part.line is None else _line_of_phase(path, part.line, values, gathered)
+    made = gathered.attempt(
+        f"{path}.", lambda: spec.Phase(part.name, part.y, part.z, part.required_clearance, ice, own)
+    )
+    return gathered.settle(path, made, spec.Phase(part.name, 1e8 * (index + 1), 0.0))
+
+
+def _line_of_phase(path: str, part: schemas.PhaseLine, values: _LineParts, gathered: Gathered) -> spec.Line | None:
+    """Build the line of a phase from its own parts and those of the line."""
+    devices = tuple(device for device in values["devices"] if not isinstance(device, spec.InterphaseSpacer))
+    own: _LineParts = {**values, "section": None, "devices": devices}
+    if part.conductor is not None:
+        own["conductor"] = gathered.make(f"{path}.line.conductor", part.conductor, parts.conductor, own["conductor"])
+    if part.bundle is not None:
+        own["bundle"] = gathered.make(f"{path}.line.bundle", part.bundle, parts.bundle, own["bundle"])
+    if part.span is not None:
+        own["span"] = gathered.make(f"{path}.line.span", part.span, parts.span, own["span"])
+    if part.supports is not None:
+        own["supports"] = gathered.make(f"{path}.line.supports", part.supports, parts.supports, own["supports"])
+    if part.ice is not None:
+        own["ice"] = _ice_at(f"{path}.line.ice", part.ice, gathered)
+    if part.devices is not None:
+        prefix = f"{path}.line.devices"
+        own["devices"] = tuple(_device(f"{prefix}.{i}", device, gathered) for i, device in enumerate(part.devices))
+    return gathered.attempt(f"{path}.line.", lambda: spec.Line(**own))
+
+
+def _without_interphase_spacers(devices: tuple[spec.Device, ...]) -> tuple[spec.Device, ...]:
+    return tuple(_NEUTRAL_DEVICE if isinstance(device, spec.InterphaseSpacer) else device for device in devices)
+
+
+def _device(path: str, part: schemas.Device | None, gathered: Gathered) -> spec.Device:
     if part is None:
         return gathered.settle(path, None, _NEUTRAL_DEVICE)
     return gathered.settle(path, gathered.attempt(f"{path}.", lambda: parts.device(part)), _NEUTRAL_DEVICE)
@@ -190,17 +209,19 @@ def _section(section: schemas.Section, gathered: Gathered) -> spec.Section | Non
         return None
     own = [span.ice for span in section.spans]
     spans = tuple(
-        replace(span, ice=None if ice is None else _ice_of_span(i, ice, gathered))
+        replace(span, ice=None if ice is None else _ice_at(f"section.spans.{i}.ice", ice, gathered))
         for i, (span, ice) in enumerate(zip(made.spans, own, strict=True))
     )
     return replace(made, spans=spans)
 
 
-def _ice_of_span(index: int, ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
+def _ice_at(path: str, ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
+    """Build ice at a path that ends with "ice"."""
+    root = path.removesuffix("ice")
     alone = Gathered()
     made = alone.make("ice", ice, lambda part: _ice(part, alone), spec.Ice(_STILL))
-    gathered.faults.extend(replace(fault, field=f"section.spans.{index}.{fault.field}") for fault in alone.faults)
-    gathered.neutral.extend(f"section.spans.{index}.{path}" for path in alone.neutral)
+    gathered.faults.extend(replace(fault, field=f"{root}{fault.field}") for fault in alone.faults)
+    gathered.neutral.extend(f"{root}{place}" for place in alone.neutral)
     return made
 
 
@@ -211,6 +232,8 @@ def _apart_from_positions(values: _LineParts) -> spec.Line | None:
         "span": replace(_NEUTRAL_SPAN, elements=values["span"].elements),
         "conductor": _NEUTRAL_CONDUCTOR,
         "section": None,
+        "phases": (),
+        "devices": _without_interphase_spacers(values["devices"]),
     }
     return Gathered().attempt("", lambda: spec.Line(**other))
 
@@ -227,6 +250,12 @@ def _slack_faults(line: spec.Line) -> Iterator[Fault]:
         field_name, sag = "horizontal_tension", _sag(span.length, tension / (line.conductor.mass * spec.GRAVITY))
     if sag > span.length:
         yield Fault(f"span.{field_name}", getattr(span, field_name), "must give a sag smaller than the span's length")
+
+
+def _slack_phases(line: spec.Line) -> Iterator[Fault]:
+    for i, phase in enumerate(line.phases):
+        for fault in _slack_faults(phase.line) if phase.line else ():
+            yield replace(fault, field=f"phases.{i}.line.{fault.field}")
 
 
 def _string_faults(line: spec.Line) -> Iterator[Fault]:
@@ -246,9 +275,3 @@ def _section_faults(line: spec.Line) -> Iterator[Fault]:
 def _sag(length: float, catenary_parameter: float) -> float:
     ratio = 0.5 * length / catenary_parameter
     return catenary_parameter * (math.cosh(ratio) - 1.0) if ratio < _STEEPEST else math.inf
-
-
-def _rooted(prefix: str, path: str) -> str:
-    """Prepend a prefix to a path unless the engine's path begins at the root already."""
-    root = prefix.split(".", maxsplit=1)[0]
-    return path if not prefix or path.split(".", maxsplit=1)[0] == root else prefix + path

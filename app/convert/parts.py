@@ -23,6 +23,7 @@ DEVICES: Mapping[str, type[spec.Device]] = {
     "detuning_pendulum": spec.DetuningPendulum,
     "airflow_spoiler": spec.AirflowSpoiler,
     "torsional_damper": spec.TorsionalDamper,
+    "interphase_spacer": spec.InterphaseSpacer,
 }
 _OF_ICING = ("hours", "events", "event_hours", "persistence")
 _CHOICES: Mapping[str, type[spec.PendulumChoice | spec.SpoilerChoice]] = {
@@ -158,6 +159,8 @@ def _value(part: schemas.Document, name: str) -> Any:
     given, unit = getattr(part, name), type(part).model_fields[name].json_schema_extra
     if name == "aerodynamics":
         return aerodynamics(given, getattr(part, "at_rest", None))
+    if name == "between":
+        return tuple(given)
     if isinstance(given, Range):
         return given.pair
     return math.radians(given) if unit == {"unit": "deg"} else given

@@ -19,6 +19,7 @@ PARTS = ("conductor", "bundle", "span", "supports", "ice", "wind", "damping")
 _MOST_AXES = 2
 _MOST_DEVICES = 200
 _DEVICE: TypeAdapter[schemas.Device] = TypeAdapter(schemas.Device)
+_PHASES: TypeAdapter[list[schemas.Phase]] = TypeAdapter(list[schemas.Phase])
 _AXIS_VALUE: TypeAdapter[Any] = TypeAdapter(AxisValue)
 
 
@@ -67,6 +68,8 @@ def sound_parts(line: Mapping[str, Any]) -> SoundParts:
         devices=[_device(item) for item in devices[:_MOST_DEVICES]] if isinstance(devices, list) else [],
         climate=_sound(schemas.Climate, line["climate"]) if line.get("climate") is not None else None,
         section=_part(schemas.Section, line, "section"),
+        phases=_phases(line.get("phases", [])),
+        required_clearance=_clearance(line.get("required_clearance_m")),
     )
 
 
@@ -130,3 +133,16 @@ def _device(value: object) -> schemas.Device | None:
         return _DEVICE.validate_python(value)
     except ValidationError:
         return None
+
+
+def _phases(value: object) -> list[schemas.Phase] | None:
+    """Return all phases, None if one of them does not pass its schema."""
+    try:
+        return _PHASES.validate_python(value)
+    except ValidationError:
+        return None
+
+
+def _clearance(value: object) -> float | None:
+    sound = _sound(schemas.Phase, {"name": "sound", "y_m": 0.0, "required_clearance_m": value})
+    return None if sound is None else sound.required_clearance

@@ -91,6 +91,12 @@ class Ground:
         elif line.get("section") is not None:
             document["section"] = line["section"]
             unsound.add(("section",))
+        if parts.phases is None:
+            document["phases"] = line["phases"]
+            unsound.add(("phases",))
+        else:
+            document["phases"] = [_dumped(phase) for phase in parts.phases]
+        document["required_clearance_m"] = line.get("required_clearance_m")
         if not isinstance(line.get("devices", []), list):
             unsound.add(("devices",))
         known = {fault.pointer for fault in _document_faults(document, options)}

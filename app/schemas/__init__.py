@@ -2,7 +2,7 @@
 
 from app.schemas.analysis import Analysis, WindSpeedRange
 from app.schemas.climate import Climate, Icing, WindSector
-from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, Spacer, TorsionalDamper
+from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, InterphaseSpacer, Spacer, TorsionalDamper
 from app.schemas.environment import (
     Aerodynamics,
     AerodynamicsAtRest,
@@ -14,7 +14,7 @@ from app.schemas.environment import (
     Wind,
 )
 from app.schemas.fields import Document
-from app.schemas.line import Bundle, Conductor, Line, Span, Support, Supports
+from app.schemas.line import Bundle, Conductor, Line, Phase, PhaseLine, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
 from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
 from app.schemas.request import Axis, JobRequest, Study
@@ -38,10 +38,13 @@ __all__ = [
     "Ice",
     "IceSegment",
     "Icing",
+    "InterphaseSpacer",
     "JobRequest",
     "Line",
     "MeasuredCoefficients",
     "PendulumChoice",
+    "Phase",
+    "PhaseLine",
     "Placement",
     "ProfilePoint",
     "Section",

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from app.schemas.environment import AT_REST, COEFFICIENTS, AerodynamicsAtRest, AerodynamicsForm
-from app.schemas.fields import ON_SPAN, Document, quantity
+from app.schemas.fields import ON_SPAN, Document, Label, quantity
 
 
 class Spacer(Document):
@@ -64,4 +64,22 @@ class AirflowSpoiler(Document):
     mass: float = quantity("mass_kg_per_m", "Added mass per length of a sub-conductor", "kg/m", (0.0, 100.0), 0.3, 0.0)
 
 
-Device = Annotated[Spacer | DetuningPendulum | AirflowSpoiler | TorsionalDamper, Field(discriminator="type")]
+class InterphaseSpacer(Document):
+    """A spacer between two phases, hinged at both; the phases then move together."""
+
+    type: Literal["interphase_spacer"] = Field(description="Kind of device", examples=["interphase_spacer"])
+    position: float = quantity("position_m", "Distance from the left support", "m", ON_SPAN, 62.94)
+    mass: float = quantity(
+        "mass_kg", "Mass of the whole spacer, half of which moves with each phase", "kg", (0.0, 1e4), 30.0
+    )
+    between: Annotated[list[Label], Field(min_length=2, max_length=2)] = Field(
+        description='Names of the two phases that it ties, "this" for the line itself', examples=[["this", "top"]]
+    )
+    axial_stiffness: float | None = quantity(
+        "stiffness_n_per_m", "Stiffness against a change of its length; rigid if null", "N/m", (1.0, 1e12), 1e5, None
+    )
+
+
+Device = Annotated[
+    Spacer | DetuningPendulum | AirflowSpoiler | TorsionalDamper | InterphaseSpacer, Field(discriminator="type")
+]

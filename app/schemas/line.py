@@ -16,6 +16,9 @@ from app.schemas.section import Section
 _TWIN = example("c11-twin")
 _SPACER = {"type": "spacer", "position_m": 62.94, "mass_kg": 6.5, "polar_inertia_kg_m2": 0.4}
 
+_CLEARANCE = (0.0, 50.0)
+_PHASES = [{"name": "top", "y_m": 7.0}, {"name": "ground wire", "y_m": 14.0, "z_m": 1.0, "required_clearance_m": 1.2}]
+
 Position = Annotated[list[Annotated[float, Field(ge=-5.0, le=5.0)]], Field(min_length=2, max_length=2)]
 
 
@@ -208,6 +211,44 @@ class Supports(Document):
     right: Support = Field(default=Support(), description="Right end", examples=[{"insulator_length_m": 2.0}])
 
 
+class PhaseLine(Document):
+    """The parts in which a phase differs from the line; what is absent, it has as the line."""
+
+    conductor: Conductor | None = Field(
+        default=None, description="One iced sub-conductor", examples=[_TWIN["conductor"]]
+    )
+    bundle: Bundle | None = Field(
+        default=None, description="Arrangement of the sub-conductors", examples=[{"subconductors": 1}]
+    )
+    span: Span | None = Field(
+        default=None, description="Length and tension", examples=[{"length_m": 125.88, "horizontal_tension_n": 25000.0}]
+    )
+    supports: Supports | None = Field(
+        default=None, description="Supports at both ends", examples=[{"left": {"dead_end": True}}]
+    )
+    ice: Ice | None = Field(default=None, description="Ice on the span", examples=[_TWIN["ice"]])
+    devices: list[Device] | None = Field(
+        default=None, max_length=200, description="What is mounted on it, besides interphase spacers", examples=[[]]
+    )
+
+
+class Phase(Document):
+    """Another phase or wire of the same span, attached beside the line."""
+
+    name: Label = Field(description='Name by which spacers and tables call it; not "this"', examples=["top"])
+    y: float = quantity("y_m", "Height of its attachment above this one's", "m", (-200.0, 200.0), 7.0)
+    z: float = quantity("z_m", "Distance of its attachment downwind of this one's", "m", (-200.0, 200.0), 0.0, 0.0)
+    required_clearance: float | None = quantity(
+        "required_clearance_m", "Required clearance to it; that of the line if null", "m", _CLEARANCE, 1.2, None
+    )
+    ice: Ice | None = Field(default=None, description="Its own ice; that of the line if null", examples=[_TWIN["ice"]])
+    line: PhaseLine | None = Field(
+        default=None,
+        description="What else differs from the line; if null, it is a copy of the line with its devices",
+        examples=[{"span": {"length_m": 125.88, "horizontal_tension_n": 25000.0}}],
+    )
+
+
 class Line(Document):
     """One iced span with everything that its motion depends on, by itself or in a section of spans."""
 
@@ -239,4 +280,13 @@ class Line(Document):
         default=None,
         description="The spans around this one between two dead ends, all of which then move, with their strings",
         examples=[SECTION],
+    )
+    phases: list[Phase] = Field(
+        default=[],
+        max_length=20,
+        description="Other phases and wires, to which clearances are taken and which interphase spacers tie",
+        examples=[_PHASES],
+    )
+    required_clearance: float | None = quantity(
+        "required_clearance_m", "Required clearance between phases that say none", "m", _CLEARANCE, 1.5, None
     )

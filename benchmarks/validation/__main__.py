@@ -14,6 +14,7 @@ from benchmarks.validation import (
     frequencies,
     full_physics,
     internal_resonance,
+    interphase_spacers,
     limit_cycles,
     model_comparison,
     quasi_periodic,
@@ -57,6 +58,7 @@ SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "stretching": stretching.section,
     "full_physics": full_physics.section,
     "full_completeness": completeness.full_section,
+    "interphase_spacers": interphase_spacers.section,
     "device_placement": device_placement.section,
 }
 

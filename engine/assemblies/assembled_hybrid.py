@@ -110,11 +110,16 @@ def load_of_members_as_it_stands(whole: AssembledLine, blown: FloatArray, analys
 def stretching_of_members(whole: AssembledLine, fields: FloatArray, analysis: Analysis) -> StretchingForce | None:
     """Return the stretching of coordinates with fields (members, groups, m, 4, nodes); None where it is neglected.
 
-    The tension is uniform within a member, which its ends pull by themselves.
+    The tension is uniform within a member. The ends of spans of a section move and pull their neighbours; phases hang
+    each between ends of their own.
     """
     if analysis.stretching is Stretching.NEGLECTED:
         return None
     members = whole.members
+    if whole.line.section is None:
+        own = stretching_of(members, fields[..., V:, :])
+        stiffness = own_stiffness(whole)
+        return of_all_members(own, stiffness, np.diag(stiffness), len(whole.line.bundle.positions))
     pulled = fields[..., U, -1] - fields[..., U, 0]
     own = stretching_of(members, fields[..., V:, :], pulled)
     shared = shared_stiffness(whole)

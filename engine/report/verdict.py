@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from engine.clearance import EllipseMethod, galloping_ellipse
 from engine.outcome import Outcome, Stability
 from engine.report.what_decides import overall, weighed, what_decides
-from engine.result import LimitCycleRow, Result, TensionRow, VerdictRow
+from engine.result import ClearanceRow, LimitCycleRow, Result, TensionRow, VerdictRow
 from engine.result.verdict import Gallops, Trust
 from engine.spec import Analysis, Check, Line
 
@@ -68,8 +68,8 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
         vertical_peak_to_peak_m=None if worst is None else _doubled(worst.vertical_m),
         horizontal_peak_to_peak_m=None if worst is None else _doubled(worst.horizontal_m),
         tension_range_n=_range(tension),
-        clearance_m=None,
-        clearance_ok=None,
+        clearance_m=_smallest_clearance(result, evidence),
+        clearance_ok=_clearances_kept(result, evidence),
         ellipse_peak_to_peak_m=_ellipse(result, line),
         probability_gallops=None if samples is None else samples.probability,
         trust=trust,
@@ -128,6 +128,26 @@ def _ellipse(result: Result, line: Line) -> float | None:
         subconductors=len(line.bundle.positions),
     )
     return None if ellipse is None else ellipse.major_axis
+
+
+def _clearances(result: Result, evidence: _Evidence) -> list[ClearanceRow]:
+    """Return the clearances of stable motions, where these are all known."""
+    if evidence.gallops != "yes" or evidence.unknown:
+        return []
+    return [row for row in result.clearances if row.method == "computed" and row.stability is Stability.STABLE]
+
+
+def _smallest_clearance(result: Result, evidence: _Evidence) -> float | None:
+    known = [row.distance_m for row in _clearances(result, evidence) if row.distance_m is not None]
+    return min(known, default=None)
+
+
+def _clearances_kept(result: Result, evidence: _Evidence) -> bool | None:
+    """Return whether all phases keep their distance; None where one of them is given none, or none moves."""
+    kept = [row.ok for row in _clearances(result, evidence)]
+    if False in kept:
+        return False
+    return None if not kept or None in kept else True
 
 
 def _doubled(amplitude: float | None) -> float | None:

@@ -29,6 +29,7 @@ from engine.result.motions import (
     TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
+from engine.result.phases import ClearanceMethod, ClearanceRow, PhaseModeRow
 from engine.result.risk import RiskRow
 from engine.result.tables import TABLES, Result, Tables
 from engine.result.uncertainty import SensitivityRow, UncertaintyRow
@@ -38,6 +39,8 @@ __all__ = [
     "TABLES",
     "AssumptionRow",
     "BifurcationRow",
+    "ClearanceMethod",
+    "ClearanceRow",
     "Column",
     "CriticalWindSpeedRow",
     "DenHartog",
@@ -53,6 +56,7 @@ __all__ = [
     "ModelComparisonRow",
     "Neighbours",
     "Orbit",
+    "PhaseModeRow",
     "PhysicsRow",
     "PlacedDeviceRow",
     "Result",

@@ -28,6 +28,13 @@ SpanSharesColumn = Annotated[
     str | None,
     Column("Shares of all spans of a section in the kinetic energy, from left to right", "0.04 0.26 0.40 0.26 0.04"),
 ]
+PhaseColumn = Annotated[
+    str | None,
+    Column('Phase that moves most, "this" for the line itself; null where no spacers tie phases, and at rest', None),
+]
+PhaseSharesColumn = Annotated[
+    str | None, Column("Shares of the tied phases in the kinetic energy, the line first", None)
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +162,8 @@ class CriticalWindSpeedRow:
     unstable_pairs_after: Annotated[int, Column("Unstable pairs of eigenvalues above this wind speed", 1, unit="1")]
     span: SpanColumn = None
     span_shares: SpanSharesColumn = None
+    phase: PhaseColumn = None
+    phase_shares: PhaseSharesColumn = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,15 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from engine.outcome import Stability
-from engine.result.at_rest import LoopsColumn, ModelColumn, OutcomeColumn, SpanColumn, SpanSharesColumn
+from engine.result.at_rest import (
+    LoopsColumn,
+    ModelColumn,
+    OutcomeColumn,
+    PhaseColumn,
+    PhaseSharesColumn,
+    SpanColumn,
+    SpanSharesColumn,
+)
 from engine.result.columns import Column
 
 FoundBy = Literal[
@@ -102,6 +110,8 @@ class LimitCycleRow:
     outcome: OutcomeColumn
     span: SpanColumn = None
     span_shares: SpanSharesColumn = None
+    phase: PhaseColumn = None
+    phase_shares: PhaseSharesColumn = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +158,9 @@ class TensionRow:
     span: Annotated[
         int | None, Column("Span of a section, from 1, whose tension it is; null for a single span", None, unit="1")
     ] = None
+    phase: Annotated[
+        str | None, Column('Tied phase whose tension it is, "this" for the line itself; null for a single span', None)
+    ] = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +184,7 @@ class AmplitudeCurveRow:
     torsional_rad: Annotated[float, Column("Torsional amplitude", 0.0006, unit="rad")]
     stability: Annotated[Stability, Column("Stability of the motion; unknown if it could not be decided", "stable")]
     span: SpanColumn = None
+    phase: PhaseColumn = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ from engine.result.motions import (
     TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
+from engine.result.phases import ClearanceRow, PhaseModeRow
 from engine.result.risk import RiskRow
 from engine.result.uncertainty import SensitivityRow, UncertaintyRow
 from engine.result.verdict import VerdictRow
@@ -55,6 +56,9 @@ class Tables:
     section_modes: Annotated[
         tuple[SectionModeRow, ...], Title("Natural modes of a section of spans; empty for a single span")
     ] = ()
+    phase_modes: Annotated[
+        tuple[PhaseModeRow, ...], Title("Natural modes of phases that spacers tie; empty without interphase spacers")
+    ] = ()
     critical_wind_speeds: Annotated[
         tuple[CriticalWindSpeedRow, ...],
         Title("Wind speeds at which the resting span loses or regains stability"),
@@ -67,6 +71,7 @@ class Tables:
     tensions: Annotated[
         tuple[TensionRow, ...], Title("Tensions during the motions; empty where stretching is neglected")
     ] = ()
+    clearances: Annotated[tuple[ClearanceRow, ...], Title("Clearances between phases; empty where none are given")] = ()
     bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Bifurcations of the motions over the wind speed")] = ()
     amplitude_curves: Annotated[
         tuple[AmplitudeCurveRow, ...],

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from engine.outcome import Fault, require
-from engine.spec.devices import InterphaseSpacer
 from engine.spec.line import Line
+from engine.spec.phases import own_ice_of_tied
 from engine.spec.rules import positive
 
 _REST_RULE = (
@@ -209,8 +209,8 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
     table = analysis.aerodynamic_model is AerodynamicModel.TABLE
     require(
-        *_spacer_faults(line),
         *_section_faults(line, analysis),
+        *_spacer_faults(line, analysis),
         Fault("ice.aerodynamics", None, "must be a measured table for the table model")
         if table and line.ice.aerodynamics.measured is None
         else None,
@@ -225,10 +225,25 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
     )
 
 
-def _spacer_faults(line: Line) -> Iterator[Fault]:
-    for i, device in enumerate(line.devices):
-        if isinstance(device, InterphaseSpacer):
-            yield Fault(f"devices.{i}", None, "must be absent: phases that spacers tie are not analysed yet")
+def _spacer_faults(line: Line, analysis: Analysis) -> Iterator[Fault]:
+    """Check that an analysis asks nothing that tied phases do not have."""
+    if not line.interphase_spacers:
+        return
+    if Model.FINITE_ELEMENT not in analysis.models:
+        rule = "must hold finite_element for phases that interphase spacers tie"
+        yield Fault("models", [model.value for model in analysis.models], rule)
+    relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
+    for path, ice in own_ice_of_tied(line):
+        if relative and ice.aerodynamics.at_rest is None:
+            yield Fault(f"{path}.aerodynamics_at_rest", None, _REST_RULE)
+    for name, choice in (
+        ("closure", Closure.PUBLISHED),
+        ("aerodynamic_model", AerodynamicModel.TABLE),
+        ("loop_competition", LoopCompetition.CHECKED),
+        ("device_effect", DeviceEffect.REPORTED),
+    ):
+        if getattr(analysis, name) is choice:
+            yield Fault(name, choice.value, f"must not be {choice.value} with interphase spacers")
 
 
 def _section_faults(line: Line, analysis: Analysis) -> Iterator[Fault]:

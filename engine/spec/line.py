@@ -9,7 +9,7 @@ from engine.spec.climate import Climate
 from engine.spec.devices import Device, InterphaseSpacer, StretchDevice
 from engine.spec.environment import Aerodynamics, Damping, Ice, IceSegment, Wind
 from engine.spec.phases import Phase, phase_faults
-from engine.spec.rules import overlap_faults
+from engine.spec.rules import overlap_faults, positive
 from engine.spec.section import Section
 from engine.spec.span import Bundle, Conductor, Span, Support, Supports
 
@@ -19,7 +19,8 @@ class Line:
     """One iced span with everything that its motion depends on, or the span of interest of a section of spans.
 
     phases: other phases and wires of the same span, which clearances are taken to and interphase spacers tie; climate:
-    how its winds and its icing are spread over the year, which no motion depends on.
+    how its winds and its icing are spread over the year, which no motion depends on; required_clearance: the smallest
+    distance that phases must keep which say none themselves [m].
 
     Raises
     ------
@@ -39,6 +40,7 @@ class Line:
     section: Section | None = None
     phases: tuple[Phase, ...] = ()
     climate: Climate | None = None
+    required_clearance: float | None = None
 
     def __post_init__(self) -> None:
         """Check positions, overlaps of devices, that inertia is positive, that drag is known, and the section."""
@@ -49,6 +51,7 @@ class Line:
             self._drag_fault(),
             *self._section_faults(),
             *phase_faults(self),
+            positive("required_clearance", self.required_clearance),
         )
 
     @property

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from engine.outcome import Fault, require
+from engine.outcome import Fault, InvalidSpec, require
 from engine.spec.devices import THIS, InterphaseSpacer
 from engine.spec.environment import Ice
 from engine.spec.rules import finite, positive
@@ -62,6 +62,16 @@ def own_line(line: "Line", phase: Phase) -> "Line":
     )
 
 
+def own_ice_of_tied(line: "Line") -> Iterator[tuple[str, Ice]]:
+    """Yield the ice of each phase that moves with the line and has its own, with its path."""
+    tied = {name for spacer in line.interphase_spacers for name in spacer.between}
+    for i, phase in enumerate(line.phases):
+        if phase.name in tied and phase.line is not None:
+            yield f"phases.{i}.line.ice", phase.line.ice
+        elif phase.name in tied and phase.ice is not None:
+            yield f"phases.{i}.ice", phase.ice
+
+
 def phase_faults(line: "Line") -> Iterator[Fault]:
     """Yield a fault for phases that coincide or share a name, and for spacers that do not fit to the phases."""
     places = [(THIS, 0.0, 0.0, line), *((p.name, p.y, p.z, p.line or line) for p in line.phases)]
@@ -74,6 +84,8 @@ def phase_faults(line: "Line") -> Iterator[Fault]:
             if math.hypot(y - above, z - beside) < needed:
                 rule = f'must be {needed:.3g} m or more away from "{other}", as far as both bundles reach'
                 yield Fault(f"{path}.y", (y, z), rule)
+    for i, phase in enumerate(line.phases):
+        yield from _ice_faults(line, phase, f"phases.{i}")
     spacers = [(i, device) for i, device in enumerate(line.devices) if isinstance(device, InterphaseSpacer)]
     for i, spacer in spacers:
         for name in spacer.between:
@@ -81,6 +93,18 @@ def phase_faults(line: "Line") -> Iterator[Fault]:
                 known = ", ".join(f'"{known}"' for known, *_ in places)
                 yield Fault(f"devices.{i}.between", name, f"must be one of the phases that are given: {known}")
     yield from _tied_faults(line, [spacer for _, spacer in spacers])
+
+
+def _ice_faults(line: "Line", phase: Phase, path: str) -> Iterator[Fault]:
+    """Yield what is wrong with the ice of a phase on its conductor and span."""
+    if phase.ice is None:
+        return
+    try:
+        own_line(line, phase)
+    except InvalidSpec as error:
+        for fault in error.faults:
+            if fault.field.startswith("ice."):
+                yield replace(fault, field=f"{path}.{fault.field}")
 
 
 def _tied_faults(line: "Line", spacers: Sequence[InterphaseSpacer]) -> Iterator[Fault]:

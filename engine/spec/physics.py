@@ -17,6 +17,7 @@ from engine.spec.analysis import (
     Stretching,
 )
 from engine.spec.line import Line
+from engine.spec.phases import Phase, own_ice_of_tied
 from engine.spec.span import CrossSection
 
 AT_REST = "ice.aerodynamics_at_rest"
@@ -61,15 +62,28 @@ def with_physics(line: Line, analysis: Analysis, asked: PhysicsRequest) -> Analy
     InvalidSpec
         If options exclude each other.
     """
-    lacks = AT_REST if line.ice.aerodynamics.at_rest is None else None
-    return _with_physics(analysis, asked, lacks)
+    return _with_physics(analysis, asked, _lacking(line))
 
 
 def with_section(line: Line, physics: Physics) -> Line:
     """Return a line whose bundle has the section of a physics, where it says none; a single conductor has none."""
+    if any(phase.line is not None for phase in line.phases):
+        line = replace(line, phases=tuple(_phase_with_section(phase, physics) for phase in line.phases))
     if line.bundle.section is not None or len(line.bundle.positions) == 1:
         return line
     return replace(line, bundle=replace(line.bundle, section=_SECTIONS[physics]))
+
+
+def _phase_with_section(phase: Phase, physics: Physics) -> Phase:
+    return phase if phase.line is None else replace(phase, line=with_section(phase.line, physics))
+
+
+def _lacking(line: Line) -> str | None:
+    """Return the first field that full physics needs and that the line, or a phase that is tied to it, has not."""
+    if line.ice.aerodynamics.at_rest is None:
+        return AT_REST
+    without = (path for path, ice in own_ice_of_tied(line) if ice.aerodynamics.at_rest is None)
+    return next((f"{path}.aerodynamics_at_rest" for path in without), None)
 
 
 @lru_cache  # all lines of a batch have the same analysis

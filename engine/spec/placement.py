@@ -128,6 +128,9 @@ def check_placement(line: Line, analysis: Analysis, placement: Placement) -> Non
         Fault("choice", None, "must be for a span alone: devices are not placed on a section")
         if line.section
         else None,
+        Fault("choice", None, "must be for a span alone: devices are not placed on phases that spacers tie")
+        if line.interphase_spacers
+        else None,
         Fault("objective", placement.objective.value, "needs wind speeds in the analysis") if no_wind else None,
     )
 

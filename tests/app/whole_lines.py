@@ -175,7 +175,13 @@ _DEVICE = st.one_of(
 )
 LINES = st.fixed_dictionaries(
     {"conductor": _CONDUCTOR, "bundle": _BUNDLE, "span": _SPAN, "ice": _ICE, "damping": _DAMPING},
-    optional={"supports": _SUPPORTS, "wind": _WIND, "devices": st.lists(_DEVICE, max_size=2)},
+    optional={
+        "supports": _SUPPORTS,
+        "wind": _WIND,
+        "devices": st.lists(_DEVICE, max_size=2),
+        "phases": st.just([{"name": "top", "y_m": 7.0}]),
+        "required_clearance_m": near(2.0),
+    },
 )
 ANALYSES = st.fixed_dictionaries(
     {

@@ -42,7 +42,7 @@ _FORMS: Mapping[str, frozenset[str]] = {
     "ice": frozenset({"accretion"}),
 }
 _OF_AERODYNAMICS = frozenset({"catalogue", "reference_diameter_m"})
-_OF_LINE = frozenset({"phases", "required_clearance_m", "design_wind_m_per_s"})
+_OF_LINE = frozenset({"design_wind_m_per_s"})
 
 
 def is_known_form(line: object) -> bool:

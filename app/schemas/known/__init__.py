@@ -1,7 +1,7 @@
 """A line as an engineer knows it: forms beside the numbers of a line, nothing required that can be estimated."""
 
 from app.schemas.known.ice import Accretion, CatalogueShape, KnownCubics, KnownIce, KnownTable
-from app.schemas.known.line import KnownDamping, KnownLine, Phase
+from app.schemas.known.line import KnownDamping, KnownLine
 from app.schemas.known.parts import Everyday, KnownBundle, KnownConductor, KnownSpan
 
 __all__ = [
@@ -16,5 +16,4 @@ __all__ = [
     "KnownLine",
     "KnownSpan",
     "KnownTable",
-    "Phase",
 ]

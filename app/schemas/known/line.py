@@ -10,9 +10,8 @@ from app.schemas.environment import Damping, Wind
 from app.schemas.fields import Document, Label, TagKey, quantity
 from app.schemas.known.ice import ACCRETION, KnownIce
 from app.schemas.known.parts import KnownBundle, KnownConductor, KnownSpan, as_in
-from app.schemas.line import Line, Supports
+from app.schemas.line import Line, Phase, Supports
 
-_CLEARANCE = (0.0, 50.0)
 _EVERYDAY = {"temperature_c": 15.0, "share_of_rated_strength": 0.2}
 
 
@@ -26,17 +25,6 @@ class KnownDamping(Document):
         default="constant_coefficient",
         description="Quantity that is the same for every number of loops",
         examples=["constant_coefficient"],
-    )
-
-
-class Phase(Document):
-    """Another phase or wire beside this one."""
-
-    name: Label = Field(description="Name to show to people", examples=["top"])
-    y: float = quantity("y_m", "Height of its attachment above this one's", "m", (-200.0, 200.0), 7.0)
-    z: float = quantity("z_m", "Distance of its attachment downwind of this one's", "m", (-200.0, 200.0), 0.0, 0.0)
-    required_clearance: float | None = quantity(
-        "required_clearance_m", "Required clearance to it; that of the line if null", "m", _CLEARANCE, 1.2, None
     )
 
 
@@ -80,13 +68,11 @@ class KnownLine(Document):
     )
     phases: list[Phase] = Field(
         default=[],
-        max_length=50,
-        description="Other phases and wires; kept as they are",
-        examples=[[{"name": "top", "y_m": 7.0, "z_m": 0.0}]],
+        max_length=20,
+        description=Line.model_fields["phases"].description,
+        examples=Line.model_fields["phases"].examples,
     )
-    required_clearance: float | None = quantity(
-        "required_clearance_m", "Required clearance to other phases; kept as it is", "m", _CLEARANCE, 1.5, None
-    )
+    required_clearance: float | None = as_in(Line, "required_clearance")
     design_wind: float | None = quantity(
         "design_wind_m_per_s", "Wind speed of design; kept as it is", "m/s", (0.1, 100.0), 10.0, None
     )

@@ -48,9 +48,9 @@ class SectionFindings:
     lowest: float
 
 
-def section_result(found: SectionFindings, analysis: Analysis) -> Result:
-    """Return the result of one section."""
-    whole, observer = found.whole, SectionObserver(found.whole)
+def section_result(found: SectionFindings, analysis: Analysis, observer: SectionObserver | None = None) -> Result:
+    """Return the result of one section, or of another assembly that is observed in its own way."""
+    whole, observer = found.whole, observer or SectionObserver(found.whole)
     lowest = np.array([found.lowest])
     motions = list(chain(*(limit_cycle_rows(observer, one, analysis, lowest)[0] for one in found.findings)))
     motions.sort(key=lambda motion: motion.row.model != "hybrid")

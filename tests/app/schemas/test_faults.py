@@ -63,7 +63,7 @@ def test_pointers_escape_and_cut_what_strangers_wrote() -> None:
         (
             "devices.0.type",
             "anchor",
-            'type must be spacer, detuning_pendulum, airflow_spoiler or torsional_damper, got "anchor"',
+            'airflow_spoiler, torsional_damper or interphase_spacer, got "anchor"',
         ),
         ("conductor.colour", "red", "unknown field"),
         ("conductor", [1.0], "must be an object"),

@@ -32,8 +32,9 @@ def test_the_explicit_document_is_the_line_that_was_resolved(name: str) -> None:
     read, _, faults = gather(SoundParts.of(Line.model_validate(explicit)), None)
     assert faults == []
     assert read is not None
-    # The analysis decides on the section, and resolving hands the climate on as it was said.
-    settled = replace(read, bundle=replace(read.bundle, section=made.bundle.section), climate=None)
+    # The analysis decides on the section, and resolving hands on climate and phases as they were said.
+    bundle = replace(read.bundle, section=made.bundle.section)
+    settled = replace(read, bundle=bundle, climate=None, phases=(), required_clearance=None)
     expected, found = numbers(asdict(made)), numbers(asdict(settled))
     assert len(expected) == len(found)
     for here, there in zip(expected, found, strict=True):
@@ -88,6 +89,7 @@ def test_what_resolving_does_not_touch_is_kept() -> None:
     assert [phase["name"] for phase in kept["phases"]] == ["top", "ground wire"]
     assert resolved["line"]["climate"]["icing"][0]["hours_a_year"] == 40.0
     assert "climate" not in kept
+    assert [phase["name"] for phase in resolved["line"]["phases"]] == ["top", "ground wire"]
 
 
 def test_faults_of_the_whole_line_are_found() -> None:

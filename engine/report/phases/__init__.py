@@ -1,0 +1,1 @@
+"""The result of phases that spacers tie, and the clearances between phases."""
