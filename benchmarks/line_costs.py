@@ -7,10 +7,21 @@ import numpy as np
 
 from app.convert import STACK
 from benchmarks.engine_speed import analysed
-from benchmarks.lines import random_line
+from benchmarks.lines import random_line, under_full_physics
 from benchmarks.measure import median_seconds
-from engine.spec import Analysis, Check, Line, LoopCompetition, Model, StaticTwist
+from engine.spec import (
+    AerodynamicLoad,
+    AerodynamicModel,
+    Analysis,
+    Check,
+    Line,
+    LoopCompetition,
+    Model,
+    StaticTwist,
+)
+from tests.engine.synthetic_table import with_table
 
+ANGLE_DEG = 20.0  # at rest in the synthetic table
 FEW, MANY = 3, 23  # wind speeds; direct integration starts at three of them
 HYBRID = Analysis(loops=(1, 2), models=(Model.HYBRID,))
 FREQUENCIES = replace(HYBRID, models=(Model.HYBRID, Model.FINITE_ELEMENT), finite_element_loops=())
@@ -36,12 +47,34 @@ def costs() -> Iterator[tuple[str, float]]:
         "loop competition, for each number of loops and wind speed",
         ((_fitted(lines[: STACK // 8], competing)[1] - per_wind) / loops),
     )
+    yield from _beyond_the_source(lines)
     checked, checked_per_wind = _fitted(lines[:4], replace(HYBRID, check=Check.DIRECT), 1)
     yield "direct integration, for each number of loops", (checked - fixed) / loops
     yield "and for each wind speed  ", (checked_per_wind - per_wind) / loops
     all_checked, all_checked_per_wind = _fitted(lines[:1], replace(FINITE_ELEMENT, check=Check.DIRECT), 1)
     yield "direct integration of the finite element model", all_checked - checked - whole
     yield "and for each wind speed   ", all_checked_per_wind - checked_per_wind - whole_per_wind
+
+
+def _beyond_the_source(lines: Sequence[Line]) -> Iterator[tuple[str, float]]:
+    """Yield the times of hybrid and finite element model under full physics, and with the load as it stands."""
+    iced, full = under_full_physics(lines, HYBRID)
+    unexpanded = replace(full, aerodynamic_load=AerodynamicLoad.UNEXPANDED)
+    table = replace(full, aerodynamic_model=AerodynamicModel.TABLE)
+    tabulated = [with_table(line, ANGLE_DEG) for line in iced[: STACK // 16]]
+    for name, some, asked in (
+        ("full physics", iced, full),
+        ("unexpanded load", iced[: STACK // 16], unexpanded),
+        ("table", tabulated, table),
+    ):
+        fixed, per_wind = _fitted(some, asked, 1)
+        yield f"hybrid model, {name}, for each number of loops", fixed / len(asked.loops)
+        yield f"{name}: and for each wind speed", per_wind / len(asked.loops)
+    for name, some, asked in (("full physics", iced[:4], full), ("table", tabulated[:1], table)):
+        both = replace(asked, models=FINITE_ELEMENT.models, finite_element_loops=FINITE_ELEMENT.finite_element_loops)
+        fixed, per_wind = (a - b for a, b in zip(_fitted(some, both, 1), _fitted(some, asked, 1), strict=True))
+        yield f"motions of the finite element model, {name}", fixed
+        yield f"{name}: and for each wind speed ", per_wind
 
 
 def _fitted(lines: Sequence[Line], analysis: Analysis, runs: int = 3) -> tuple[float, float]:

@@ -96,7 +96,7 @@ def _locate_bifurcations(branch_set: BranchSet, families: IntArray, places: Tran
     critical, distance = _critical_multiplier(multipliers, kind)
     value = [side.z[:, -1] for side in sides]
     inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE)
-    z = np.where(inside[:, None], zero.points.z, ends[0].z)
+    z = np.where(inside[:, None], zero.points.z, _with_zeros(problem, sides[0].z))
     orbits = problem.orbits(z, zero.points.branch)
     member = problem.member[zero.points.branch]
     # Two real multipliers whose product is 1 do not make a torus point.
@@ -131,11 +131,14 @@ def _zeros(problem: CycleProblem, ends: list[BranchPoints], kind: Kind) -> Locat
 
 def _with_more_harmonics(problem: CycleProblem, points: BranchPoints) -> BranchPoints:
     """Solve for the same points of branches with more harmonics."""
-    m = problem.model.mass.shape[-1]
-    z, tangent = (orbits_of(part, m) for part in (points.z, points.tangent))
-    harmonics = z.coefficients.shape[-1] // 2 + MORE_HARMONICS
-    more = [points_of(resized(part, harmonics)) for part in (z, tangent)]
-    return project_onto_branches(problem, make_points(problem, points.branch, more[0], more[1]))
+    z, tangent = (_with_zeros(problem, part) for part in (points.z, points.tangent))
+    return project_onto_branches(problem, make_points(problem, points.branch, z, tangent))
+
+
+def _with_zeros(problem: CycleProblem, z: FloatArray) -> FloatArray:
+    """Append harmonics of zero to points; they are those of the branch itself, also where more harmonics fail."""
+    orbits = orbits_of(z, problem.model.mass.shape[-1])
+    return points_of(resized(orbits, orbits.coefficients.shape[-1] // 2 + MORE_HARMONICS))
 
 
 def _multipliers(problem: CycleProblem, points: BranchPoints) -> tuple[ComplexArray, FloatArray]:

@@ -20,6 +20,7 @@ from engine.progress import driven
 FINER_STEPS = (4, 16)  # factors on the number of steps of Floquet's integration, where its error leaves doubt
 DOUBTFUL = 1e-6  # error of the multipliers, below which finer steps would not settle an unknown stability
 INACCURATE = 1e-4  # error of the multipliers over the largest, above which finer steps are used in any case
+CLUSTER = 0.05  # distance from 1 within which several multipliers err by far more than the trivial one
 LIGHT = 1.0  # size of an exponent's real part beyond which a mode changes e-fold in a period: no resonance is sharp
 FAR = 0.3  # rad, the farthest that an exponent may move between two points
 SHARE = 0.5  # of its distance from 0 and i pi that an exponent may move between two points
@@ -38,7 +39,8 @@ def judged_points(problem: CycleProblem, points: BranchPoints) -> Floquet:
         unknown = np.asarray(result.stability == Stability.UNKNOWN, dtype=np.bool_)
         largest = np.abs(result.multipliers).max(axis=-1, initial=1.0)
         index = np.flatnonzero(
-            (unknown & (result.trivial_error > DOUBTFUL)) | (result.trivial_error > INACCURATE * largest)
+            ((unknown | crowded(result)) & (result.trivial_error > DOUBTFUL))
+            | (result.trivial_error > INACCURATE * largest)
         )
         if index.size == 0:
             break
@@ -51,6 +53,14 @@ def judged_points(problem: CycleProblem, points: BranchPoints) -> Floquet:
 
 KnownExponents = dict[tuple[int, bytes], ComplexArray]
 """Signed exponents of points by their branch and the bytes of their unknowns: most points stay from round to round."""
+
+
+def crowded(judged: Floquet) -> BoolArray:
+    """Return where several nontrivial multipliers lie close to 1: (cycles,).
+
+    They come close to being one multiple eigenvalue, and the error of the trivial one tells little about the others'.
+    """
+    return np.asarray((np.abs(judged.multipliers[:, 1:] - 1.0) < CLUSTER).sum(axis=-1) > 1)
 
 
 def refined(branch_set: BranchSet, known: KnownExponents) -> tuple[BranchSet, BoolArray]:

@@ -8,6 +8,7 @@ from engine.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from engine.cycles.branch_set import BranchSet
 from engine.cycles.floquet import Floquet, floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
+from engine.cycles.refinement import crowded
 from engine.models.aerodynamic_load import force_gradient
 from engine.models.reduced_model import ReducedModel, diagonals, lowest_frequency
 
@@ -49,9 +50,14 @@ def harmonics_needed(model: ReducedModel, wind_speeds: FloatArray, asked: int) -
 
 
 def unresolved_members(model: ReducedModel, branch_sets: Sequence[BranchSet]) -> BoolArray:
-    """Return which members have points on followed branches whose last harmonics do not fall off: (members,)."""
+    """Return which members have points on followed branches whose last harmonics do not fall off: (members,).
+
+    Where multipliers crowd at 1, harmonics matter that are small in the motion: the error of the multipliers tells.
+    """
     coarse = np.zeros(model.mass.shape[0], dtype=np.bool_)
     for branch_set in branch_sets:
+        judged = branch_set.floquet
+        coarse[branch_set.member[crowded(judged) & (judged.trivial_error > LARGEST_TAIL)]] = True
         moving = np.flatnonzero(branch_set.floquet.trivial_error > COARSE)
         member = branch_set.member[moving]
         coarse[member[_tail(model, member, select(branch_set.orbits, moving)) > COARSE]] = True

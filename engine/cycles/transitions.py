@@ -149,7 +149,25 @@ def _changes(branch_set: BranchSet) -> tuple[IntArray, list[tuple[Kind, ...]], I
     changed = growing[right] - growing[left]
     here = np.flatnonzero(np.any(list(differs.values()), axis=0) | (changed != 0))
     found = [tuple(kind for kind, at in differs.items() if at[i]) for i in here.tolist()]
-    return np.stack([left[here], right[here]], axis=-1), found, changed[here]
+    return _whole_folds(np.stack([left[here], right[here]], axis=-1), found, changed[here])
+
+
+def _whole_folds(
+    pairs: IntArray, found: list[tuple[Kind, ...]], changed: IntArray
+) -> tuple[IntArray, list[tuple[Kind, ...]], IntArray]:
+    """Join a fold, where the branch turns, with the multiplier's passing of 1 that belongs to it in the next segment.
+
+    A point that Newton's method left a millionth beside its branch has a multiplier on the wrong side.
+    """
+    ends, kinds, by = pairs.tolist(), list(found), changed.tolist()
+    turning, passing = (Kind.FOLD,), (Kind.BRANCH_POINT,)
+    for i in range(len(ends) - 2, -1, -1):
+        halves = ends[i][1] == ends[i + 1][0] and {kinds[i], kinds[i + 1]} == {turning, passing}
+        alone = by[i] if kinds[i] == turning else by[i + 1]
+        if halves and not _sums_to(turning, alone) and _sums_to(turning, by[i] + by[i + 1]):
+            ends[i : i + 2], kinds[i : i + 2] = [[ends[i][0], ends[i + 1][1]]], [turning]
+            by[i : i + 2] = [by[i] + by[i + 1]]
+    return np.array(ends, dtype=np.intp).reshape(-1, 2), kinds, np.array(by, dtype=np.intp)
 
 
 def _decided(branch_set: BranchSet) -> BoolArray:

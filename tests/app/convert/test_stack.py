@@ -162,3 +162,22 @@ def test_estimated_cost_grows_with_what_is_asked() -> None:
     costs = [seconds_a_line(read_analysis(document)) for document in asked]
     assert costs == sorted(set(costs))
     assert costs[3] > 10.0 * costs[1]
+
+
+def test_estimated_cost_knows_what_physics_costs() -> None:
+    asked = {"loops": [1, 2], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 5.0]}
+    source, unsaid, full, unexpanded, table = (
+        seconds_a_line(read_analysis({**asked, **physics}))
+        for physics in (
+            {"physics": "source"},
+            {},
+            {"physics": "full"},
+            {"physics": "full", "aerodynamic_load": "unexpanded"},
+            {"aerodynamic_model": "table"},
+        )
+    )
+    assert source < unsaid == full  # whose lines may or may not have the data for it
+    assert unexpanded > 10.0 * full
+    assert table > unexpanded
+    assert seconds_a_line(read_analysis({**asked, "physics": "source", "stretching": "included"})) == full
+    assert seconds_a_line(read_analysis({**asked, "closure": "published"})) == source

@@ -12,6 +12,7 @@ from engine.cycles.transitions import Kind
 from engine.models.aerodynamic_load import force, force_gradient
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
+from engine.numerics.continuation import BranchPoints
 from tests.builders import Oscillators, hand_made
 from tests.engine.motions import LIGHT, analysed
 
@@ -51,6 +52,26 @@ def test_every_bifurcation_is_located_to_a_millionth() -> None:
         _, _, found = analysed(*case)
         assert found.parameter.size == number
         assert (found.uncertainty <= 1e-6 * found.parameter).all()
+
+
+def test_a_bifurcation_that_more_harmonics_do_not_locate_has_the_frequency_of_its_branch(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    model, cycles, located = analysed(1, 0.01, 1)
+
+    def fails(_: object, points: BranchPoints) -> BranchPoints:
+        none = np.full_like(points.z, np.nan)
+        return BranchPoints(points.branch, none, points.scale, points.tangent)
+
+    monkeypatch.setattr("engine.cycles.bifurcations.project_onto_branches", fails)
+    crossings = critical_wind_speeds(model, 30.0)
+    found = bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
+    assert {*found.kind} == {*located.kind}
+    for i, kind in enumerate(found.kind):
+        alike = [j for j in range(located.parameter.size) if located.kind[j] is kind]
+        near = min(alike, key=lambda j: abs(located.parameter[j] - found.parameter[i]))
+        assert abs(located.parameter[near] - found.parameter[i]) <= found.uncertainty[i]
+        assert found.angular_frequency[i] == pytest.approx(located.angular_frequency[near], rel=1e-2)
 
 
 def multipliers_by_integration(model: ReducedModel, orbit: Orbits) -> ComplexArray:

@@ -11,8 +11,8 @@ from engine.cycles.bifurcations import Bifurcations
 from engine.cycles.search import Cycles
 from engine.cycles.transitions import FACTORS, Kind
 from engine.outcome import Stability
-from engine.spec import AerodynamicModel, Analysis, Line, LongitudinalInertia, Physics, Stretching, with_section
-from tests.builders import lightly_damped_line
+from engine.spec import AerodynamicModel, Analysis, Line, LongitudinalInertia, Physics, Span, Stretching, with_section
+from tests.builders import lightly_damped_line, source_line
 from tests.engine.motions import bifurcations_between, resonant_line
 
 FULL = Analysis(
@@ -29,7 +29,13 @@ def drawn(number: int) -> Line:
     return lightly_damped_line(generator)
 
 
-LINES = [resonant_line(), *(drawn(number) for number in range(5))]
+def crowded_line() -> Line:
+    """Return a line on whose branch three multipliers come close to the trivial one at a fold."""
+    line = source_line(1, torsional_ratio=0.00714149627216)
+    return replace(line, span=Span(96.80325492792808, horizontal_tension=26255.41758840855))
+
+
+LINES = [resonant_line(), crowded_line(), *(drawn(number) for number in range(5))]
 
 
 def unexplained(cycles: Cycles, found: Bifurcations) -> list[tuple[float, float]]:
@@ -68,7 +74,7 @@ def assert_independent(line: Line, loops: int, analysis: Analysis) -> None:
     assert counts[0][:6].tolist() == counts[1][::4].tolist()
 
 
-@pytest.mark.parametrize("line", LINES, ids=["resonant", *map(str, range(5))])
+@pytest.mark.parametrize("line", LINES, ids=["resonant", "crowded", *map(str, range(5))])
 @pytest.mark.parametrize("loops", [1, 2])
 def test_every_change_of_stability_has_its_row_whatever_wind_speeds_are_asked_for(line: Line, loops: int) -> None:
     assert_independent(line, loops, Analysis())
@@ -81,6 +87,13 @@ def test_the_same_holds_under_full_physics(number: int, loops: int) -> None:
     at_rest = replace(line.ice.aerodynamics, at_rest=(0.0, 1.0, 0.0))
     line = with_section(replace(line, ice=replace(line.ice, aerodynamics=at_rest)), Physics.FULL)
     assert_independent(line, loops, FULL)
+
+
+def test_the_crowded_line_has_the_bifurcations_that_sixteen_harmonics_give() -> None:
+    _, found = bifurcations_between(crowded_line(), 1, FEW)
+    near = (found.branch == 0) & (found.parameter > 11.0) & (found.parameter < 12.0)
+    assert [found.kind[i] for i in np.flatnonzero(near)] == [Kind.FOLD, Kind.TORUS, Kind.FOLD, Kind.TORUS]
+    assert found.parameter[near] == pytest.approx([11.5838, 11.5845, 11.8306, 11.9622], abs=2e-4)
 
 
 def test_multipliers_beyond_all_numbers_cross_nothing_and_warn_of_nothing() -> None:
