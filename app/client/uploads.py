@@ -24,7 +24,9 @@ _TYPES = {
     ".ndjson": "application/x-ndjson",
     ".jsonl": "application/x-ndjson",
     ".json": "application/json",
+    ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
 }
+_SHEETS = (".csv", ".xlsx")
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +101,7 @@ def _of_file(path: Path, analysis: Mapping[str, Any]) -> tuple[dict[str, str], d
     suffix = path.with_suffix("").suffix if packed else path.suffix
     if suffix not in _TYPES:
         raise ValueError(f"{path.name} must end in one of {', '.join(_TYPES)}, followed by .gz if it is compressed")
-    if analysis and suffix != ".csv":
+    if analysis and suffix not in _SHEETS:
         raise ValueError(f"{path.name} contains its analysis, so no other can be given")
     headers = {"Content-Type": _TYPES[suffix]} | ({"Content-Encoding": "gzip"} if packed else {})
-    return headers, {"analysis": json.dumps(analysis)} if suffix == ".csv" else {}
+    return headers, {"analysis": json.dumps(analysis)} if suffix in _SHEETS else {}

@@ -1,1 +1,1 @@
-"""Result tables as JSON, CSV and Parquet. Other packages decide what the tables contain."""
+"""Result tables as JSON, CSV, Parquet and XLSX. Other packages decide what the tables contain."""

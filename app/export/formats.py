@@ -8,14 +8,16 @@ from typing import Any, AnyStr, Literal, TypeVar
 import orjson
 
 Row = Mapping[str, Any]
-Format = Literal["json", "csv", "parquet"]
+Format = Literal["json", "csv", "parquet", "xlsx"]
 Dialect = Literal["plain", "excel", "excel_semicolon"]
 Name = TypeVar("Name", bound=str)
 PARQUET = "application/vnd.apache.parquet"
+XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 MEDIA_TYPES: Mapping[Format, str] = {
     "json": "application/json",
     "csv": "text/csv; charset=utf-8",
     "parquet": PARQUET,
+    "xlsx": XLSX,
 }
 
 # Include the full-width forms, which spreadsheets with East Asian settings treat like the narrow ones.
@@ -25,7 +27,7 @@ _BLOCK = 131_072  # bytes or characters: smaller blocks cost more thread switche
 
 def preferred_format(accept: str) -> Format | None:
     """Return the format that an Accept header prefers, JSON in a tie; None if it accepts none."""
-    return preferred(accept, {"json": "application/json", "csv": "text/csv", "parquet": PARQUET})
+    return preferred(accept, {"json": "application/json", "csv": "text/csv", "parquet": PARQUET, "xlsx": XLSX})
 
 
 def preferred(accept: str, media_types: Mapping[Name, str]) -> Name | None:

@@ -1,11 +1,11 @@
-"""OpenAPI examples for batches, and the three forms of a batch's body."""
+"""OpenAPI examples for batches, and the forms of a batch's body."""
 
 import json
 from typing import Any
 
 from app import convert
 from app.answers.batches import RankedLine
-from app.export.formats import PARQUET
+from app.export.formats import PARQUET, XLSX
 from app.reference.source_lines import example
 from app.routes import documentation
 from app.schemas.batch import BatchRequest
@@ -95,6 +95,7 @@ RESULTS_ANSWER: dict[str, Any] = {
             "example": documentation.table_as_csv("frequencies", _LABELS),
         },
         PARQUET: {"schema": {"type": "string", "format": "binary"}},
+        XLSX: {"schema": {"type": "string", "format": "binary"}},
     },
 }
 
@@ -108,14 +109,16 @@ def request_body() -> dict[str, Any]:
     return {
         "requestBody": {
             "required": True,
-            "description": "JSON; NDJSON whose first object is the analysis; or CSV with the analysis in the query. "
-            "CSV columns are dotted field names such as `span.length_m`; a list is JSON in one cell, or one column "
-            "for each item (`ice.aerodynamics.vertical.0`). Commas, semicolons or tabs separate cells; decimal commas, "
-            "UTF-16 and Windows-1252 are understood, and the status says so. `Content-Encoding: gzip` is accepted.",
+            "description": "JSON; NDJSON whose first object is the analysis; or CSV or the first sheet of a workbook "
+            "(XLSX) with the analysis in the query. Columns are dotted field names such as `span.length_m`; a list is "
+            "JSON in one cell, or one column for each item (`ice.aerodynamics.vertical.0`). Commas, semicolons or tabs "
+            "separate the cells of a CSV; decimal commas, UTF-16 and Windows-1252 are understood, and the status says "
+            "so. `Content-Encoding: gzip` is accepted.",
             "content": {
                 "application/json": {"schema": schema, "example": {"lines": _LINES, "analysis": _ANALYSIS}},
                 "application/x-ndjson": {"schema": {"type": "string"}, "example": ndjson},
                 "text/csv": {"schema": {"type": "string"}, "example": _CSV},
+                XLSX: {"schema": {"type": "string", "format": "binary"}},
             },
         }
     }

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,6 +18,7 @@ from starlette.requests import ClientDisconnect
 from app.answers.batches import BatchDocument
 from app.batches import intake
 from app.batches.intake import BodyTooLarge, Incoming
+from app.export.formats import XLSX
 from app.http.problems import ProblemError, ProblemKind, invalid_document, query_fault
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
@@ -34,7 +36,8 @@ if TYPE_CHECKING:
 router = APIRouter(prefix=BATCHES, tags=["batches"])
 
 _SILENT_SECONDS = 60.0
-_TYPES = ("application/json", "application/x-ndjson", "text/csv")
+_SHEETS = ("text/csv", XLSX)
+_TYPES = ("application/json", "application/x-ndjson", *_SHEETS)
 
 
 def _limiter(request: Request) -> CapacityLimiter:
@@ -50,7 +53,7 @@ class IntakeQuery(BaseModel):
     """How to receive a batch."""
 
     atomic: bool = Field(default=False, description="Reject the whole batch if any line is wrong")
-    analysis: str | None = Field(default=None, max_length=20_000, description="The analysis of a CSV batch, as JSON")
+    analysis: str | None = Field(default=None, max_length=20_000, description="The analysis of a sheet, as JSON")
     webhook_url: str | None = Field(
         default=None,
         max_length=2000,
@@ -125,9 +128,9 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
         if key is not None:
             idempotency.finish(session, key, _digest_so_far(posted), stored_answer(answers[0]))
 
-    incoming = replace(_incoming(posted), anew=not posted.may_reuse)
-    webhook_url = _webhook_url(posted, incoming)
-    receipt = intake.receive(writers, posted.settings, caller, incoming, on_accept, atomic=posted.how.atomic)
+    with closing(replace(_incoming(posted), anew=not posted.may_reuse)) as incoming:
+        webhook_url = _webhook_url(posted, incoming)
+        receipt = intake.receive(writers, posted.settings, caller, incoming, on_accept, atomic=posted.how.atomic)
     return PostOutcome(answers[0], receipt.chunk_ids)
 
 
@@ -164,14 +167,17 @@ def _incoming(posted: _Posted) -> Incoming:
     if media_type not in _TYPES:
         detail = f"The body is {media_type[:100]!r}, not one of {', '.join(_TYPES)}."
         raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Post": ", ".join(_TYPES)})
-    if posted.how.analysis is not None and media_type != "text/csv":
-        raise query_fault("analysis", "is allowed for a CSV batch only; put the analysis into the body")
+    if posted.how.analysis is not None and media_type not in _SHEETS:
+        raise query_fault("analysis", "is allowed for a CSV or XLSX batch only; put the analysis into the body")
     pieces = _inflated(posted)
     if media_type == "application/json":
         return intake.read_json(pieces, settings.max_body_bytes)
     if media_type == "application/x-ndjson":
         return intake.read_ndjson(pieces, settings.max_batch_line_bytes)
-    return intake.read_csv(pieces, _parsed_analysis(posted.how.analysis), settings.max_batch_line_bytes)
+    analysis = _parsed_analysis(posted.how.analysis)
+    if media_type == XLSX:
+        return intake.read_xlsx(pieces, analysis, settings.max_batch_bytes, settings.max_body_bytes)
+    return intake.read_csv(pieces, analysis, settings.max_batch_line_bytes)
 
 
 def _parsed_analysis(analysis: str | None) -> Any:

@@ -1,4 +1,4 @@
-"""Results of a batch, streamed as NDJSON, CSV or Parquet, and the faults of rejected lines."""
+"""Results of a batch, streamed as NDJSON, CSV, Parquet or XLSX, and the faults of rejected lines."""
 
 from collections.abc import Iterator
 from typing import Annotated, Literal
@@ -25,11 +25,12 @@ from app.routes.streaming import streamed
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
-BatchFormat = Literal["ndjson", "csv", "parquet"]
+BatchFormat = Literal["ndjson", "csv", "parquet", "xlsx"]
 _MEDIA_TYPES: dict[BatchFormat, str] = {
     "ndjson": "application/x-ndjson",
     "csv": "text/csv",
     "parquet": formats.PARQUET,
+    "xlsx": formats.XLSX,
 }
 
 
@@ -38,7 +39,7 @@ class ResultsQuery(BaseModel):
 
     table: BatchTableName | None = Field(
         default=None,
-        description="One table of flat rows; without it, NDJSON has all results, CSV and Parquet the summary",
+        description="One table of flat rows; without it, NDJSON has all results, other formats the summary",
     )
     format: BatchFormat | None = Field(default=None, description="Format; takes precedence over the Accept header")
     dialect: Dialect = Field(default="plain", description=documentation.DIALECT)
@@ -71,9 +72,7 @@ def batch_results(
     """
     form = asked.format or formats.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
     if form is None:
-        raise ProblemError(
-            ProblemKind.NOT_ACCEPTABLE, f"Results are application/x-ndjson, text/csv or {formats.PARQUET}."
-        )
+        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Results are {', '.join(_MEDIA_TYPES.values())}.")
     if asked.dialect != "plain" and form != "csv":
         raise query_fault("dialect", "is for CSV only")
     state = require_results(readers, caller, batch_id, partial=asked.partial)
@@ -89,6 +88,10 @@ def batch_results(
             from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
 
             return parquet.parquet_bytes(exported_columns(name, line_results.columns(name)), rows)
+        if form == "xlsx":
+            from app.export import workbook  # noqa: PLC0415 - openpyxl loads slowly, and only workbooks need it
+
+            return workbook.xlsx_bytes(name, exported_columns(name, line_results.columns(name)), rows)
         if form == "csv":
             return formats.in_blocks(formats.csv_text(line_results.columns(name), rows, asked.dialect))
         return formats.in_blocks(formats.ndjson_text(rows))

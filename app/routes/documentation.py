@@ -8,7 +8,7 @@ from app import convert
 from app.answers.jobs import JobDocument
 from app.answers.problem_pages import Problem
 from app.answers.results import ResultDocument
-from app.export.formats import PARQUET, csv_text
+from app.export.formats import PARQUET, XLSX, csv_text
 from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document
 from app.reference.source_lines import EXAMPLE_NAMES, example
 from app.schemas.faults import Fault
@@ -97,6 +97,7 @@ TABLE_ANSWER: dict[str, Any] = {
             "example": table_as_csv("frequencies"),
         },
         PARQUET: {"schema": {"type": "string", "format": "binary"}},
+        XLSX: {"schema": {"type": "string", "format": "binary"}},
     },
 }
 PICTURE_ANSWER: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Results of a job, streamed: the whole document, single tables as JSON, CSV or Parquet, and pictures."""
+"""Results of a job, streamed: the whole document, single tables as JSON, CSV, Parquet or XLSX, and pictures."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
@@ -12,7 +12,7 @@ from app import convert
 from app.answers.results import ResultDocument, TableName
 from app.batches import batch_records
 from app.export import formats
-from app.export.exported_columns import axis_columns, exported_columns
+from app.export.exported_columns import ExportedColumn, axis_columns, exported_columns
 from app.export.formats import Dialect, Format
 from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.routes import documentation
@@ -78,10 +78,10 @@ def result_table(
     format: Annotated[Format | None, Query(description="Format; takes precedence over the Accept header")] = None,  # noqa: A002
     dialect: Annotated[Dialect, Query(description=documentation.DIALECT)] = "plain",
 ) -> StreamingResponse:
-    """Return one table of flat rows as JSON, CSV or Parquet, chosen by `?format=` or the Accept header."""
+    """Return one table of flat rows as JSON, CSV, Parquet or XLSX, chosen by `?format=` or the Accept header."""
     chosen = format or formats.preferred_format(request.headers.get("accept", ""))
     if chosen is None:
-        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are application/json, text/csv or {formats.PARQUET}.")
+        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Tables are {', '.join(formats.MEDIA_TYPES.values())}.")
     if dialect != "plain" and chosen != "csv":
         raise query_fault("dialect", "is for CSV only")
     job, headers = finished.job, finished.headers(f"{chosen} {dialect}")
@@ -90,7 +90,13 @@ def result_table(
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
         rows = stored_results.rows(session, job.id, name)
         if chosen == "parquet":
-            return _parquet(job, name, rows)
+            from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
+
+            return parquet.parquet_bytes(_columns(job, name), rows)
+        if chosen == "xlsx":
+            from app.export import workbook  # noqa: PLC0415 - openpyxl loads slowly, and only workbooks need it
+
+            return workbook.xlsx_bytes(name, _columns(job, name), rows)
         if chosen == "csv":
             return formats.in_blocks(formats.csv_text([*_axes(job), *convert.columns(name)], rows, dialect))
         return formats.in_blocks(formats.json_text(name, rows))
@@ -172,12 +178,11 @@ def request_of_point(session: Session, job: Job, point: int) -> tuple[Mapping[st
     return {"line": {line.number: line.document for line in lines}[point], "analysis": analysis}, 0
 
 
-def _parquet(job: Job, name: str, rows: Rows) -> Iterator[bytes]:
-    from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
-
+def _columns(job: Job, name: str) -> list[ExportedColumn]:
+    """Return the columns of a table of a job, with those that stand before its own."""
     study = (job.document.get("study") or {"axes": []})["axes"]
     before = exported_columns("summary", ["number"]) if job.batch_id is not None else axis_columns(study)
-    return parquet.parquet_bytes([*before, *exported_columns(name, convert.columns(name))], rows)
+    return [*before, *exported_columns(name, convert.columns(name))]
 
 
 def _axes(job: Job) -> list[str]:

@@ -52,10 +52,8 @@ def value_of(cell: object, *, comma: bool, others_comma: bool = False) -> object
     object
         A whole number as int, however it is written (`10.0`); a `WrongCell` if the value would be a guess.
     """
-    if isinstance(cell, (date, datetime, time, timedelta)):
-        return WrongCell(f"is a date or time, {cell}; format the column as numbers and enter the number again")
     if not isinstance(cell, str):
-        return _whole(cell)
+        return _of_workbook(cell)
     text = cell.strip()
     if _NUMBER.fullmatch(text) and len(text) < _MOST_DIGITS:
         if others_comma and _ONE_POINT.fullmatch(text):
@@ -64,6 +62,12 @@ def value_of(cell: object, *, comma: bool, others_comma: bool = False) -> object
     if comma and _WITH_COMMA.fullmatch(text) and len(text) < _MOST_DIGITS:
         return _number(text.replace(",", "."))
     return _wrong(text, comma=comma) or _further(text)
+
+
+def _of_workbook(cell: object) -> object:
+    if isinstance(cell, (date, datetime, time, timedelta)):
+        return WrongCell(f"is a date or time, {cell}; format the column as numbers and enter the number again")
+    return _whole(cell)
 
 
 def _wrong(text: str, *, comma: bool) -> WrongCell | None:

@@ -42,10 +42,11 @@ class SheetNotes:
     encodings: Encodings = field(default_factory=Encodings)
     windows_rows: list[int] = field(default_factory=list)
     decimal_commas: bool = False
+    others: list[str] = field(default_factory=list)
 
     def sentences(self) -> list[str]:
         """Return a sentence for everything that is not as in a plain CSV."""
-        found = []
+        found = list(self.others)
         if self.delimiter != ",":
             found.append(f"Cells are separated by {_DELIMITERS[self.delimiter]}.")
         if self.decimal_commas:

@@ -1,6 +1,14 @@
 """Receive batches: read bodies as streams, check lines one by one, and store them in blocks."""
 
-from app.batches.intake.body_formats import BodyTooLarge, Incoming, gunzipped, read_csv, read_json, read_ndjson
+from app.batches.intake.body_formats import (
+    BodyTooLarge,
+    Incoming,
+    gunzipped,
+    read_csv,
+    read_json,
+    read_ndjson,
+    read_xlsx,
+)
 from app.batches.intake.receive import Receipt, lines_a_chunk, receive
 
 __all__ = [
@@ -12,5 +20,6 @@ __all__ = [
     "read_csv",
     "read_json",
     "read_ndjson",
+    "read_xlsx",
     "receive",
 ]

@@ -1,10 +1,12 @@
 """Convert the pieces of a body to an analysis and its lines, one after another, however large the body is."""
 
+import tempfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import IO, Any
 
 from app.batches.intake.csv_columns import Columns
 from app.schemas.faults import BadInput, Fault, parse_json
@@ -13,6 +15,7 @@ from app.sheets.encodings import as_utf8
 
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _INFLATED_A_STEP = 1 << 18
+_IN_MEMORY_BYTES = 4_000_000
 _KNOWN = frozenset({"lines", "analysis", "webhook_url"})
 
 
@@ -25,7 +28,7 @@ class Incoming:
     """An analysis document and the documents of the lines; a `BadInput` stands for an unreadable line.
 
     With `anew`, workers compute the lines even if their results are stored. `notes` tells how the body was read; its
-    sentences are complete when the last line was taken.
+    sentences are complete when the last line was taken. `close` it when no more lines are taken.
     """
 
     analysis: object
@@ -33,6 +36,12 @@ class Incoming:
     webhook_url: object = None
     anew: bool = False
     notes: Callable[[], list[str]] = list
+    file: IO[bytes] | None = None
+
+    def close(self) -> None:
+        """Close the file from which the lines come, if they come from one."""
+        if self.file is not None:
+            self.file.close()
 
 
 def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
@@ -129,6 +138,31 @@ def read_csv(pieces: Iterable[bytes], analysis: object, most_line_bytes: int) ->
     """
     table = read_delimited(pieces, partial(_text_lines, most_bytes=most_line_bytes))
     return Incoming(analysis, map(Columns.of(table.header).line, table.rows), notes=table.notes.sentences)
+
+
+def read_xlsx(pieces: Iterable[bytes], analysis: object, most_bytes: int, most_other_bytes: int) -> Incoming:
+    """Read the first sheet of a workbook like a CSV; `app.sheets.workbooks` says what the bounds are for.
+
+    Raises
+    ------
+    BodyTooLarge
+        If the body is larger than `most_bytes`.
+    BadInput
+        If it is no workbook, or its header is wrong; also while the lines are read.
+    """
+    from app.sheets.workbooks import read_workbook  # noqa: PLC0415 - openpyxl loads slowly, and only workbooks need it
+
+    with ExitStack() as until_read:
+        file = until_read.enter_context(tempfile.SpooledTemporaryFile(_IN_MEMORY_BYTES))
+        for piece in pieces:
+            if file.tell() + len(piece) > most_bytes:
+                raise BodyTooLarge(f"The workbook is larger than {most_bytes} bytes.")
+            file.write(piece)
+        file.seek(0)
+        table = read_workbook(file, most_bytes, most_other_bytes)
+        lines = map(Columns.of(table.header).line, table.rows)
+        until_read.pop_all()  # the lines are read from the file
+    return Incoming(analysis, lines, notes=table.notes.sentences, file=file)
 
 
 def _parsed(text: bytes) -> Any:

@@ -4,16 +4,21 @@ import csv
 import io
 import json
 from collections.abc import Iterator
+from datetime import date
 from pathlib import Path
 from typing import Any
+from uuid import UUID
 
 import httpx
+import openpyxl
 import pytest
 
+from app.export.formats import XLSX
 from app.runtime.settings import Settings
 from tests.app import service
 from tests.app.lines import SHORT
 from tests.app.service import work_off
+from tests.in_process import run_job
 
 CASES = Path(__file__).parents[1] / "sheets" / "cases"
 PLAIN = (CASES / "elements_10_0.csv").read_text()
@@ -97,3 +102,62 @@ def test_a_job_may_come_with_a_mark_or_in_utf16(client: httpx.Client) -> None:
         body = json.dumps({"line": line, "analysis": SHORT}).encode(encoding)
         answer = client.post("/v1/jobs", content=body, headers={"Content-Type": "application/json"})
         assert answer.status_code in {200, 202}, answer.text
+
+
+def workbook(rows: list[list[Any]]) -> bytes:
+    book = openpyxl.Workbook()
+    sheet = book.active
+    assert sheet is not None
+    for row in rows:
+        sheet.append(row)
+    file = io.BytesIO()
+    book.save(file)
+    return file.getvalue()
+
+
+def test_a_workbook_has_the_same_results_and_gets_a_workbook(client: httpx.Client, settings: Settings) -> None:
+    sixteen_digits = PLAIN.replace("28418105.783999998", "28418105.784")  # openpyxl writes no more
+    (plain,) = stored(client, settings, post(client, sixteen_digits.encode()))
+    header, row = csv.reader(io.StringIO(sixteen_digits))
+    values = [float(cell) if cell[:1].isdigit() or cell[:1] == "-" else cell for cell in row]
+    values[header.index("ice.eccentricity_z_m")] = "-0,00063"  # text, as in a sheet of another country
+    wrong = [date(2026, 5, 1) if name == "span.length_m" else value for name, value in zip(header, values, strict=True)]
+    answer = post(client, workbook([list(header), values, [], wrong]), XLSX)
+    (error,) = answer.json()["errors"]
+    assert (error["row"], error["pointer"], error["code"]) == (4, "/span/length_m", "csv_value")
+    first, _ = stored(client, settings, answer)
+    assert client.get(answer.headers["location"]).json()["lines"]["reused"] == 1
+    assert first["limit_cycles"] == plain["limit_cycles"]
+    address = f"{answer.headers['location']}/results"
+    found = client.get(address, params={"format": "xlsx"})
+    assert found.headers["content-type"] == XLSX
+    book = openpyxl.load_workbook(io.BytesIO(found.content))
+    assert book.sheetnames == ["summary", "columns"]
+    names, solved, rejected = book["summary"].iter_rows(values_only=True)
+    told = dict(zip(names, solved, strict=True))
+    wanted = json.loads(client.get(address, params={"table": "summary"}).text.splitlines()[0])
+    assert told["reference"] == "A1" and told["onset_m_per_s"] == pytest.approx(wanted["onset_m_per_s"], rel=1e-15)
+    assert told["sentence"] == wanted["sentence"]
+    assert dict(zip(names, rejected, strict=True))["status"] == "rejected"
+
+
+def test_tables_of_a_job_come_as_workbooks(client: httpx.Client, settings: Settings) -> None:
+    line = json.loads((CASES / "utf8_bom.json").read_text("utf-8-sig"))
+    answer = client.post("/v1/jobs", json={"line": line, "analysis": SHORT})
+    run_job(settings, UUID(answer.json()["id"]))
+    address = f"{answer.headers['location']}/results/limit-cycles"
+    found = client.get(address, headers={"Accept": XLSX})
+    assert (found.status_code, found.headers["content-type"]) == (200, XLSX)
+    names, *rows = openpyxl.load_workbook(io.BytesIO(found.content))["limit_cycles"].iter_rows(values_only=True)
+    wanted = client.get(address).json()["limit_cycles"]
+    assert len(rows) == len(wanted) > 0
+    for row, other in zip(rows, wanted, strict=True):
+        assert dict(zip(names, row, strict=True)) == {
+            name: pytest.approx(value, rel=1e-14) if isinstance(value, float) else value
+            for name, value in other.items()
+        }
+
+
+def test_what_is_no_workbook_is_refused(client: httpx.Client) -> None:
+    answer = post(client, b"reference,name\n", XLSX)
+    assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "xlsx_invalid")
