@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from engine.clearance import EllipseMethod, galloping_ellipse
 from engine.outcome import Outcome, Stability
 from engine.report.what_decides import overall, weighed, what_decides
-from engine.result import ClearanceRow, LimitCycleRow, Result, TensionRow, VerdictRow
+from engine.result import LimitCycleRow, PhaseClearanceRow, Result, TensionRow, VerdictRow
 from engine.result.verdict import Gallops, Trust
 from engine.spec import Analysis, Check, Line
 
@@ -130,7 +130,7 @@ def _ellipse(result: Result, line: Line) -> float | None:
     return None if ellipse is None else ellipse.major_axis
 
 
-def _clearances(result: Result, evidence: _Evidence) -> list[ClearanceRow]:
+def _clearances(result: Result, evidence: _Evidence) -> list[PhaseClearanceRow]:
     """Return the clearances of stable motions, where these are all known."""
     if evidence.gallops != "yes" or evidence.unknown:
         return []

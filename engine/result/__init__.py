@@ -29,7 +29,7 @@ from engine.result.motions import (
     TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
-from engine.result.phases import ClearanceMethod, ClearanceRow, PhaseModeRow
+from engine.result.phases import ClearanceMethod, PhaseClearanceRow, PhaseModeRow
 from engine.result.risk import RiskRow
 from engine.result.tables import TABLES, Result, Tables
 from engine.result.uncertainty import SensitivityRow, UncertaintyRow
@@ -40,7 +40,6 @@ __all__ = [
     "AssumptionRow",
     "BifurcationRow",
     "ClearanceMethod",
-    "ClearanceRow",
     "Column",
     "CriticalWindSpeedRow",
     "DenHartog",
@@ -56,6 +55,7 @@ __all__ = [
     "ModelComparisonRow",
     "Neighbours",
     "Orbit",
+    "PhaseClearanceRow",
     "PhaseModeRow",
     "PhysicsRow",
     "PlacedDeviceRow",

@@ -38,7 +38,7 @@ class PhaseModeRow:
 
 
 @dataclass(frozen=True, slots=True)
-class ClearanceRow:
+class PhaseClearanceRow:
     """The smallest distance of two phases in a motion, or under a galloping ellipse of design practice.
 
     Distances are those between the centres of sub-conductors.

@@ -27,7 +27,7 @@ from engine.result.motions import (
     TensionRow,
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
-from engine.result.phases import ClearanceRow, PhaseModeRow
+from engine.result.phases import PhaseClearanceRow, PhaseModeRow
 from engine.result.risk import RiskRow
 from engine.result.uncertainty import SensitivityRow, UncertaintyRow
 from engine.result.verdict import VerdictRow
@@ -71,7 +71,9 @@ class Tables:
     tensions: Annotated[
         tuple[TensionRow, ...], Title("Tensions during the motions; empty where stretching is neglected")
     ] = ()
-    clearances: Annotated[tuple[ClearanceRow, ...], Title("Clearances between phases; empty where none are given")] = ()
+    clearances: Annotated[
+        tuple[PhaseClearanceRow, ...], Title("Clearances between phases; empty where none are given")
+    ] = ()
     bifurcations: Annotated[tuple[BifurcationRow, ...], Title("Bifurcations of the motions over the wind speed")] = ()
     amplitude_curves: Annotated[
         tuple[AmplitudeCurveRow, ...],

@@ -22,7 +22,7 @@ from engine.clearance import (
 )
 from engine.mechanics.static_profile import StaticProfile, arc_position, coordinates, static_profile
 from engine.report.phases.required_clearances import judged, required_between
-from engine.result import ClearanceRow, LimitCycleRow, Orbit, Result
+from engine.result import LimitCycleRow, Orbit, PhaseClearanceRow, Result
 from engine.spec import THIS, Line, own_line
 
 LOOPS = {EllipseMethod.TOYE: 2}  # of each method's ellipse; the others have one
@@ -71,7 +71,7 @@ def _wires(line: Line) -> Iterator[_Wire]:
 
 def _computed(
     line: Line, pair: tuple[_Wire, _Wire], cycles: Sequence[LimitCycleRow], orbits: Sequence[Orbit]
-) -> Iterator[ClearanceRow]:
+) -> Iterator[PhaseClearanceRow]:
     """Yield a row for every motion of the line, at the place where it is observed."""
     one, other = pair
     if not (one.alike or other.alike):
@@ -86,7 +86,7 @@ def _computed(
         region, beside = (moving if wire.alike else _support(wire.line, np.zeros((3, 1))) for wire in pair)
         away = other.at_rest(cycle.observed_at_m) - one.at_rest(cycle.observed_at_m)
         distance = float(clearance(region, beside, away))
-        yield ClearanceRow(
+        yield PhaseClearanceRow(
             phase=one.name,
             other_phase=other.name,
             method="computed",
@@ -106,7 +106,7 @@ def _support(line: Line, series: FloatArray) -> FloatArray:
     return path_support(subconductor_paths(series, np.array(line.bundle.positions)).reshape(-1, 2))
 
 
-def _by_ellipses(line: Line, pair: tuple[_Wire, _Wire], method: EllipseMethod) -> ClearanceRow:
+def _by_ellipses(line: Line, pair: tuple[_Wire, _Wire], method: EllipseMethod) -> PhaseClearanceRow:
     one, other = pair
     loops = LOOPS.get(method, 1)
     regions = [_ellipse_support(wire, method) for wire in pair]
@@ -114,7 +114,7 @@ def _by_ellipses(line: Line, pair: tuple[_Wire, _Wire], method: EllipseMethod) -
     away = other.at_rest(middle) - one.at_rest(middle)
     known = [region for region in regions if region is not None]
     distance = float(clearance(known[0], known[1], away)) if len(known) == 2 else None
-    return ClearanceRow(
+    return PhaseClearanceRow(
         phase=one.name,
         other_phase=other.name,
         method=method.value,

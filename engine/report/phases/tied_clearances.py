@@ -14,7 +14,7 @@ from engine.mechanics.finite_elements import interpolation_at
 from engine.mechanics.static_profile import arc_position, coordinates
 from engine.report.findings import ModelFindings, cycle_loops, torus_loops
 from engine.report.phases.required_clearances import judged, required_between
-from engine.result import ClearanceRow
+from engine.result import PhaseClearanceRow
 from engine.tori.spectrum import sampled_states
 
 SAMPLES = 240  # instants of a period; the smallest distance is exact to 1e-4 of the amplitude
@@ -53,7 +53,7 @@ class _Motions:
     q: FloatArray
 
 
-def tied_clearance_rows(whole: AssembledLine, findings: ModelFindings) -> list[ClearanceRow]:
+def tied_clearance_rows(whole: AssembledLine, findings: ModelFindings) -> list[PhaseClearanceRow]:
     """Return a row for every motion and pair of tied phases.
 
     Phases are compared in planes across the line, at evenly spaced places.
@@ -115,10 +115,10 @@ def _row(
     winds: FloatArray,
     motions: _Motions,
     i: int,
-) -> ClearanceRow:
+) -> PhaseClearanceRow:
     distance, where = smallest_distance(*pair, motions.q[i])
     one, other = pair
-    return ClearanceRow(
+    return PhaseClearanceRow(
         phase=one.name,
         other_phase=other.name,
         method="computed",

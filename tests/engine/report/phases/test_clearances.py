@@ -7,7 +7,7 @@ import pytest
 
 from engine.clearance import EllipseMethod, galloping_ellipse
 from engine.report.phases.clearances import with_clearances
-from engine.result import ClearanceRow, Orbit, Result
+from engine.result import Orbit, PhaseClearanceRow, Result
 from engine.spec import Line, Model, Phase
 from tests.builders import only, run, source_line
 
@@ -15,7 +15,7 @@ LINE = replace(source_line(1), required_clearance=5.0)
 ASKED = only(Model.HYBRID, wind_speeds=(4.0,), loops=(1,))
 
 
-def of_motion(line: Line, vertical: float, horizontal: float = 0.0) -> list[ClearanceRow]:
+def of_motion(line: Line, vertical: float, horizontal: float = 0.0) -> list[PhaseClearanceRow]:
     """Return the rows of a made-up motion V = vertical cos(t), W = horizontal sin(t)."""
     base = run(LINE, ASKED)
     row = next(r for r in base.limit_cycles if r.kind == "periodic")
