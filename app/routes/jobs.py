@@ -120,7 +120,7 @@ async def submit_job(
     """Accept a line for analysis. The service stores the job before it answers, whether or not a worker is running.
 
     The line may be one as an engineer knows it, as `POST /v1/lines/resolve` takes it; the job then holds the explicit
-    line. Phases, clearances, design wind and climate do not act on an analysis.
+    line. Its design wind does not act on an analysis.
 
     If the owner has stored results of the same input by this engine version, from a job or a line of a batch, the job
     ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new

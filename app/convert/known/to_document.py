@@ -22,7 +22,7 @@ from engine.outcome import InvalidSpec
 from engine.result import AssumptionRow
 
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
-_KEPT = ("phases", "required_clearance", "design_wind")
+_KEPT = ("design_wind",)
 _AS_SAID = {"name", "asset_id", "tags", "devices", "climate", "phases", "required_clearance"}
 # What the document calls otherwise than the engine, and what only the engine has, with its unit.
 _OTHER_NAMES: Mapping[str, str] = {
