@@ -30,6 +30,12 @@ class LineCounts(Answer):
     reused: Count = described("Successful lines whose results were stored before [1]", 0)
 
 
+_HOURS = (
+    "Hours a year in which the line gallops or nothing is known of it, by the model with the most of them; null "
+    "without a climate [h]"
+)
+
+
 class LineSummary(Answer):
     """The result of one line in a row, together with its verdict, static state and Den Hartog's criterion."""
 
@@ -47,6 +53,7 @@ class LineSummary(Answer):
     largest_width_m: float | None = described(
         "Largest width of the space that the sub-conductors sweep in a stable motion [m]", 0.4908
     )
+    galloping_hours_a_year: float | None = described(_HOURS, 6.8)
     unknown_motions: bool = described(
         "Whether a motion is unknown or unbounded at some wind speed; amplitude, height and width are then null", False
     )
@@ -68,6 +75,7 @@ class RankedLine(Answer):
     largest_width_m: float | None = described(
         "Largest width of the space that the sub-conductors sweep in a stable motion [m]", 0.4908
     )
+    galloping_hours_a_year: float | None = described(_HOURS, 6.8)
     unknown_motions: bool = described(
         "Whether a motion is unknown or unbounded at some wind speed; amplitude, height and width are then null", False
     )

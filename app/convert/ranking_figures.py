@@ -24,7 +24,8 @@ def ranking_figures(lines: Sequence[spec.Line], results: Sequence[Result]) -> li
     Height and width [m] bound the space that the sub-conductors sweep at the observation point. A line with a motion
     without numbers at any wind speed, because it is not known or nothing bounds it, has infinite figures, so that it
     ranks before all others. A line that is unstable without wind has the critical wind speed 0 besides. None: no
-    crossing up to the limit, or no wind speed asked for.
+    crossing up to the limit, or no wind speed asked for. Hours of which nothing is known count as galloping;
+    None without a climate.
     """
     lasting = [_lasting(result) for result in results]
     moving = [place for place, motions in enumerate(lasting) if motions]
@@ -52,6 +53,9 @@ def _figures(result: Result, lasting: Sequence[_Motion], room: _Room | None) -> 
         "largest_vertical_m": max(amplitudes, default=None),
         "largest_height_m": height,
         "largest_width_m": width,
+        "galloping_hours_a_year": max(
+            (row.hours_a_year + row.unknown_hours_a_year for row in result.risk), default=None
+        ),
     }
 
 

@@ -32,10 +32,11 @@ class RankingQuery(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    by: Literal["amplitude", "critical-wind-margin", "clearance"] = Field(
+    by: Literal["amplitude", "critical-wind-margin", "clearance", "risk"] = Field(
         default="amplitude",
         description="`amplitude`: largest vertical amplitude first. `critical-wind-margin`: smallest margin of the "
-        "critical wind speed first. `clearance`: smallest clearance first",
+        "critical wind speed first. `clearance`: smallest clearance first. `risk`: most hours of galloping a year "
+        "first, hours of which nothing is known among them",
     )
     design_wind_speed_m_per_s: Annotated[float | None, Field(ge=0.0, le=100.0)] = Field(
         default=None, description="Required by the margin, which is the critical minus this design wind speed [m/s]"
@@ -73,6 +74,8 @@ class RankingQuery(BaseModel):
             return Order("largest_vertical_m", descending=True)
         if self.by == "critical-wind-margin":
             return Order(_CRITICAL, descending=False)
+        if self.by == "risk":
+            return Order("galloping_hours_a_year", descending=True)
         return Order(_HEIGHT if self.vertical_spacing_m is not None else _WIDTH, descending=True)
 
 
@@ -96,8 +99,8 @@ def rank_lines(
 
     A line whose motion is unknown or unbounded at any wind speed comes first by amplitude and clearance, with
     `unknown_motions`; one that is unstable without wind comes first by margin. Left out are lines without a critical
-    wind speed up to the limit (by margin), lines analysed without wind speeds (otherwise), and failed ones, which the
-    status of the batch counts.
+    wind speed up to the limit (by margin), lines without a climate (by risk), lines analysed without wind speeds
+    (otherwise), and failed ones, which the status of the batch counts.
     """
     query, key = ranking_query.checked(), signing_key(settings)
     order = query.order()

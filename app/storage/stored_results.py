@@ -19,7 +19,13 @@ if TYPE_CHECKING:
     from app.convert import PointResult
 
 STATIC = tuple(columns_of(StaticState))
-RANKING_FIGURES = ("lowest_critical_wind_speed_m_per_s", "largest_vertical_m", "largest_height_m", "largest_width_m")
+RANKING_FIGURES = (
+    "lowest_critical_wind_speed_m_per_s",
+    "largest_vertical_m",
+    "largest_height_m",
+    "largest_width_m",
+    "galloping_hours_a_year",
+)
 UNKNOWN_MOTIONS = "unknown_motions"
 VERDICT = tuple(columns_of(TABLES["verdict"].row))
 NO_TABLES = orjson.dumps({name: [] for name in TABLES})

@@ -25,6 +25,7 @@ class PointRow(Base):
             "largest_vertical_m",
             "largest_height_m",
             "largest_width_m",
+            "galloping_hours_a_year",
         )
     )
 
@@ -50,3 +51,4 @@ class PointRow(Base):
     largest_width_m: Mapped[float | None]
     input_hash: Mapped[str | None] = mapped_column(String(64), index=True)
     verdict: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    galloping_hours_a_year: Mapped[float | None]

@@ -104,7 +104,7 @@ def test_rows_are_the_same_after_packing_and_unpacking(settings: Settings, engin
         assert list(stored_results.orbits(session, job_id)) == [{"point": 0, **TABLES["orbits"][0]}]
         assert [point["failure"] for point in stored_results.points(session, job_id)] == [None, "It overflowed."]
         found = session.execute(select(*(getattr(PointRow, name) for name in stored_results.RANKING_FIGURES))).all()
-    assert sorted(map(tuple, found), key=str) == [(2.403, 1.25, None, None), (None,) * 4]
+    assert sorted(map(tuple, found), key=str) == [(2.403, 1.25, None, None, None), (None,) * 5]
     with engine.begin() as connection:
         command.downgrade(alembic_config(connection), "0003")
         again = MetaData()

@@ -102,3 +102,13 @@ def test_many_orbits_are_followed_in_parts(monkeypatch: pytest.MonkeyPatch) -> N
     together = found(TWIN, [4.0, 6.0], [1, 2]).ranking_figures
     monkeypatch.setattr(ranking_figures, "_ORBITS_AT_ONCE", 1)
     assert found(TWIN, [4.0, 6.0], [1, 2]).ranking_figures == together
+
+
+def test_hours_of_galloping_hold_those_of_which_nothing_is_known() -> None:
+    sector = {"direction_deg": 0.0, "width_deg": 0.0, "share": 1.0, "weibull_shape": 2.0, "weibull_scale_m_per_s": 6.0}
+    climate = {"line_azimuth_deg": 90.0, "sectors": [sector], "icing": [{"kind": "glaze", "hours_a_year": 40.0}]}
+    point = found({**TWIN, "climate": climate}, [4.0])
+    onset = min(row["wind_speed_m_per_s"] for row in point.tables["critical_wind_speeds"])
+    expected = 40.0 * math.exp(-((onset / 6.0) ** 2))  # above 30 m/s nothing is known
+    assert point.ranking_figures["galloping_hours_a_year"] == pytest.approx(expected, rel=1e-12)
+    assert found(TWIN, [4.0]).ranking_figures["galloping_hours_a_year"] is None

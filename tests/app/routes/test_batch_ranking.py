@@ -12,9 +12,22 @@ from tests.app.lines import SHORT, changed
 from tests.app.service import work_off
 
 TWIN = example("c11-twin")
+SECTOR = {"direction_deg": 0.0, "share": 1.0, "weibull_shape": 2.0, "weibull_scale_m_per_s": 6.0}
+
+
+def climate(hours: float | None) -> dict[str, Any] | None:
+    icing = [{"kind": "glaze", "hours_a_year": hours}]
+    return None if hours is None else {"line_azimuth_deg": 90.0, "sectors": [SECTOR], "icing": icing}
+
+
 LINES = [
-    {**changed("span.length_m", length, TWIN), "reference": f"L{length:g}", "asset_id": f"A{length:g}"}
-    for length in (100.0, 150.0, 125.0)
+    {
+        **changed("span.length_m", length, TWIN),
+        "reference": f"L{length:g}",
+        "asset_id": f"A{length:g}",
+        "climate": climate(hours),
+    }
+    for length, hours in ((100.0, 20.0), (150.0, 80.0), (125.0, None))
 ]
 
 
@@ -56,6 +69,15 @@ def test_the_least_margin_of_the_critical_wind_speed_comes_first(shared_client: 
     assert margins == sorted(margins)
     for line in lines:
         assert line["margin_m_per_s"] == pytest.approx(line["lowest_critical_wind_speed_m_per_s"] - 2.5)
+
+
+def test_the_most_hours_of_galloping_come_first(shared_client: httpx.Client, address: str) -> None:
+    lines = ranked(shared_client, address, by="risk", limit=1)
+    assert [line["reference"] for line in lines] == ["L150", "L100"]  # iced for 80 and 20 hours; the third: no climate
+    hours = [line["galloping_hours_a_year"] for line in lines]
+    assert hours[0] > 2.0 * hours[1] > 0.0
+    summary = shared_client.get(f"{address}/results", params={"table": "summary"}, headers={"accept": "text/csv"})
+    assert "galloping_hours_a_year" in summary.text.splitlines()[0]
 
 
 @pytest.mark.parametrize(("spacing", "extent"), [("vertical_spacing_m", "height"), ("horizontal_spacing_m", "width")])
