@@ -33,7 +33,7 @@ def findings_of(stack: ModelStack, winds: FloatArray, starts: Starts, analysis: 
     model, direct = stack.model, analysis.check is Check.DIRECT
     integration = DirectIntegration(
         starts=direct_starts(model, winds, analysis.harmonics) if direct else None,
-        settle=partial(bounded_motions, model, winds, analysis.harmonics),
+        settle=partial(bounded_motions, model, winds, analysis.harmonics) if analysis.settle else None,
     )
     cycles = find_cycles(model, stack.crossings, winds, starts, analysis.harmonics, integration)
     bifurcation_points = bifurcations(cycles.branch_sets, cycles.followed, model, stack.crossings)

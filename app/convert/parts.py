@@ -252,6 +252,11 @@ def analysis(part: schemas.Analysis) -> spec.Analysis:
     )
 
 
+def uncertainty(part: schemas.Uncertainty | None) -> spec.Uncertainty:
+    """Build what is asked of the samples of a line by itself."""
+    return spec.Uncertainty() if part is None else spec.Uncertainty(part.samples, part.seed)
+
+
 def _three(values: list[float]) -> spec.Coefficients:
     first, second, third = values
     return float(first), float(second), float(third)

@@ -152,7 +152,7 @@ def _point(
 ) -> Iterator[Advance | _Solved | PointResult]:
     try:
         line, analysis = specification(request, values)
-        steps = _steps(request.placement, line, analysis)
+        steps = _steps(request, line, analysis)
         result = yield from translated(steps, lambda step: Advance(step.fraction, step.step))
         result = replace(result, assumptions=_assumptions(request))
         yield _Solved(number, values, line, result)
@@ -172,18 +172,22 @@ def _assumptions(request: schemas.JobRequest) -> tuple[AssumptionRow, ...]:
     return assumption_rows(known)
 
 
-def _steps(
-    placement: schemas.Placement | None, line: spec.Line, analysis: spec.Analysis
-) -> Generator[Progress, None, Result]:
-    """Return the computation of one point, not yet started."""
+def _steps(request: schemas.JobRequest, line: spec.Line, analysis: spec.Analysis) -> Generator[Progress, None, Result]:
+    """Return the computation of one point, not yet started; samples belong to a line by itself."""
     # The API and `galloping --help` need no solver, and an analysis needs no optimizer.
-    if placement is None:
+    asked = parts.uncertainty(request.analysis.uncertainty)
+    known = None if request.study or request.placement or asked.samples == 0 else known_of(request)
+    if known is not None:
+        from app.convert.known.samples import analyse_known  # noqa: PLC0415
+
+        return analyse_known(known, line, analysis, asked)
+    if request.placement is None:
         from engine.analysis import analyse  # noqa: PLC0415
 
         return analyse(line, analysis)
     from engine.studies.placement import place  # noqa: PLC0415
 
-    return place(line, analysis, parts.placement(placement))
+    return place(line, analysis, parts.placement(request.placement))
 
 
 def specification(request: schemas.JobRequest, values: dict[str, Any]) -> tuple[spec.Line, spec.Analysis]:

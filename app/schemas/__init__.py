@@ -1,6 +1,6 @@
 """The JSON that comes in, as pydantic models: names, units, bounds, defaults and examples of the fields."""
 
-from app.schemas.analysis import Analysis, WindSpeedRange
+from app.schemas.analysis import Analysis, Uncertainty, WindSpeedRange
 from app.schemas.climate import Climate, Icing, WindSector
 from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, InterphaseSpacer, Spacer, TorsionalDamper
 from app.schemas.environment import (
@@ -57,6 +57,7 @@ __all__ = [
     "Supports",
     "SuspensionString",
     "TorsionalDamper",
+    "Uncertainty",
     "Wind",
     "WindSector",
     "WindSpeedRange",

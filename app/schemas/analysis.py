@@ -39,6 +39,27 @@ WindSpeeds = Annotated[
 ]
 
 
+class Uncertainty(Document):
+    """Samples of what is assumed of a line, analysed beside it."""
+
+    samples: int = Field(
+        default=64,
+        ge=0,
+        le=16_384,
+        description="Number of samples, best a power of two; 0 for none [1]",
+        examples=[64],
+        json_schema_extra={"unit": "1"},
+    )
+    seed: int = Field(
+        default=1,
+        ge=0,
+        le=2**31 - 1,
+        description="Seed of the samples; the same one draws the same samples [1]",
+        examples=[1],
+        json_schema_extra={"unit": "1"},
+    )
+
+
 class Analysis(Document):
     """What to compute, and the model's options."""
 
@@ -165,6 +186,13 @@ class Analysis(Document):
         default=None,
         description="Whether to weigh the motions with the line's climate (table `risk`); if null, where it has one",
         examples=[True],
+    )
+
+    uncertainty: Uncertainty | None = Field(
+        default=None,
+        description="Samples of the assumed values of a line as engineers know it, for probabilities and for the "
+        "assumption that decides; null: 64 samples. Only for a line by itself: none in a study, a placement or a batch",
+        examples=[{"samples": 64, "seed": 1}],
     )
 
     @model_validator(mode="after")

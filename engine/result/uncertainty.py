@@ -18,8 +18,8 @@ def _onset(share: str, example: float) -> Column:
 
 def _size(direction: str, share: str, example: float, unit: str = "m") -> Column:
     return Column(
-        f"Largest {direction} amplitude that {share} of the samples do not pass, 0 at rest; null where that one grows "
-        "without bound or is not known",
+        f"Largest {direction} amplitude that {share} of the samples do not pass, 0 at rest; null where that one "
+        "gallops and how far is not known",
         example,
         unit=unit,
     )
@@ -82,8 +82,14 @@ class UncertaintyRow:
         Column("Change of the median vertical amplitude from the first half of the samples to all", 0.02, unit="m"),
     ]
     gallops: Annotated[int, Column("Samples that gallop", 45, unit="1")]
-    unbounded: Annotated[
-        int, Column("Samples whose every motion grows without bound; they count as galloping", 0, unit="1")
+    size_unknown: Annotated[
+        int,
+        Column(
+            "Samples that gallop too, but how far is not known, as where nothing bounds the motion; in quantiles they "
+            "are larger than any other",
+            0,
+            unit="1",
+        ),
     ]
     rests: Annotated[int, Column("Samples that stay at rest", 19, unit="1")]
     unknown: Annotated[int, Column("Samples of which it is not known whether they gallop", 0, unit="1")]
@@ -94,7 +100,8 @@ class UncertaintyRow:
         int, Column("Samples that break a rule, such as a tension above the rated strength", 0, unit="1")
     ]
     beyond_data: Annotated[
-        int, Column("Galloping samples with a motion beyond what the coefficients or the sag vouch for", 2, unit="1")
+        int,
+        Column("Galloping samples of unknown size, or with a motion beyond coefficients or sag", 2, unit="1"),
     ]
     samples: Annotated[int, Column("Number of samples", 64, unit="1")]
     seed: Annotated[int, Column("Seed of the samples", 1, unit="1")]

@@ -144,6 +144,7 @@ class Analysis:
     amplitude_curves: AmplitudeCurves = AmplitudeCurves.NEGLECTED
     check: Check = Check.NONE
     quasi_periodic: TorusSearch = TorusSearch.LASTING
+    settle: bool = True
     risk: bool = True
 
     def __post_init__(self) -> None:

@@ -32,7 +32,7 @@ def wilson(hits: int, trials: int) -> tuple[float, float]:
 
 def probability(states: Sequence[State]) -> float | None:
     """Return the share of galloping among the samples with an answer, None if there is none."""
-    hits = sum(state in (State.GALLOPS, State.UNBOUNDED) for state in states)
+    hits = sum(state in (State.GALLOPS, State.SIZE_UNKNOWN) for state in states)
     rests = sum(state is State.RESTS for state in states)
     return hits / (hits + rests) if hits + rests else None
 
@@ -43,7 +43,7 @@ def probability_interval(states: Sequence[State]) -> tuple[float, float]:
     A sample that breaks a rule is no line that could stand, and does not count.
     """
     possible = [state for state in states if state is not State.IMPOSSIBLE]
-    hits = sum(state in (State.GALLOPS, State.UNBOUNDED) for state in possible)
+    hits = sum(state in (State.GALLOPS, State.SIZE_UNKNOWN) for state in possible)
     rests = sum(state is State.RESTS for state in possible)
     return wilson(hits, len(possible))[0], wilson(len(possible) - rests, len(possible))[1]
 

@@ -17,10 +17,13 @@ DIRECTIONS = ("vertical_m", "horizontal_m", "torsional_rad")
 
 
 class State(StrEnum):
-    """What a sample does. Only the first three are answers."""
+    """What a sample does. Only the first three are answers.
+
+    SIZE_UNKNOWN: it gallops, and no stable motion is known, as where nothing bounds the motion.
+    """
 
     GALLOPS = "gallops"
-    UNBOUNDED = "unbounded"
+    SIZE_UNKNOWN = "size_unknown"
     RESTS = "rests"
     UNKNOWN = "unknown"
     STATICALLY_UNSTABLE = "statically_unstable"
@@ -31,8 +34,9 @@ class State(StrEnum):
 class AtWind:
     """A sample at one wind speed, or at all of them.
 
-    amplitudes: largest of stable motions by direction [m, m, rad]: 0 at rest, infinite without bound, NaN if not known;
-    beyond_data: whether one of these motions leaves what the input vouches for.
+    amplitudes: largest of stable motions by direction [m, m, rad]: 0 at rest, infinite where a galloping span's is not
+    known, so that it never passes for small, NaN without an answer; beyond_data: whether one of these motions leaves
+    what the input vouches for.
     """
 
     state: State
@@ -54,6 +58,7 @@ class SampleOutcome:
 
 
 NOTHING = (np.nan, np.nan, np.nan)
+ANY = (np.inf, np.inf, np.inf)
 
 
 def without_answer(state: State, winds: int) -> SampleOutcome:
@@ -94,11 +99,10 @@ def _at_wind(rows: Sequence[LimitCycleRow], onset: float) -> AtWind:
         row.stability is Stability.UNSTABLE and onset <= row.wind_speed_m_per_s for row in rests
     )  # by an oscillation: a divergence alone starts no motion
     unknown = any(row.vertical_m is None for row in rows)
-    if Outcome.NO_BOUNDED_MOTION in outcomes:
-        return AtWind(State.UNBOUNDED, (np.inf, np.inf, np.inf), beyond_data=True)
-    if moving or shaken:
-        sizes = NOTHING if unknown or not moving else _largest(moving)
-        return AtWind(State.GALLOPS, sizes, any(row.outcome in _BEYOND for row in moving))
+    if moving and not unknown:
+        return AtWind(State.GALLOPS, _largest(moving), any(row.outcome in _BEYOND for row in moving))
+    if moving or shaken or Outcome.NO_BOUNDED_MOTION in outcomes:
+        return AtWind(State.SIZE_UNKNOWN, ANY, beyond_data=True)
     if Outcome.STATICALLY_UNSTABLE in outcomes:
         return AtWind(State.STATICALLY_UNSTABLE, NOTHING)
     if unknown or not rests or any(row.stability is not Stability.STABLE for row in rests):
@@ -115,14 +119,14 @@ def _largest(moving: Sequence[LimitCycleRow]) -> tuple[float, float, float]:
 def _overall(result: Result, winds: Sequence[AtWind]) -> AtWind:
     """Judge all wind speeds as the verdict does: it also gallops with an onset between two of them."""
     states = {wind.state for wind in winds}
-    sizes: FloatArray = np.array([wind.amplitudes for wind in winds]).reshape(-1, len(DIRECTIONS))
-    vertical, horizontal, torsional = np.max(sizes, axis=0, initial=0.0).tolist() if len(winds) else NOTHING
-    beyond = any(wind.beyond_data for wind in winds)
     (verdict,) = result.verdict
-    if State.UNBOUNDED in states:
-        return AtWind(State.UNBOUNDED, (np.inf, np.inf, np.inf), beyond)
-    if verdict.gallops == "yes" or State.GALLOPS in states:
-        return AtWind(State.GALLOPS, (vertical, horizontal, torsional), beyond)
+    beyond = any(wind.beyond_data for wind in winds)
+    largest: FloatArray = np.max([wind.amplitudes for wind in winds], axis=0, initial=0.0)
+    vertical, horizontal, torsional = largest.tolist()
+    if verdict.gallops == "yes" or states & {State.GALLOPS, State.SIZE_UNKNOWN}:
+        if np.isfinite(largest).all() and winds:
+            return AtWind(State.GALLOPS, (vertical, horizontal, torsional), beyond)
+        return AtWind(State.SIZE_UNKNOWN, ANY, beyond)
     if verdict.gallops == "no":
         return AtWind(State.RESTS, (vertical, horizontal, torsional), beyond)
     ended = {row.outcome for row in result.frequencies} | {row.outcome for row in result.limit_cycles}

@@ -200,6 +200,7 @@ ANALYSES = st.fixed_dictionaries(
         "harmonics": st.integers(1, 6),
         "static_twist": st.sampled_from([None, "neglected", "where_large", "solved"]),
         "device_effect": st.sampled_from(["neglected", "reported"]),
+        "uncertainty": st.sampled_from([None, {"samples": 8, "seed": 2}]),
     },
 )
 REQUESTS = st.fixed_dictionaries({"line": LINES, "analysis": ANALYSES})

@@ -180,9 +180,8 @@ def _states(resolved: Resolved) -> dict[str, Any]:
 
 def _row(row: Assumption) -> dict[str, Any]:
     """Return a row of the assumptions; angles in degrees."""
-    turned = math.degrees if row.unit == "rad" else float
     numbers = (row.value, row.lowest, row.highest)
-    value, lowest, highest = (None if number is None else turned(number) for number in numbers)
+    value, lowest, highest = (None if number is None else document_number(number, row.unit) for number in numbers)
     return {
         "path": document_path(row.path),
         "value": value,
@@ -197,6 +196,11 @@ def _row(row: Assumption) -> dict[str, Any]:
 def assumption_rows(line: known.KnownLine) -> tuple[AssumptionRow, ...]:
     """Return the rows of a result about where the values of a line came from."""
     return tuple(AssumptionRow(**_row(row)) for row in resolve(line).assumptions)
+
+
+def document_number(value: float, unit: str) -> float:
+    """Return a number of the engine in the unit of documents."""
+    return math.degrees(value) if unit == "rad" else float(value)
 
 
 def document_path(path: str) -> str:

@@ -285,7 +285,8 @@ def test_a_line_that_cannot_be_resolved_is_refused(tmp_path: Path) -> None:
 
 
 def test_an_analysis_takes_a_line_as_an_engineer_knows_it(tmp_path: Path) -> None:
-    analysis = written(tmp_path, "analysis", {"loops": [1], "wind_speeds_m_per_s": [5.0]})
+    asked = {"loops": [1], "wind_speeds_m_per_s": [5.0], "uncertainty": {"samples": 0}}
+    analysis = written(tmp_path, "analysis", asked)
     results = []
     for number, document in enumerate([CONTRACT, convert.resolve_document(CONTRACT)["line"]]):
         ended = galloping("analyse", written(tmp_path, f"line-{number}", document), "--analysis", analysis)

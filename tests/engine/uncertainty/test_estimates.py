@@ -8,7 +8,7 @@ from scipy.stats import binomtest
 from engine.uncertainty.estimates import change, probability, probability_interval, quantile, wilson
 from engine.uncertainty.outcomes import State
 
-YES, WILD, NO = State.GALLOPS, State.UNBOUNDED, State.RESTS
+YES, WILD, NO = State.GALLOPS, State.SIZE_UNKNOWN, State.RESTS
 
 
 @pytest.mark.parametrize(("hits", "trials"), [(0, 10), (1, 10), (45, 64), (64, 64), (500, 1024)])

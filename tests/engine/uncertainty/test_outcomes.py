@@ -46,20 +46,23 @@ def test_a_span_rests_below_its_onset_and_gallops_above() -> None:
     assert found.overall.amplitudes == found.winds[2].amplitudes
 
 
-def test_a_motion_without_bound_is_larger_than_any() -> None:
-    numberless = {"vertical_m": None, "outcome": Outcome.NO_BOUNDED_MOTION}
-    found = changed(numberless, None, WINDS[2])
-    assert found.winds[2].state is State.UNBOUNDED
-    assert found.winds[2].amplitudes[0] == math.inf
-    assert found.overall.state is State.UNBOUNDED
+@pytest.mark.parametrize(
+    ("rest", "motion"),
+    [
+        ({"vertical_m": None, "outcome": Outcome.NO_BOUNDED_MOTION}, None),  # integration found no bound
+        ({}, None),  # an unstable rest without a stable motion
+        ({"vertical_m": None, "outcome": Outcome.NO_CONVERGENCE}, {}),  # another number of loops may move farther
+    ],
+)
+def test_a_size_that_is_not_known_is_larger_than_any(
+    rest: Mapping[str, object], motion: Mapping[str, object] | None
+) -> None:
+    found = changed(rest, motion, WINDS[2])
+    assert found.winds[2].state is State.SIZE_UNKNOWN
+    assert found.winds[2].amplitudes == (math.inf, math.inf, math.inf)
+    assert found.winds[0].state is State.RESTS
+    assert found.overall.state is State.SIZE_UNKNOWN
     assert found.overall.amplitudes[0] == math.inf
-
-
-def test_an_unstable_rest_gallops_with_a_size_that_is_not_known() -> None:
-    found = changed({}, None, WINDS[2])
-    assert found.winds[2].state is State.GALLOPS
-    assert math.isnan(found.winds[2].amplitudes[0])
-    assert math.isnan(found.overall.amplitudes[0])
 
 
 def test_what_is_not_known_is_no_rest() -> None:

@@ -29,11 +29,18 @@ def test_a_sample_of_which_no_line_follows_is_impossible() -> None:
     def refusing(values: dict[str, float]) -> Line:
         if values[DENSITY] > 1.3:
             raise InvalidSpec(Fault("span.everyday", None, "must not exceed the rated strength"))
+        if values[DENSITY] < 1.1:
+            raise FloatingPointError("overflow")
         return line_of(values)
 
-    chosen = [{DENSITY: 1.2}, {DENSITY: 1.35}, {DENSITY: 1.25}]
+    chosen = [{DENSITY: 1.2}, {DENSITY: 1.35}, {DENSITY: 1.25}, {DENSITY: 1.05}]
     found = driven(runs.outcomes(chosen, refusing, ASKED), lambda _: None)  # type: ignore[arg-type]
-    assert [one.overall.state for one in found] == [State.GALLOPS, State.IMPOSSIBLE, State.GALLOPS]
+    assert [one.overall.state for one in found] == [
+        State.GALLOPS,
+        State.IMPOSSIBLE,
+        State.GALLOPS,
+        State.UNKNOWN,
+    ]
     assert [wind.state for wind in found[1].winds] == [State.IMPOSSIBLE] * len(ASKED.wind_speeds)
 
 

@@ -27,14 +27,14 @@ def test_every_sample_is_in_one_column() -> None:
     outcomes = [
         galloping(3.0, 1.0),
         galloping(4.0, 2.0),
-        galloping(2.0, math.inf, State.UNBOUNDED),
+        galloping(2.0, math.inf, State.SIZE_UNKNOWN),
         REST,
         *(without_answer(state, 1) for state in (State.UNKNOWN, State.STATICALLY_UNSTABLE, State.IMPOSSIBLE)),
     ]
     overall, at_wind = uncertainty_rows(outcomes, (8.0,), Uncertainty(7, 3))
     assert (overall.wind_speed_m_per_s, at_wind.wind_speed_m_per_s) == (None, 8.0)
     for row in (overall, at_wind):
-        counts = (row.gallops, row.unbounded, row.rests, row.unknown, row.statically_unstable, row.impossible)
+        counts = (row.gallops, row.size_unknown, row.rests, row.unknown, row.statically_unstable, row.impossible)
         assert counts == (2, 1, 1, 1, 1, 1)
         assert (row.samples, row.seed) == (7, 3)
         assert row.probability == 0.75
@@ -80,7 +80,7 @@ def test_indices_that_the_samples_do_not_tell_are_null() -> None:
 def test_samples_without_a_number_leave_the_indices() -> None:
     samples = sobol_samples(INPUTS, 64, 1)
     outcomes = [
-        galloping(2.0 * values["a"], math.inf, State.UNBOUNDED) if i % 4 == 0 else galloping(2.0 * values["a"], 1.0)
+        galloping(2.0 * values["a"], math.inf, State.SIZE_UNKNOWN) if i % 4 == 0 else galloping(2.0 * values["a"], 1.0)
         for i, values in enumerate(samples.chosen())
     ]
     outcomes[5] = without_answer(State.UNKNOWN, 1)

@@ -1,0 +1,55 @@
+"""Analyse a line as an engineer knows it together with samples of what is assumed of it."""
+
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import replace
+
+from app.convert.known.to_document import document_number, document_path
+from engine import spec
+from engine.known.description import KnownLine
+from engine.known.provenance import Assumption
+from engine.known.resolve import resolve
+from engine.progress import Progress
+from engine.result import Result, SensitivityRow
+from engine.uncertainty.weighing import Unknowns, analyse_with_samples, intervals
+
+
+def analyse_known(
+    known: KnownLine, line: spec.Line, analysis: spec.Analysis, asked: spec.Uncertainty
+) -> Generator[Progress, None, Result]:
+    """Analyse a line with samples, all of which are resolved from what is known of it.
+
+    Parameters
+    ----------
+    known : KnownLine
+    line : Line
+        What `known` resolves to, with the section of the analysis.
+    analysis : Analysis
+    asked : Uncertainty
+
+    Returns
+    -------
+    Result
+        With the document's names and units of the assumed values.
+    """
+    assumptions = resolve(known).assumptions
+
+    def line_of(chosen: Mapping[str, float]) -> spec.Line:
+        return spec.with_section(resolve(known, chosen).line, analysis.physics)
+
+    unknowns = Unknowns(intervals(assumptions), line_of)
+    return _in_document_names((yield from analyse_with_samples(line, analysis, unknowns, asked)), assumptions)
+
+
+def _in_document_names(result: Result, assumptions: Sequence[Assumption]) -> Result:
+    units = {row.path: row.unit for row in assumptions}
+    verdicts = tuple(
+        row if row.what_decides is None else replace(row, what_decides=document_path(row.what_decides))
+        for row in result.verdict
+    )
+    rows = tuple(_in_document_units(row, units[row.path]) for row in result.sensitivities)
+    return replace(result, verdict=verdicts, sensitivities=rows)
+
+
+def _in_document_units(row: SensitivityRow, unit: str) -> SensitivityRow:
+    lowest, highest = (None if end is None else document_number(end, unit) for end in (row.lowest, row.highest))
+    return replace(row, path=document_path(row.path), lowest=lowest, highest=highest)

@@ -1,0 +1,77 @@
+"""Samples of a line as an engineer knows it, asked for in a request."""
+
+from functools import cache
+from typing import Any
+
+import pytest
+
+from app import convert
+from app.schemas.faults import BadInput
+from tests.app.known_documents import CONTRACT, changed
+
+ANALYSIS = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 10.0]}
+LYING = changed(ice={**CONTRACT["ice"], "accretion": {"shape": "crescent", "thickness_m": 0.012}})
+
+
+def tables(request: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
+    complete = convert.read(convert.explicit_request(request)).kept()
+    (point,) = [item for item in convert.run(complete) if isinstance(item, convert.PointResult)]
+    return point.tables
+
+
+@cache
+def sampled(count: int = 16) -> dict[str, list[dict[str, Any]]]:
+    return tables({"line": LYING, "analysis": {**ANALYSIS, "uncertainty": {"samples": count, "seed": 3}}})
+
+
+def test_a_known_line_has_samples_at_every_wind_speed() -> None:
+    rows = sampled()["uncertainty"]
+    assert [row["wind_speed_m_per_s"] for row in rows] == [None, 4.0, 10.0]
+    assert {(row["samples"], row["seed"]) for row in rows} == {(16, 3)}
+    (verdict,) = sampled()["verdict"]
+    assert verdict["probability_gallops"] == rows[0]["probability"]
+    assert "probability" in verdict["sentence"]
+
+
+def test_sensitivities_have_the_names_and_units_of_the_document() -> None:
+    assumed = {row["path"]: row for row in sampled()["assumptions"] if row["origin"] == "assumed"}
+    rows = {row["path"]: row for row in sampled()["sensitivities"]}
+    assert set(rows) == {path for path, row in assumed.items() if row["lowest"] < row["highest"]}
+    for path, row in rows.items():
+        assert row["lowest"] == pytest.approx(assumed[path]["lowest"])
+        assert row["highest"] == pytest.approx(assumed[path]["highest"])
+    angle = rows["ice.accretion.angle_deg"]
+    assert angle["distribution"] == "uniform"
+    assert angle["highest"] - angle["lowest"] > 90.0
+    assert rows["conductor.torsional_rigidity_n_m2"]["distribution"] == "log_uniform"
+
+
+def test_what_decides_is_a_field_of_the_document() -> None:
+    (verdict,) = sampled(64)["verdict"]
+    assert verdict["what_decides"] in {row["path"] for row in sampled(64)["sensitivities"]}
+
+
+def test_samples_do_not_change_the_motions() -> None:
+    without = tables({"line": LYING, "analysis": {**ANALYSIS, "uncertainty": {"samples": 0}}})
+    assert without["uncertainty"] == without["sensitivities"] == []
+    assert without["limit_cycles"] == sampled()["limit_cycles"]
+    assert without["verdict"][0]["probability_gallops"] is None
+
+
+def test_64_samples_are_the_default_where_something_is_assumed() -> None:
+    found = tables({"line": LYING, "analysis": ANALYSIS})
+    assert found["uncertainty"][0]["samples"] == 64
+    explicit = convert.resolve_document(LYING)["line"]
+    assert tables({"line": explicit, "analysis": ANALYSIS})["uncertainty"] == []
+
+
+def test_a_study_has_no_samples() -> None:
+    study = {"axes": [{"parameter": "span.length_m", "values": [300.0]}]}
+    assert tables({"line": LYING, "analysis": ANALYSIS, "study": study})["uncertainty"] == []
+
+
+@pytest.mark.parametrize(("field", "value"), [("samples", -1), ("samples", 20_000), ("seed", -1), ("draws", 3)])
+def test_what_cannot_be_asked_is_refused(field: str, value: int) -> None:
+    with pytest.raises(BadInput) as caught:
+        convert.read({"line": convert.resolve_document(LYING)["line"], "analysis": {"uncertainty": {field: value}}})
+    assert [fault.pointer for fault in caught.value.faults] == [f"/analysis/uncertainty/{field}"]
