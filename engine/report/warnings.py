@@ -24,6 +24,7 @@ from engine.spec import (
     Line,
     LongitudinalInertia,
     Model,
+    StaticTwist,
     StretchDevice,
     Stretching,
     ice_properties,
@@ -106,14 +107,18 @@ def longitudinal_warnings(loops: Sequence[int], shares: FloatArray, analysis: An
     return [known]
 
 
-def section_warnings(analysis: Analysis) -> list[str]:
-    """Return sentences on what the hybrid model of a section leaves out."""
+def section_warnings(line: Line, analysis: Analysis) -> list[str]:
+    """Return sentences on what the hybrid model of a section leaves out, and on a table that is not computed."""
+    result = []
+    if line.has_table and analysis.static_twist is not StaticTwist.NEGLECTED:
+        result.append("The static equilibria in the wind are not computed for a section.")
     if Model.HYBRID not in analysis.models or not analysis.wind_speeds:
-        return []
+        return result
     return [
+        *result,
         "The hybrid model of a section moves one vertical mode at a time. Modes of several spans have nearly equal "
         "frequencies and critical wind speeds, so a motion that is stable by itself may give way to another mode; the "
-        "finite element model, which moves the modes of finite_element_loops together, tells."
+        "finite element model, which moves the modes of finite_element_loops together, tells.",
     ]
 
 

@@ -13,10 +13,12 @@ from engine.spec import (
     LongitudinalInertia,
     LoopCompetition,
     Model,
+    StaticTwist,
     Stretching,
     check_compatible,
 )
 from tests.builders import STIFF_STRINGS, THREE_SPANS, run, section_line
+from tests.engine.synthetic_table import with_table
 
 SOURCE = Analysis(loops=(3,), models=(Model.HYBRID,), wind_speeds=(4.0, 6.0))
 FULL = replace(
@@ -89,3 +91,12 @@ def test_what_a_section_does_not_have_is_refused(change: dict[str, object], fiel
         check_compatible(section_line(), replace(SOURCE, **change))  # type: ignore[arg-type]
     assert field in [fault.field for fault in caught.value.faults]
     assert any("section" in fault.rule for fault in caught.value.faults)
+
+
+def test_a_table_whose_equilibria_are_not_computed_has_a_warning() -> None:
+    line = with_table(section_line(THREE_SPANS, subconductors=2), 20.0)
+    asked = Analysis(loops=(1,), models=(Model.HYBRID,), wind_speeds=(), static_twist=StaticTwist.SOLVED)
+    result = run(line, asked)
+    assert result.static.twist_rad is not None
+    assert any("static equilibria" in text for text in result.warnings)
+    assert not result.static_equilibria

@@ -118,6 +118,6 @@ def _warnings(found: SectionFindings, analysis: Analysis) -> list[str]:
         *physics_warnings(whole.line, analysis),
         *chain(*(twist_warnings(members, i) for i in range(whole.assembly.members))),
         *chain(*neglected_twist_warnings(members, every)),
-        *section_warnings(analysis),
+        *section_warnings(whole.line, analysis),
         *chain(*dropped),
     ]
