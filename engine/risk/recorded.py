@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import gamma
 
 from engine.arrays import FloatArray
 from engine.risk.winds import Interval
@@ -54,7 +53,12 @@ def _interval(weights: FloatArray, largest: float) -> Range:
         The most that a single event adds.
     """
     total, square = float(weights.sum()), float((weights**2).sum())
-    lowest = float(gamma.ppf(TAIL, total**2 / square, scale=square / total)) if total > 0.0 else 0.0
-    total_more, square_more = total + largest, square + largest**2
-    highest = gamma.ppf(1.0 - TAIL, total_more**2 / square_more, scale=square_more / total_more)
-    return total, lowest, float(highest)
+    lowest = _gamma_quantile(TAIL, total, square) if total > 0.0 else 0.0
+    return total, lowest, _gamma_quantile(1.0 - TAIL, total + largest, square + largest**2)
+
+
+def _gamma_quantile(probability: float, mean: float, variance: float) -> float:
+    """Return a quantile of the gamma distribution with this mean and variance."""
+    from scipy.special import gammaincinv  # noqa: PLC0415 - scipy loads slowly, and only weather records need it
+
+    return float(gammaincinv(mean**2 / variance, probability) * variance / mean)
