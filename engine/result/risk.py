@@ -35,10 +35,18 @@ class RiskRow:
     probability_highest: Annotated[float | None, Column("Upper end of its interval", 0.93, unit="1")]
     violation_hours_a_year: Annotated[
         float | None,
-        Column("Expected hours a year with less than the required clearance; null while not known", None, unit="h"),
+        Column(
+            "Expected hours a year with less than the required clearance, of the line as it is without samples; null "
+            "where no clearance is required",
+            None,
+            unit="h",
+        ),
+    ]
+    violation_hours_highest: Annotated[
+        float | None, Column("Upper end of their interval, with wind speeds of which it is not known", None, unit="h")
     ]
     violation_probability_a_year: Annotated[
         float | None,
-        Column("Probability of such an hour in a year; null while not known", None, unit="1"),
+        Column("Probability of such an hour in a year; null where not known", None, unit="1"),
     ]
     samples: Annotated[int, Column("Samples of the line that this is the mean of; 1: the line as it is", 1, unit="1")]

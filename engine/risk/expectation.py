@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.result import Result, RiskRow
 from engine.risk.recorded import Range, recorded_hours, recorded_probability
+from engine.risk.violations import asks_for_clearance, violation_ranges
 from engine.risk.wind_speeds import share_of_time
 from engine.risk.winds import Interval, WindRanges, united, wind_ranges
 from engine.spec import Analysis, Climate, IcedRecord, Icing, Line, Model, Ranged
@@ -43,11 +44,27 @@ def risk_rows(result: Result, line: Line, analysis: Analysis) -> tuple[RiskRow, 
     """
     if line.climate is None or not analysis.risk:
         return ()
-    return rows_over_samples([ranges_across(result, line, analysis)], line.climate)
+    rows = rows_over_samples([ranges_across(result, line, analysis)], line.climate)
+    if not asks_for_clearance(result):
+        return rows
+    violating = rows_over_samples([ranges_across(result, line, analysis, violating=True)], line.climate)
+    return tuple(
+        replace(
+            row,
+            violation_hours_a_year=other.hours_a_year,
+            violation_hours_highest=other.hours_highest,
+            violation_probability_a_year=other.probability_a_year,
+        )
+        for row, other in zip(rows, violating, strict=True)
+    )
 
 
-def ranges_across(result: Result, line: Line, analysis: Analysis) -> dict[Motion, WindRanges]:
+def ranges_across(
+    result: Result, line: Line, analysis: Analysis, *, violating: bool = False
+) -> dict[Motion, WindRanges]:
     """Return the ranges of the wind across the line in which it gallops, for each model and number of loops, and any.
+
+    Or, violating, those in which it breaks a required clearance.
 
     The component across the line alone drives the motion (conventions, yaw), so speeds of a yawed wind shrink to it.
     """
@@ -56,7 +73,11 @@ def ranges_across(result: Result, line: Line, analysis: Analysis) -> dict[Motion
     for model in analysis.models:
         own = [row.loops for row in result.limit_cycles if row.model == model]
         own += [row.loops for row in result.critical_wind_speeds if row.model == model]
-        of_loops = {n: wind_ranges(result, analysis, model, n).scaled(across) for n in sorted({*own, *analysis.loops})}
+        of_loops: dict[int, WindRanges] = {}
+        for loops in sorted({*own, *analysis.loops}):
+            ranges = wind_ranges(result, analysis, model, loops)
+            kept = violation_ranges(result, analysis, model, loops, ranges) if violating else ranges
+            of_loops[loops] = kept.scaled(across)
         if model is Model.FINITE_ELEMENT and not own:
             continue  # only its frequencies were asked for
         found |= {(model, n): ranges for n, ranges in of_loops.items()}
@@ -175,6 +196,7 @@ def _row(motion: Motion, label: _Label, exposure: _Exposure, samples: int) -> Ri
         probability_lowest=lowest,
         probability_highest=highest,
         violation_hours_a_year=None,
+        violation_hours_highest=None,
         violation_probability_a_year=None,
         samples=samples,
     )

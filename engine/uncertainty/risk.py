@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from engine.result import RiskRow
 from engine.risk.expectation import Motion, rows_over_samples
@@ -9,6 +10,7 @@ from engine.risk.winds import WindRanges
 from engine.spec import Climate
 from engine.uncertainty.outcomes import SampleOutcome, State
 
+_OF_CLEARANCES = ("violation_hours_a_year", "violation_hours_highest", "violation_probability_a_year")
 _NOTHING_KNOWN = WindRanges((), ((0.0, math.inf),))
 
 
@@ -32,7 +34,14 @@ def risk_over_samples(
         return tuple(alone)
     rows = rows_over_samples([_all_of(motions, ranges or {}) for ranges in possible], climate)
     sampled = {row.model for row in rows}
-    return (*rows, *(row for row in alone if row.model not in sampled))
+    own = {(row.model, row.loops, row.ice, row.thickness_m): row for row in alone}
+    kept = [_with_violations(row, own.get((row.model, row.loops, row.ice, row.thickness_m))) for row in rows]
+    return (*kept, *(row for row in alone if row.model not in sampled))
+
+
+def _with_violations(row: RiskRow, alone: RiskRow | None) -> RiskRow:
+    """Return a row with the violations of the line alone, because samples have no clearances."""
+    return row if alone is None else replace(row, **{name: getattr(alone, name) for name in _OF_CLEARANCES})
 
 
 def _all_of(motions: Mapping[Motion, None], ranges: Mapping[Motion, WindRanges]) -> dict[Motion, WindRanges]:

@@ -51,3 +51,13 @@ def test_a_sample_without_an_answer_is_unknown_and_an_impossible_one_left_out() 
     assert (row.hours_a_year, row.unknown_hours_a_year) == pytest.approx((20.0, 20.0))
     alone = weighed().risk
     assert risk_over_samples(alone, samples[1:], CLIMATE) == alone
+
+
+def test_violations_stay_those_of_the_line_alone() -> None:
+    (alone,) = [row for row in weighed().risk if row.loops == 1]
+    broken = replace(alone, violation_hours_a_year=3.0, violation_hours_highest=5.0)
+    moving = replace(without_answer(State.GALLOPS, 1), ranges={(Model.HYBRID, 1): WindRanges(((0.0, math.inf),), ())})
+    (row,) = risk_over_samples([broken], [moving], CLIMATE)
+    assert (row.hours_a_year, row.violation_hours_a_year, row.violation_hours_highest) == pytest.approx(
+        (40.0, 3.0, 5.0)
+    )
