@@ -200,6 +200,7 @@ ANALYSES = st.fixed_dictionaries(
         "harmonics": st.integers(1, 6),
         "static_twist": st.sampled_from([None, "neglected", "where_large", "solved"]),
         "device_effect": st.sampled_from(["neglected", "reported"]),
+        "risk": st.sampled_from([None, False]),
         "uncertainty": st.sampled_from([None, {"samples": 8, "seed": 2}]),
     },
 )
