@@ -66,14 +66,23 @@ def opened(lines: Lines, analysis: Mapping[str, Any]) -> Iterator[Upload]:
             yield Upload(file, headers, parameters)
         return
     with tempfile.SpooledTemporaryFile(_IN_MEMORY_BYTES) as spool:
-        to_csv = getattr(lines, "to_csv", None)
-        if to_csv is not None:
-            to_csv(spool, index=False)
+        frame: Any = lines if hasattr(lines, "to_csv") else None
+        if frame is not None:
+            _of_cells(frame).to_csv(spool, index=any(name is not None for name in frame.index.names))
             yield Upload(spool, {"Content-Type": _TYPES[".csv"]}, {"analysis": json.dumps(analysis)})
             return
         for document in _documents(lines, analysis):
             spool.write(json.dumps(document).encode() + b"\n")
         yield Upload(spool, {"Content-Type": _TYPES[".ndjson"]})
+
+
+def _of_cells(frame: Any) -> Any:
+    """Return a frame whose lists and objects, such as devices, are JSON as cells hold it."""
+    return frame.apply(lambda column: column.map(lambda cell: json.dumps(cell) if _is_nested(cell) else cell))
+
+
+def _is_nested(cell: object) -> bool:
+    return isinstance(cell, (list, dict))
 
 
 def frame(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":

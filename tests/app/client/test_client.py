@@ -1,4 +1,6 @@
+import csv
 import gzip
+import io
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +11,7 @@ import pandas as pd
 import pytest
 
 from app.client import Client, JobFailed, Refused, ServiceError
+from app.client.uploads import opened
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.schemas import Analysis, Line
@@ -87,18 +90,36 @@ def test_lines_are_sent_from_an_iterable_a_frame_or_a_file(client: Client, tmp_p
     (tmp_path / "lines.json").write_text(json.dumps({"lines": lines(3), "analysis": ANALYSIS}))
     frame = pd.json_normalize(lines(3))
     frame.to_csv(tmp_path / "lines.csv", index=False)
+    frame.map(lambda cell: json.dumps(cell) if isinstance(cell, list) else cell).to_excel(
+        tmp_path / "lines.xlsx", index=False
+    )
     batches = [
         client.submit_batch((line for line in lines(3)), ANALYSIS),
         client.submit_batch(frame, ANALYSIS),
         client.submit_batch(tmp_path / "lines.csv", ANALYSIS),
+        client.submit_batch(tmp_path / "lines.xlsx", ANALYSIS),
         *(client.submit_batch(tmp_path / f"lines.{kind}") for kind in ("ndjson", "ndjson.gz", "json")),
     ]
-    assert [(batch.lines.accepted, batch.errors) for batch in batches] == [(3, [])] * 6
+    assert [(batch.lines.accepted, batch.errors) for batch in batches] == [(3, [])] * 7
     assert client.batch(batches[0].id).lines.total == 3
     with pytest.raises(ValueError, match="contains its analysis"):
         client.submit_batch(tmp_path / "lines.ndjson", ANALYSIS)
     with pytest.raises(ValueError, match="must end in one of"):
-        client.submit_batch(tmp_path / "lines.xlsx")
+        client.submit_batch(tmp_path / "lines.ods")
+
+
+def test_a_frame_may_have_booleans_lists_gaps_and_an_index(client: Client) -> None:
+    first, second, third = lines(3)  # only one of them has devices
+    first["supports"] = {"left": {"dead_end": True}, "right": {"dead_end": False}}
+    second["devices"] = [{"type": "detuning_pendulum", "position_m": 40.0, "mass_kg": 12.0, "arm_m": 0.3}]
+    frame = pd.json_normalize([first, second, third])
+    frame["reference"] = ["a", "b", "c"]
+    with opened(frame.set_index("reference"), ANALYSIS) as upload:
+        upload.file.seek(0)
+        first_row, *_ = csv.DictReader(io.TextIOWrapper(upload.file, newline=""))
+    assert (first_row["reference"], first_row["supports.left.dead_end"]) == ("a", "True")
+    batch = client.submit_batch(frame.set_index("reference"), ANALYSIS)
+    assert (batch.lines.accepted, batch.errors) == (3, [])
 
 
 def test_an_atomic_batch_is_refused_whole(client: Client) -> None:
