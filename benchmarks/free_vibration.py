@@ -152,7 +152,10 @@ def released_shift(line: Line, loops: int, amplitude: float, periods: int = 24) 
     start = np.zeros((3, sine.size))
     start[TORSIONAL] = sine / abs(line.bundle.positions[0][1])
     shares = np.linalg.lstsq(model.shapes.reshape(len(model.shapes), -1).T, start.ravel(), rcond=None)[0]
-    large, small = (_released(model, scale * shares, natural, loops, periods) for scale in (amplitude, SMALL))
+    large, small = (
+        _released(model, np.asarray(scale * shares, dtype=np.float64), natural, loops, periods)
+        for scale in (amplitude, SMALL)
+    )
     return large / small - 1.0
 
 
