@@ -20,7 +20,7 @@ class PhaseModeRow:
 
     model: ModelColumn
     direction: Annotated[Direction, Column("Direction of the largest kinetic energy", "vertical")]
-    number: Annotated[int, Column("Number of the mode within its direction, from 1, by frequency", 1, unit="1")]
+    mode: Annotated[int, Column("Number of the mode within its direction, from 1, by frequency", 1, unit="1")]
     loops: Annotated[int, Column("Loops in the phase that moves most", 1, unit="1")]
     frequency_hz: Annotated[
         float | None, Column("Frequency; null where the static state is unstable", 0.4815, unit="Hz")

@@ -23,7 +23,7 @@ def phase_mode_rows(whole: AssembledLine, modes: NumberedModes, chosen: IntArray
         PhaseModeRow(
             model=Model.FINITE_ELEMENT,
             direction=DIRECTION_NAMES[modes.direction[mode]],
-            number=int(modes.number[mode]),
+            mode=int(modes.number[mode]),
             loops=int(loops[i]),
             frequency_hz=_frequency(float(modes.squares[mode])),
             phase=names[largest[i]],

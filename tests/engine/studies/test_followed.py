@@ -1,7 +1,9 @@
 """Cycles followed over a field of the line: against the analysis of each value alone, through folds, to Hopf points."""
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -128,6 +130,11 @@ def test_a_field_without_a_line_in_between_ends_the_branch() -> None:
     assert [len(result.followed_cycles) for result in found] == [1, 1, 0]
 
 
+def distance(one: Known, other: Known) -> float:
+    """Return the distance of the amplitudes of two cycles."""
+    return math.dist(one[2:5], other[2:5])
+
+
 def test_cycles_of_a_blown_out_span_are_read_back_from_vertical_and_horizontal() -> None:
     def blown(value: float) -> Line:
         return replace(source_line(1, torsional_ratio=value), wind=Wind(1.2929, blow_out=BlowOut(25.0, 1.2)))
@@ -136,10 +143,13 @@ def test_cycles_of_a_blown_out_span_are_read_back_from_vertical_and_horizontal()
     values = [0.2, 0.308]
     results = points(blown, values, asked)
     for result, alone in zip(followed(blown, values, results, asked), results, strict=True):
-        cycles = [row for row in alone.limit_cycles if row.kind == "periodic"]
-        assert len(cycles) > 0
-        for own, other in zip(cycles_of(result.followed_cycles), cycles_of(cycles), strict=True):
-            assert own[:-1] == pytest.approx(other[:-1], rel=5e-4)  # four harmonics more
+        cycles = cycles_of(row for row in alone.limit_cycles if row.kind == "periodic")
+        found = cycles_of(result.followed_cycles)  # also unstable ones that only the other value has a start for
+        assert 0 < len(cycles) <= len(found)
+        for cycle in cycles:
+            near = min(found, key=partial(distance, cycle))
+            assert near[:-1] == pytest.approx(cycle[:-1], rel=5e-4)  # four harmonics more
+            assert near[-1] == cycle[-1]
 
 
 def test_an_unexpanded_load_is_refused() -> None:

@@ -15,9 +15,9 @@ def test_rows_say_how_phases_move_and_frequencies_are_the_lowest_of_so_many_loop
     modes = all_modes(whole.assembly)
     rows = phase_mode_rows(whole, modes, modes_of_phases(whole, modes, (1,)))
     alike, against = rows[:2]
-    assert (alike.direction, alike.number, alike.loops, alike.phase) == ("vertical", 1, 1, "this")
+    assert (alike.direction, alike.mode, alike.loops, alike.phase) == ("vertical", 1, 1, "this")
     assert (alike.phase_shares, alike.phase_motion) == ("0.5000 0.5000", "1.000 1.000")
-    assert (against.number, against.loops, against.phase_motion) == (4, 2, "1.000 -1.000")
+    assert (against.mode, against.loops, against.phase_motion) == (4, 2, "1.000 -1.000")
     assert alike.frequency_hz == pytest.approx(0.48152, abs=1e-5)
     (one, two) = lowest_frequencies(rows, Analysis(loops=(1, 2)))
     assert one.vertical_hz == alike.frequency_hz
