@@ -16,6 +16,7 @@ from sqlalchemy import select, text
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.main import create_app
+from app.routes.own_documentation import OWN_TABLE_REQUESTS, SHEET
 from app.runtime.settings import Settings
 from app.security import keys
 from app.security.caller import Scope
@@ -76,7 +77,7 @@ def told(answer: httpx.Response, ids: Mapping[str, str]) -> str:
 
 
 def owned(guarded: Guarded, header: dict[str, str]) -> dict[str, str]:
-    """Make a finished job and a finished batch, one line of which failed, and return their ids."""
+    """Make a finished job, a finished batch, one line of which failed, and own rows, and return their ids."""
     client = guarded.client
     job = client.post("/v1/jobs", json=short_request(), headers=header).raise_for_status().json()["id"]
     run_job(guarded.settings, UUID(job))
@@ -86,7 +87,11 @@ def owned(guarded: Guarded, header: dict[str, str]) -> dict[str, str]:
     with guarded.sessions() as session:
         (chunk,) = session.scalars(select(Job.id).where(Job.batch_id == UUID(batch)))
     run_job(guarded.settings, chunk)
-    return {"job_id": job, "batch_id": batch}
+    sheet = {**header, "Content-Type": "text/csv"}
+    rows = client.post("/v1/conductors/own", content=SHEET.encode(), headers=sheet).raise_for_status().json()
+    (table,) = (request["value"] for request in OWN_TABLE_REQUESTS.values())
+    kept = client.post("/v1/aerodynamics/own", json=table, headers=header).raise_for_status().json()["id"]
+    return {"job_id": job, "batch_id": batch, "conductor_id": rows["conductors"][0]["id"], "table_id": kept}
 
 
 def test_another_owners_ids_are_as_unknown_as_any_on_every_route(guarded: Guarded) -> None:
@@ -105,7 +110,9 @@ def test_another_owners_ids_are_as_unknown_as_any_on_every_route(guarded: Guarde
         assert (theirs.status_code, unknown.status_code) == (404, 404), f"{method} {path}"
         assert told(theirs, ids) == told(unknown, nothing), f"{method} {path}"
         tried += 1
-    assert tried >= 10
+    assert tried >= 12
+    assert guarded.client.get("/v1/conductors/own", headers=mine).json()["conductors"]
+    assert guarded.client.get("/v1/aerodynamics/own", headers=mine).json()["tables"]
     assert [guarded.client.get(address, headers=mine).json() for address in addresses] == before
 
 
@@ -115,11 +122,12 @@ def test_lists_hold_the_owners_own_only(guarded: Guarded) -> None:
     theirs = service.submit_as(guarded.client, stranger)
     document = guarded.client.get("/openapi.json").json()
     lists = [path for method, path, _ in operations(document) if method == "GET" and "{" not in path]
-    assert {"/v1/jobs", "/v1/batches"} < set(lists)
+    of_owners = {"/v1/jobs", "/v1/batches", "/v1/conductors/own", "/v1/aerodynamics/own"}
+    assert of_owners < set(lists)
     for path in lists:
         said = {name: guarded.client.get(path, headers=header).text for name, header in (("a", mine), ("b", stranger))}
         assert not any(value in said["b"] for value in ids.values()), path
-        if path in {"/v1/jobs", "/v1/batches"}:
+        if path in of_owners:
             assert any(value in said["a"] for value in ids.values()), path
     listed = guarded.client.get("/v1/jobs", headers=stranger).json()["jobs"]
     assert [job["id"] for job in listed] == [theirs]
@@ -134,7 +142,7 @@ def test_two_keys_of_an_owner_see_the_same(guarded: Guarded) -> None:
 
 def test_every_route_but_the_open_ones_asks_for_a_key_and_says_so(guarded: Guarded) -> None:
     document = guarded.client.get("/openapi.json").json()
-    ids = {"job_id": str(uuid4()), "batch_id": str(uuid4())}
+    ids = {name: str(uuid4()) for name in ("job_id", "batch_id", "conductor_id", "table_id")}
     for method, path, operation in operations(document):
         answer = guarded.client.request(method, filled(path, ids))
         if path in OPEN:
