@@ -57,7 +57,7 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
                     points.append(item)
     except (ArithmeticError, ValueError) as error:
         end(f"the computation failed: {error}", FAILED)
-    result = _result(complete, points)
+    result = result_document(complete, points)
     if csv is not None:
         _write_tables(result, csv)
     if output is not None or as_json or not sys.stdout.isatty():
@@ -126,7 +126,8 @@ def ellipse(
         refuse(error.faults)
 
 
-def _result(request: Mapping[str, Any], points: Sequence["PointResult"]) -> Any:
+def result_document(request: Mapping[str, Any], points: Sequence["PointResult"]) -> Any:
+    """Return the result document of a request and its points, as the command prints it."""
     from dataclasses import asdict
 
     from app import convert

@@ -59,7 +59,8 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
     worst = evidence.moving[0] if evidence.moving else None
     tension = None if worst is None else _tension(result.tensions, worst)
     trust = _trust(evidence, tension, analysis)
-    gallops, sentence = weighed(result, evidence.gallops, _sentences(evidence, tension))
+    distance, kept = _smallest_clearance(result, evidence), _clearances_kept(result, evidence)
+    gallops, sentence = weighed(result, evidence.gallops, _sentences(evidence, tension, _closeness(distance, kept)))
     return VerdictRow(
         gallops=gallops,
         onset_m_per_s=evidence.onset,
@@ -68,8 +69,8 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
         vertical_peak_to_peak_m=None if worst is None else _doubled(worst.vertical_m),
         horizontal_peak_to_peak_m=None if worst is None else _doubled(worst.horizontal_m),
         tension_range_n=_range(tension),
-        clearance_m=_smallest_clearance(result, evidence),
-        clearance_ok=_clearances_kept(result, evidence),
+        clearance_m=distance,
+        clearance_ok=kept,
         ellipse_peak_to_peak_m=_ellipse(result, line),
         probability_gallops=None if samples is None else samples.probability,
         trust=trust,
@@ -154,12 +155,23 @@ def _doubled(amplitude: float | None) -> float | None:
     return None if amplitude is None else 2.0 * amplitude
 
 
-def _sentences(evidence: _Evidence, tension: TensionRow | None) -> list[str]:
+def _closeness(distance: float | None, kept: bool | None) -> str:
+    """Return how near the motions come to another phase, as a part of a sentence; empty where that is not known."""
+    if distance is None:
+        return ""
+    if distance <= 0.0:
+        return "; may touch the next phase"
+    if kept is False:
+        return f"; comes within {distance:.1f} m of the next phase, nearer than required"
+    return f"; keeps {distance:.1f} m to the next phase"
+
+
+def _sentences(evidence: _Evidence, tension: TensionRow | None, closeness: str) -> list[str]:
     if evidence.gallops == "no":
         return [_rest(evidence)]
     if evidence.gallops == "undecided":
         return ["Not decided.", *_reasons(evidence)]
-    texts = [_motion(evidence)]
+    texts = [_motion(evidence, closeness)]
     below = [row.wind_speed_m_per_s for row in evidence.moving if row.wind_speed_m_per_s < (evidence.onset or 0.0)]
     if below and evidence.loses_stability:
         texts.append(f"Once started, it goes on from {min(below):g} m/s.")
@@ -175,8 +187,8 @@ def _rest(evidence: _Evidence) -> str:
     return f"Stays at rest at the wind speeds asked for, up to {evidence.highest:g} m/s{later}."
 
 
-def _motion(evidence: _Evidence) -> str:
-    """Return from which wind the span gallops, and the worst motion."""
+def _motion(evidence: _Evidence, closeness: str) -> str:
+    """Return from which wind the span gallops, the worst motion, and what is left to the next phase."""
     if evidence.loses_stability:
         text = f"Gallops from {evidence.onset:.1f} m/s"
     elif evidence.moving:
@@ -188,7 +200,8 @@ def _motion(evidence: _Evidence) -> str:
         return f"{text}; how far was not found."
     worst = evidence.moving[0]
     size = _doubled(worst.vertical_m) or 0.0
-    return f"{text}; at {worst.wind_speed_m_per_s:g} m/s in {_in_words(worst)}, {_metres(size)} m peak to peak."
+    how_far = f"{_metres(size)} m peak to peak{closeness}"
+    return f"{text}; at {worst.wind_speed_m_per_s:g} m/s in {_in_words(worst)}, {how_far}."
 
 
 def _reasons(evidence: _Evidence) -> list[str]:

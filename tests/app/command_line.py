@@ -1,5 +1,7 @@
 """Runs the command line in tests."""
 
+import os
+import pty
 import subprocess
 import sys
 
@@ -16,3 +18,25 @@ def refused(*arguments: str, text: str | None = None) -> str:
     assert ended.stdout == ""
     assert "Traceback" not in ended.stderr
     return ended.stderr
+
+
+def on_a_terminal(*arguments: str) -> str:
+    """Return what a command prints on a terminal of its own, a hundred characters wide."""
+    ours, theirs = pty.openpty()
+    environment = {**os.environ, "COLUMNS": "100", "TERM": "dumb"}
+    command = [sys.executable, "-m", "app.cli", *arguments]
+    with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=subprocess.PIPE, env=environment) as running:
+        os.close(theirs)
+        printed = b""
+        while piece := _read(ours):
+            printed += piece
+        assert running.wait(60.0) == 0, running.stderr.read() if running.stderr else ""
+    os.close(ours)
+    return printed.decode().replace("\r\n", "\n")
+
+
+def _read(end: int) -> bytes:
+    try:
+        return os.read(end, 65536)
+    except OSError:  # the other end is closed
+        return b""

@@ -1,39 +1,15 @@
 """What `galloping analyse` prints for a person."""
 
 import json
-import os
-import pty
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from app.reference.source_lines import example
-from tests.app.command_line import galloping
+from tests.app.command_line import galloping, on_a_terminal
+from tests.app.known_documents import CONTRACT
 from tests.app.lines import SHORT, changed
 from tests.documents import short_request
-
-
-def on_a_terminal(*arguments: str) -> str:
-    """Return what a command prints on a terminal of its own."""
-    ours, theirs = pty.openpty()
-    environment = {**os.environ, "COLUMNS": "100", "TERM": "dumb"}
-    command = [sys.executable, "-m", "app.cli", *arguments]
-    with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=subprocess.PIPE, env=environment) as running:
-        os.close(theirs)
-        printed = b""
-        while True:
-            try:
-                piece = os.read(ours, 65536)
-            except OSError:  # the other end is closed
-                break
-            if not piece:
-                break
-            printed += piece
-        assert running.wait(60.0) == 0, running.stderr.read() if running.stderr else ""
-    os.close(ours)
-    return printed.decode().replace("\r\n", "\n")
 
 
 @pytest.fixture
@@ -94,3 +70,19 @@ def test_an_output_that_cannot_be_written_is_noticed_before_the_work(request_fil
     assert ended.returncode == 2
     assert "missing" in ended.stderr
     assert "No such file or directory" in ended.stderr
+
+
+def test_distances_and_weights_stand_below_the_motions(tmp_path: Path) -> None:
+    phases = [{"name": "top", "y_m": 7.0, "z_m": 0.0}]
+    line = {**CONTRACT, "phases": phases, "required_clearance_m": 5.9}
+    analysis = {"models": ["hybrid"], "loops": [1], "wind_speeds_m_per_s": [6.0]}
+    path = tmp_path / "known.json"
+    path.write_text(json.dumps({"line": line, "analysis": analysis}))
+    result = json.loads(galloping("analyse", str(path)).stdout)
+    printed = on_a_terminal("analyse", str(path))
+    computed = min(row["distance_m"] for row in result["clearances"] if row["method"] == "computed")
+    (row,) = [text.split() for text in printed.splitlines() if "computed" in text]
+    assert row == ["this", "top", "computed", f"{computed:.2f}", "5.90", "yes" if computed > 5.9 else "no"]
+    weighty = {row["path"] for row in result["sensitivities"] if (row["onset_total_lowest"] or 0.0) >= 0.01}
+    assert ("What the assumed values weigh" in printed) == bool(weighty)
+    assert {row["path"] for row in result["sensitivities"] if f" {row['path']} " in printed} == weighty

@@ -8,7 +8,7 @@ import pytest
 from engine.outcome import Outcome, Stability
 from engine.report.verdict import verdict
 from engine.result import Result, VerdictRow
-from engine.spec import AerodynamicModel, Analysis, Check, Line, LongitudinalInertia, Model, Stretching
+from engine.spec import AerodynamicModel, Analysis, Check, Line, LongitudinalInertia, Model, Phase, Stretching
 from tests.builders import only, run, source_line
 
 ASKED = replace(
@@ -134,3 +134,11 @@ def test_a_motion_below_the_onset_is_named() -> None:
     assert alone.sentence.startswith(
         "Can gallop from 4 m/s on if something starts it, though the span at rest is stable"
     )
+
+
+def test_phases_that_may_touch_are_said() -> None:
+    line = replace(twin(), phases=(Phase("top", y=0.5, z=0.0),))
+    row = run(line, ASKED).verdict[0]
+    assert row.clearance_m is not None
+    assert row.clearance_m < 0.0
+    assert "m peak to peak; may touch the next phase." in row.sentence

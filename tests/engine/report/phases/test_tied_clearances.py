@@ -64,3 +64,4 @@ def test_the_table_has_every_motion_and_pair() -> None:
     assert against.margin_m == pytest.approx((against.distance_m or 0.0) - 6.9)
     assert result.verdict[0].clearance_m == against.distance_m
     assert result.verdict[0].clearance_ok is False
+    assert "of the next phase, nearer than required" in result.verdict[0].sentence
