@@ -101,8 +101,7 @@ def _weight(row: Row) -> dict[str, str]:
         "assumed": row["path"],
         "share": f"{row['onset_total']:.2f}",
         "95 %": f"{row['onset_total_lowest']:.2f} to {row['onset_total_highest']:.2f}",
-        "range": f"{row['lowest']:.3g} to {row['highest']:.3g}",
-        "onset m/s": f"{_speed(row['onset_at_lowest_m_per_s'])} to {_speed(row['onset_at_highest_m_per_s'])}",
+        "onset m/s over its range": f"{_speed(row['onset_at_lowest_m_per_s'])} to {_speed(row['onset_at_highest_m_per_s'])}",
     }
 
 
