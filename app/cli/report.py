@@ -23,7 +23,12 @@ def print_report(result: Mapping[str, Any]) -> None:
     moving = [row for row in result["limit_cycles"] if row["stability"] == "stable" and row["kind"] != "equilibrium"]
     _print("Stable motions, peak to peak [m, rad]", axes, moving, _motion)
     _print("Smallest distance between phases [m], by the motions and by design ellipses", axes, _nearest(result), _gap)
-    _print("What the assumed values weigh, share of the scatter of the onset", axes, _heaviest(result), _weight)
+    _print(
+        "What the assumed values weigh: share of the scatter of the onset, onset at both ends",
+        axes,
+        _heaviest(result),
+        _weight,
+    )
     for text in _notes(result):
         typer.echo(text)
 
@@ -101,7 +106,7 @@ def _weight(row: Row) -> dict[str, str]:
         "assumed": row["path"],
         "share": f"{row['onset_total']:.2f}",
         "95 %": f"{row['onset_total_lowest']:.2f} to {row['onset_total_highest']:.2f}",
-        "onset m/s over its range": f"{_speed(row['onset_at_lowest_m_per_s'])} to {_speed(row['onset_at_highest_m_per_s'])}",
+        "onset m/s": f"{_speed(row['onset_at_lowest_m_per_s'])} to {_speed(row['onset_at_highest_m_per_s'])}",
     }
 
 
