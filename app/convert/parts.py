@@ -11,6 +11,7 @@ from enum import StrEnum
 from typing import Any, TypeVar
 
 from app import schemas
+from app.schemas.known import KnownSpan
 from app.schemas.placement import Range
 from engine import spec
 from engine.outcome import Fault, InvalidSpec, require
@@ -57,8 +58,8 @@ def bundle(part: schemas.Bundle) -> spec.Bundle:
     return spec.Bundle.regular(part.subconductors or 1, part.radius or 0.0, orientation, section)
 
 
-def span(part: schemas.Span) -> spec.Span:
-    """Build the span."""
+def span(part: schemas.Span | KnownSpan) -> spec.Span:
+    """Build the span from its iced tension, in either form of a line."""
     return spec.Span(
         length=part.length,
         horizontal_tension=part.horizontal_tension,

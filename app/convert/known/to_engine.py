@@ -143,14 +143,7 @@ def _bundle(part: said.KnownBundle) -> spec.Bundle:
 
 def _span(part: said.KnownSpan) -> known.KnownSpan | spec.Span:
     if part.is_iced:
-        return spec.Span(
-            length=part.length,
-            horizontal_tension=part.horizontal_tension,
-            catenary_parameter=part.catenary_parameter,
-            sag=part.sag,
-            elements=part.elements,
-            level_difference=part.level_difference,
-        )
+        return parts.span(part)
     state = part.everyday
     everyday = None
     if state is not None:
