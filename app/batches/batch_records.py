@@ -157,9 +157,9 @@ def resubmit(session: Session, caller: Caller, batch_id: UUID, chunk_lines: int)
 def lines_of_chunk(session: Session, job_id: UUID, batch_id: UUID) -> tuple[dict[str, Any], list[NumberedLine]]:
     """Return the analysis of the batch and the numbered lines of a chunk, for a worker."""
     analysis = session.scalars(select(Batch.analysis).where(Batch.id == batch_id)).one()
-    statement = select(BatchItem.number, BatchItem.document).where(BatchItem.chunk_id == job_id)
+    statement = select(BatchItem.number, BatchItem.document, BatchItem.known).where(BatchItem.chunk_id == job_id)
     rows = session.execute(statement.order_by(BatchItem.number))
-    return analysis, [NumberedLine(number, document or {}) for number, document in rows]
+    return analysis, [NumberedLine(number, document or {}, known) for number, document, known in rows]
 
 
 def _of(owner: str, batch_id: UUID) -> Select[Batch]:

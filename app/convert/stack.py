@@ -1,20 +1,24 @@
 """Run many lines under one analysis, in stacks of the engine, with one point for each line."""
 
 import logging
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from pydantic import ValidationError
 
 from app import schemas
+from app.convert import parts
 from app.convert.assemble import SoundParts, gather
 from app.convert.check import request_faults, with_further_faults
+from app.convert.known import known_of_document
 from app.convert.run import Advance, PointResult, failed_point, point_results
 from app.schemas.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.outcome import InvalidSpec
-from engine.progress import finished
+from engine.progress import Progress, finished, translated
+from engine.result import Result
 
 STACK = 128  # lines computed together: fewer share too little work, more gain nothing
 _LINE, _ANALYSIS = "/line", "/analysis"
@@ -39,16 +43,21 @@ _FINITE_ELEMENT_DIRECT_SECONDS = (45.0, 1.5)
 _FULL_MODES_SECONDS = 0.003
 _STATIC_TWIST_SECONDS = 0.003
 _COMPETITION_SECONDS = 0.001  # a cycle
+_ENDS_OF_RANGES = 30  # lines beside the samples of a line: two for each value that is assumed
 
 _logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class NumberedLine:
-    """A line document, as `read_line` accepts it, and its number in the batch."""
+    """A line document, as `read_line` accepts it, and its number in the batch.
+
+    known: what was said of it in an engineer's form, as `explicit_line` gives it; None for an explicit one.
+    """
 
     number: int
     document: Mapping[str, object]
+    known: Mapping[str, Any] | None = None
 
 
 def read_analysis(document: object) -> schemas.Analysis:
@@ -105,7 +114,10 @@ def seconds_a_line(analysis: schemas.Analysis) -> float:
         cost += _STATIC_TWIST_SECONDS
     if analysis.loop_competition == "checked":
         cost += _COMPETITION_SECONDS * len(analysis.loops) * winds
-    return 2.0 * cost if analysis.device_effect == "reported" else cost
+    if analysis.device_effect == "reported":
+        cost *= 2.0
+    samples = 0 if analysis.uncertainty is None else analysis.uncertainty.samples
+    return cost + (samples + _ENDS_OF_RANGES if samples else 0) * len(analysis.loops) * motions(_HYBRID_SECONDS[load])
 
 
 def _load(analysis: schemas.Analysis) -> str:
@@ -139,6 +151,7 @@ def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> 
         If the analysis does not pass its schema.
     """
     options = schemas.Analysis.model_validate(analysis)
+    said = {line.number: line.known for line in lines if line.known is not None}
     done = 0
     made: list[_Made] = []
     for line in lines:
@@ -148,10 +161,18 @@ def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> 
             yield failed_point(error, line.number, _axes(line.number))
             done += 1
     for stack in _stacks(made):
-        yield Advance(done / len(lines), f"lines {done + 1} to {done + len(stack)} of {len(lines)}")
-        yield from _stack_results(stack)
+        place = f"lines {done + 1} to {done + len(stack)} of {len(lines)}"
+        yield Advance(done / len(lines), place)
+        solved = _solved(stack)
+        told = _told(stack, solved, said, options)
+        solved = yield from translated(told, partial(_within, place, done / len(lines), len(stack) / len(lines)))
+        yield from _as_points(stack, solved)
         done += len(stack)
     yield Advance(1.0, "done")
+
+
+def _within(place: str, before: float, share: float, step: Progress) -> Advance:
+    return Advance(before + share * step.fraction, f"{place}: {step.step}")
 
 
 _Made = tuple[int, spec.Line, spec.Analysis]
@@ -174,21 +195,58 @@ def _specification(line: NumberedLine, options: schemas.Analysis) -> tuple[spec.
     return made, analysis
 
 
-def _stack_results(stack: Sequence[_Made]) -> Iterator[PointResult]:
+def _solved(stack: Sequence[_Made]) -> list[Result | Exception]:
     """Run a stack; if it fails, run its lines one by one, so that only the wrong line fails."""
     from engine.analysis import analyse_stack  # noqa: PLC0415 - the API and `galloping --help` need no solver
 
     try:
-        results = finished(analyse_stack([line for _, line, _ in stack], stack[0][2]))
+        return list(finished(analyse_stack([line for _, line, _ in stack], stack[0][2])))
     except (ArithmeticError, ValueError, LookupError, TypeError) as error:
         if len(stack) > 1:
-            for single in stack:
-                yield from _stack_results([single])
-            return
-        yield failed_point(_for_owner(error), stack[0][0], _axes(stack[0][0]))
-        return
-    points = [(number, _axes(number)) for number, _, _ in stack]
-    yield from point_results(points, [line for _, line, _ in stack], results)
+            return [result for single in stack for result in _solved([single])]
+        return [_for_owner(error)]
+
+
+def _told(
+    stack: Sequence[_Made],
+    solved: Sequence[Result | Exception],
+    said: Mapping[int, Mapping[str, Any]],
+    options: schemas.Analysis,
+) -> Generator[Progress, None, list[Result | Exception]]:
+    """Return results with what is assumed of lines in engineers' forms, and with samples of it if these are asked."""
+    told = list(solved)
+    if said.keys().isdisjoint(number for number, _, _ in stack):
+        return told
+    from app.convert.known.samples import with_what_is_known  # noqa: PLC0415 - explicit lines need no estimates
+
+    asked = None if options.uncertainty is None else parts.uncertainty(options.uncertainty)
+    for i, (result, (number, line, analysis)) in enumerate(zip(solved, stack, strict=True)):
+        known = said.get(number)
+        if known is None or isinstance(result, Exception):
+            continue
+        steps = with_what_is_known(result, line, analysis, known_of_document(known), asked)
+        into = partial(_share_of_stack, i, len(stack))
+        try:
+            told[i] = yield from translated(steps, into)
+        except (ArithmeticError, ValueError, LookupError, TypeError) as error:
+            told[i] = _for_owner(error)
+    return told
+
+
+def _share_of_stack(place: int, lines: int, step: Progress) -> Progress:
+    return Progress((place + step.fraction) / lines, step.step)
+
+
+def _as_points(stack: Sequence[_Made], solved: Sequence[Result | Exception]) -> Iterator[PointResult]:
+    good: list[tuple[_Made, Result]] = []
+    for made, result in zip(stack, solved, strict=True):
+        if isinstance(result, Exception):
+            yield failed_point(result, made[0], _axes(made[0]))
+        else:
+            good.append((made, result))
+    points = [(number, _axes(number)) for (number, _, _), _ in good]
+    if points:
+        yield from point_results(points, [line for (_, line, _), _ in good], [result for _, result in good])
 
 
 def _for_owner(error: Exception) -> Exception:

@@ -111,19 +111,25 @@ def hash_of(owner: str, document: Mapping[str, Any]) -> str | None:
 def hashes(owner: str, analysis: Mapping[str, Any], lines: Sequence[NumberedLine]) -> dict[int, str]:
     """Return the hash of each line's input by the number of the line, labels ignored."""
     of = _hashing(owner, analysis)
-    return {line.number: of(line.document) for line in lines}
+    return {line.number: of(line.document, line.known) for line in lines}
 
 
-def _hashing(owner: str, analysis: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], str]:
+def _hashing(owner: str, analysis: Mapping[str, Any]) -> Callable[..., str]:
     common = hashlib.sha256(orjson.dumps([owner, analysis], option=orjson.OPT_SORT_KEYS))
 
-    def of(line: Mapping[str, Any]) -> str:
-        unlabelled = {name: value for name, value in line.items() if name not in job_records.LABELS}
+    def of(line: Mapping[str, Any], known: Mapping[str, Any] | None = None) -> str:
         whole = common.copy()
-        whole.update(orjson.dumps(unlabelled, option=orjson.OPT_SORT_KEYS))
+        whole.update(orjson.dumps(_unlabelled(line), option=orjson.OPT_SORT_KEYS))
+        if known is not None:  # the same line has other results where they list what is assumed
+            said = {**known, "line": _unlabelled(known["line"])}
+            whole.update(orjson.dumps(said, option=orjson.OPT_SORT_KEYS))
         return whole.hexdigest()
 
     return of
+
+
+def _unlabelled(line: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in line.items() if name not in job_records.LABELS}
 
 
 def _usable(engine_version: str) -> tuple[ColumnElement[bool], ...]:

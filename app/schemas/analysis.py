@@ -191,7 +191,8 @@ class Analysis(Document):
     uncertainty: Uncertainty | None = Field(
         default=None,
         description="Samples of the assumed values of a line as engineers know it, for probabilities and for the "
-        "assumption that decides; null: 64 samples. Only for a line by itself: none in a study, a placement or a batch",
+        "assumption that decides; null: 64 samples of a line by itself, none in a batch. Studies and placements have "
+        "none",
         examples=[{"samples": 64, "seed": 1}],
     )
 

@@ -32,6 +32,7 @@ class Batch(Base):
 class BatchItem(Base):
     """One line of a batch: its document and its chunk, or its faults if it was rejected.
 
+    known: what was said of a line in an engineer's form, with the own rows that it names; document is what follows.
     chunk_id has no foreign key: lines are stored as they arrive, their chunks all together at the end.
     """
 
@@ -49,3 +50,4 @@ class BatchItem(Base):
     asset_id: Mapped[str | None] = mapped_column(Text)
     document: Mapped[dict[str, Any] | None]
     faults: Mapped[list[dict[str, str]] | None]
+    known: Mapped[dict[str, Any] | None]

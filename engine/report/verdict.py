@@ -70,6 +70,7 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
         horizontal_peak_to_peak_m=None if worst is None else _doubled(worst.horizontal_m),
         tension_range_n=_range(tension),
         clearance_m=distance,
+        clearance_margin_m=_smallest_margin(result, evidence),
         clearance_ok=kept,
         ellipse_peak_to_peak_m=_ellipse(result, line),
         probability_gallops=None if samples is None else samples.probability,
@@ -140,6 +141,11 @@ def _clearances(result: Result, evidence: _Evidence) -> list[PhaseClearanceRow]:
 
 def _smallest_clearance(result: Result, evidence: _Evidence) -> float | None:
     known = [row.distance_m for row in _clearances(result, evidence) if row.distance_m is not None]
+    return min(known, default=None)
+
+
+def _smallest_margin(result: Result, evidence: _Evidence) -> float | None:
+    known = [row.margin_m for row in _clearances(result, evidence) if row.margin_m is not None]
     return min(known, default=None)
 
 

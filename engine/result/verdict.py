@@ -45,6 +45,10 @@ class VerdictRow:
     clearance_m: Annotated[
         float | None, Column("Smallest distance to another phase; null where none is given", None, unit="m")
     ]
+    clearance_margin_m: Annotated[
+        float | None,
+        Column("Smallest distance less the required one, of all phases; null where it is not known", None, unit="m"),
+    ]
     clearance_ok: Annotated[
         bool | None, Column("Whether that distance is the required one or more; null where it is not known", None)
     ]

@@ -76,10 +76,19 @@ def analyse_with_samples(
     if not unknowns.inputs or asked.samples == 0:
         return (yield from analyse(line, analysis))
     result = yield from translated(analyse(line, analysis), _before)
+    return (yield from translated(with_samples(result, line, analysis, unknowns, asked), _after))
+
+
+def with_samples(
+    result: Result, line: Line, analysis: Analysis, unknowns: Unknowns, asked: Uncertainty
+) -> Generator[Progress, None, Result]:
+    """Analyse the samples of what is assumed of a line whose own result is known, and return it with their tables."""
+    if not unknowns.inputs or asked.samples == 0:
+        return result
     samples = sobol_samples(unknowns.inputs, asked.samples, asked.seed)
     chosen = [*samples.chosen(), *chain.from_iterable(ends(samples.inputs))]
     of_line = replace(analysis, risk=analysis.risk and line.climate is not None)
-    found = yield from translated(outcomes(chosen, unknowns.line_of, of_line), _after)
+    found = yield from outcomes(chosen, unknowns.line_of, of_line)
     of_samples, at_ends = found[: asked.samples], found[asked.samples :]
     winds = sorted(set(analysis.wind_speeds))
     weighed = replace(

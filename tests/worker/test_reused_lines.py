@@ -9,6 +9,7 @@ import pytest
 from sqlalchemy import event, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
+from app import convert
 from app.convert import ENGINE_VERSION
 from app.jobs import reuse
 from app.reference.source_lines import example
@@ -17,11 +18,13 @@ from app.security import keys
 from app.security.caller import LOCAL, Scope
 from app.tables import PointRow
 from tests.app import service
+from tests.app.known_documents import CONTRACT
 from tests.app.lines import SHORT, changed
 from tests.documents import STRANGER
 from tests.servers import wait_until
 
 TWIN = example("c11-twin")
+KNOWN = {**CONTRACT, "phases": CONTRACT["phases"][:1]}
 LINES = [{**changed("span.length_m", 100.0 + number, TWIN), "reference": f"r{number}"} for number in range(4)]
 
 
@@ -180,3 +183,26 @@ def test_a_job_of_another_owner_is_told_nothing_of_lines(
     client.headers["Authorization"] = f"Bearer {key}"
     wait_until(lambda: client.get("/v1/jobs").status_code == 200, what="the key")
     assert client.post("/v1/jobs", json=single(LINES[0])).json()["status"] == "accepted"
+
+
+def test_lines_in_engineers_forms_keep_what_is_assumed_of_them(client: httpx.Client, settings: Settings) -> None:
+    explicit = convert.resolve_document(KNOWN)["line"]
+    lines = [{**KNOWN, "name": "as known", "reference": "known"}, {**explicit, "reference": "explicit"}]
+    batch = finished(client, settings, lines, uncertainty={"samples": 16})
+    known, spelled = told(client, batch)
+    assert known["assumptions"] == convert.resolve_document(KNOWN)["assumptions"]
+    assert spelled["assumptions"] == []
+    assert known["limit_cycles"] == spelled["limit_cycles"]
+    table = client.get(f"/v1/batches/{batch['id']}/results?table=assumptions&format=csv").text.splitlines()
+    assert [row.split(",")[:2] for row in table[1:]] == [["1", "known"]] * len(known["assumptions"])
+    (verdict,) = known["verdict"]
+    summary = client.get(f"/v1/batches/{batch['id']}/results?table=summary&format=ndjson").text.splitlines()
+    row = json.loads(summary[0])
+    asked = ("gallops", "onset_m_per_s", "vertical_peak_to_peak_m", "clearance_margin_m", "what_decides")
+    assert row["name"] == "as known"
+    assert {name: row[name] for name in asked} == {name: verdict[name] for name in asked}
+    assert None not in {name: row[name] for name in asked if name != "what_decides"}.values()
+    again = finished(client, settings, [{**KNOWN, "name": "another"}, explicit], uncertainty={"samples": 16})
+    assert again["lines"]["reused"] == 2
+    assert [line["assumptions"] for line in told(client, again)] == [known["assumptions"], []]
+    assert finished(client, settings, [KNOWN], uncertainty={"samples": 8})["lines"]["reused"] == 0

@@ -122,12 +122,13 @@ def _item(draft: _Draft, document: object) -> dict[str, Any]:
     draft.taken += 1
     reference, faults = None, []
     row = document.row if isinstance(document, SheetLine) else None
-    line: schemas.Line | None = None
+    line, known = None, None
     try:
         reference, fields = _split(document.document if isinstance(document, SheetLine) else document)
         if isinstance(document, SheetLine) and document.faults:
             raise BadInput(document.faults)
-        line = convert.read_line(convert.explicit_line(fields, draft.own), draft.analysis)
+        explicit, known = convert.explicit_line(fields, draft.own)
+        line = convert.read_line(explicit, draft.analysis)
     except BadInput as error:
         faults = list(error.faults[:_FAULTS_A_LINE])
     if line is None:
@@ -141,6 +142,7 @@ def _item(draft: _Draft, document: object) -> dict[str, Any]:
         "reference": reference,
         "asset_id": line.asset_id if line is not None else None,
         "document": line.model_dump(mode="json", by_alias=True) if line is not None else None,
+        "known": known if line is not None else None,
         "faults": None
         if line is not None
         else [{"row": row, "pointer": fault.pointer, "code": fault.code, "detail": fault.detail} for fault in faults],

@@ -58,15 +58,26 @@ def is_known_form(line: object) -> bool:
     )
 
 
-def explicit_line(line: object, own: OwnRows = _NO_OWN_ROWS) -> Any:
+def explicit_line(line: Any, own: OwnRows = _NO_OWN_ROWS) -> tuple[Any, dict[str, Any] | None]:
     """Return a line document as it is, or resolved if it has a form that the explicit line has not.
+
+    Returns
+    -------
+    line : any
+        Whoever reads it checks it as a whole.
+    known : dict or None
+        What was said of a line that was resolved, with the own rows that it names.
 
     Raises
     ------
     BadInput
-        As in `resolve_document`.
+        With every fault of the forms and of the parts.
     """
-    return resolve_document(line, own)["line"] if is_known_form(line) else line
+    if not is_known_form(line):
+        return line, None
+    from app.convert.known.to_document import explicit_document  # noqa: PLC0415 - the API needs no numerics to start
+
+    return explicit_document(_known_line(line), own), {"line": line, **own.named_in(line)}
 
 
 def explicit_request(document: Any, own: OwnRows = _NO_OWN_ROWS) -> Any:
@@ -122,11 +133,14 @@ def _read(known: Mapping[str, Any]) -> tuple[KnownLine, OwnRows]:
 
 def known_of(request: JobRequest) -> "EngineLine | None":
     """Return the engine's line of what is known, from a request that was resolved; None for an explicit one."""
-    if request.known is None:
-        return None
+    return None if request.known is None else known_of_document(request.known)
+
+
+def known_of_document(known: Mapping[str, Any]) -> "EngineLine":
+    """Return the engine's line of what is known, from a document that `explicit_line` gave."""
     from app.convert.known.to_engine import known_line  # noqa: PLC0415 - the API needs no numerics to start
 
-    return known_line(*_read(request.known))
+    return known_line(*_read(known))
 
 
 def resolve_document(document: object, own: OwnRows = _NO_OWN_ROWS) -> dict[str, Any]:
@@ -137,11 +151,14 @@ def resolve_document(document: object, own: OwnRows = _NO_OWN_ROWS) -> dict[str,
     BadInput
         With every fault of the schema, else as in `resolve_line`.
     """
+    return resolve_line(_known_line(document), own)
+
+
+def _known_line(document: object) -> KnownLine:
     try:
-        line = KnownLine.model_validate(document)
+        return KnownLine.model_validate(document)
     except ValidationError as error:
         raise BadInput(faults_of(error.errors(include_url=False))) from error
-    return resolve_line(line, own)
 
 
 def resolve_line(line: KnownLine, own: OwnRows = _NO_OWN_ROWS) -> dict[str, Any]:

@@ -3,14 +3,14 @@
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import replace
 
-from app.convert.known.to_document import document_number, document_path
+from app.convert.known.to_document import document_number, document_path, result_rows
 from engine import spec
 from engine.known.description import KnownLine
 from engine.known.provenance import Assumption
 from engine.known.resolve import resolve
 from engine.progress import Progress
 from engine.result import Result, SensitivityRow
-from engine.uncertainty.weighing import Unknowns, analyse_with_samples, intervals
+from engine.uncertainty.weighing import Unknowns, analyse_with_samples, intervals, with_samples
 
 
 def analyse_known(
@@ -32,12 +32,27 @@ def analyse_known(
         With the document's names and units of the assumed values.
     """
     assumptions = resolve(known).assumptions
+    steps = analyse_with_samples(line, analysis, _unknowns(known, assumptions, analysis), asked)
+    return _in_document_names((yield from steps), assumptions)
 
+
+def with_what_is_known(
+    result: Result, line: spec.Line, analysis: spec.Analysis, known: KnownLine, asked: spec.Uncertainty | None
+) -> Generator[Progress, None, Result]:
+    """Return the finished result of a line with its assumptions and, where samples are asked for, their tables."""
+    assumptions = resolve(known).assumptions
+    listed = replace(result, assumptions=result_rows(assumptions))
+    if asked is None or asked.samples == 0:
+        return listed
+    steps = with_samples(listed, line, analysis, _unknowns(known, assumptions, analysis), asked)
+    return _in_document_names((yield from steps), assumptions)
+
+
+def _unknowns(known: KnownLine, assumptions: Sequence[Assumption], analysis: spec.Analysis) -> Unknowns:
     def line_of(chosen: Mapping[str, float]) -> spec.Line:
         return spec.with_section(resolve(known, chosen).line, analysis.physics)
 
-    unknowns = Unknowns(intervals(assumptions), line_of)
-    return _in_document_names((yield from analyse_with_samples(line, analysis, unknowns, asked)), assumptions)
+    return Unknowns(intervals(assumptions), line_of)
 
 
 def _in_document_names(result: Result, assumptions: Sequence[Assumption]) -> Result:

@@ -1,7 +1,7 @@
 """Resolve a line as an engineer knows it: the explicit line document, and the origin of every value."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, get_args
 
@@ -55,10 +55,7 @@ def resolved_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
     BadInput
         With every fault of the parts, or of the line as a whole.
     """
-    try:
-        resolved = resolve(known_line(line, own))
-    except InvalidSpec as error:
-        raise BadInput([to_pointer(fault, line) for fault in error.faults]) from error
+    resolved = _resolved(line, own)
     explicit = _explicit(line, resolved)
     faults = _faults_of_whole(explicit)
     if faults:
@@ -70,6 +67,24 @@ def resolved_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
         "doubts": doubts_of(resolved.line.ice.aerodynamics),
         "kept": line.model_dump(mode="json", by_alias=True, include=set(_KEPT), exclude_defaults=True),
     }
+
+
+def explicit_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
+    """Return the explicit line of what is known, whose rules as a whole are not checked yet.
+
+    Raises
+    ------
+    BadInput
+        With every fault of the parts.
+    """
+    return _explicit(line, _resolved(line, own))
+
+
+def _resolved(line: said.KnownLine, own: OwnRows) -> Resolved:
+    try:
+        return resolve(known_line(line, own))
+    except InvalidSpec as error:
+        raise BadInput([to_pointer(fault, line) for fault in error.faults]) from error
 
 
 def _faults_of_whole(explicit: Mapping[str, Any]) -> list[Fault]:
@@ -195,7 +210,12 @@ def _row(row: Assumption) -> dict[str, Any]:
 
 def assumption_rows(line: known.KnownLine) -> tuple[AssumptionRow, ...]:
     """Return the rows of a result about where the values of a line came from."""
-    return tuple(AssumptionRow(**_row(row)) for row in resolve(line).assumptions)
+    return result_rows(resolve(line).assumptions)
+
+
+def result_rows(assumptions: Iterable[Assumption]) -> tuple[AssumptionRow, ...]:
+    """Return assumptions of the engine as rows of a result, in the names and units of documents."""
+    return tuple(AssumptionRow(**_row(row)) for row in assumptions)
 
 
 def document_number(value: float, unit: str) -> float:

@@ -19,7 +19,9 @@ def test_forms_beyond_the_explicit_line_are_told(name: str) -> None:
 
 def test_an_explicit_line_stays_the_object_that_it_is() -> None:
     line = example("c11-twin")
-    assert convert.explicit_line(line) is line
+    found, known = convert.explicit_line(line)
+    assert found is line
+    assert known is None
     assert convert.explicit_request({"line": line})["line"] is line
     assert convert.explicit_request([1]) == [1]
 

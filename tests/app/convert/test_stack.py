@@ -11,9 +11,11 @@ from app.schemas.faults import BadInput
 from engine import spec
 from engine.progress import Progress
 from engine.result import Result
+from tests.app.known_documents import CONTRACT
 from tests.app.lines import FULL_LINE, SHORT, changed, close
 
 TWIN = example("c11-twin")
+KNOWN = {**CONTRACT, "phases": []}
 
 
 def results(lines: Sequence[NumberedLine], analysis: dict[str, Any] | None = None) -> dict[int, PointResult]:
@@ -181,3 +183,35 @@ def test_estimated_cost_knows_what_physics_costs() -> None:
     assert table > unexpanded
     assert seconds_a_line(read_analysis({**asked, "physics": "source", "stretching": "included"})) == full
     assert seconds_a_line(read_analysis({**asked, "closure": "published"})) == source
+
+
+def numbered(number: int, line: dict[str, Any]) -> NumberedLine:
+    explicit, known = convert.explicit_line(line)
+    return NumberedLine(number, read_line(explicit, read_analysis(SHORT)).model_dump(by_alias=True), known)
+
+
+def test_lines_in_engineers_forms_list_what_is_assumed_and_have_no_samples_unless_asked() -> None:
+    found = results([numbered(1, KNOWN), numbered(2, TWIN), numbered(3, changed("span.length_m", 280.0, KNOWN))])
+    assert found[1].tables["assumptions"] == convert.resolve_document(KNOWN)["assumptions"]
+    assert found[2].tables["assumptions"] == []
+    lengths = [row["value"] for row in found[3].tables["assumptions"] if row["path"] == "span.length_m"]
+    assert lengths == [280.0]
+    assert [point.tables["uncertainty"] for point in found.values()] == [[], [], []]
+
+
+def test_samples_that_a_batch_asks_for_are_those_of_the_line_alone() -> None:
+    asked = {**SHORT, "uncertainty": {"samples": 16, "seed": 5}}
+    found = results([numbered(1, KNOWN), numbered(2, TWIN)], asked)
+    request = convert.read(convert.explicit_request({"line": KNOWN, "analysis": asked}))
+    (expected,) = [item for item in convert.run(request.kept()) if isinstance(item, PointResult)]
+    for name in ("uncertainty", "sensitivities", "verdict"):
+        assert found[1].tables[name] == expected.tables[name], name
+        assert found[1].verdict == expected.verdict
+    assert found[1].tables["uncertainty"][0]["samples"] == 16
+    assert found[2].tables["uncertainty"] == []
+
+
+def test_samples_cost_as_many_lines_more() -> None:
+    few, many = (seconds_a_line(read_analysis({**SHORT, "uncertainty": {"samples": samples}})) for samples in (0, 128))
+    assert few == seconds_a_line(read_analysis(SHORT))
+    assert many > 128 * few

@@ -65,7 +65,13 @@ def test_the_verdict_tells_the_smallest_distance_of_stable_motions() -> None:
     known = [row.distance_m or np.inf for row in result.clearances if row.stability == "stable"]
     assert result.verdict[0].clearance_m == min(known)
     assert result.verdict[0].clearance_ok is True
+    assert result.verdict[0].clearance_margin_m == min(
+        row.margin_m
+        for row in result.clearances
+        if row.margin_m is not None and row.method == "computed" and row.stability == "stable"
+    )
     assert f"; keeps {min(known):.1f} m to the next phase" in result.verdict[0].sentence
     unasked = run(replace(line, required_clearance=None), ASKED)
     assert unasked.verdict[0].clearance_ok is None
+    assert unasked.verdict[0].clearance_margin_m is None
     assert unasked.verdict[0].clearance_m == min(known)
