@@ -7,11 +7,11 @@ import platform
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks import cores, engine_speed, samples, scaling, service_speed
+from benchmarks import cores, engine_speed, known_fleet, samples, scaling, service_speed
 
 ROOT = Path(__file__).parents[1]
 LATEST = ROOT / "benchmarks" / "latest.json"
-SECTIONS = ("cycle", "branch", "fleet", "samples", "machine", "service")
+SECTIONS = ("cycle", "branch", "fleet", "known", "samples", "machine", "service")
 
 MEANING = {
     "cycle_ratio": "one limit cycle of the source's lines: time of direct integration over the engine's, in one stack",
@@ -36,6 +36,10 @@ MEANING = {
     "fleet_full_lines_per_s_core": "the same job under full physics: lines per second and core",
     "fleet_full_ratio": "that rate over the source's, both taken in turn",
     "fleet_exponent": "exponent of the time as a power of the number of lines",
+    "known_fleet_ratio": "lines in engineers' forms, taken in and analysed, over the same lines spelled out, in turn",
+    "known_fleet_lines_per_s_core": "the former per second and core",
+    "resolve_ms": "a line in an engineer's form resolved, with its assumptions [ms of processor]",
+    "resolve_route_p99_ms": "`POST /v1/lines/resolve` one after another, within the process, 99th percentile [ms]",
     "samples_64_seconds": "64 samples of a twin line's assumed values, 11 winds, with indices [s of processor]",
     "samples_1024_seconds": "the same with 1,024 samples [s of processor]",
     "finite_element_over_hybrid": "time of the finite element model over that of the hybrid model",
@@ -104,6 +108,8 @@ def _section(name: str, fleet: int, lines: int) -> Iterator[tuple[str, float]]:
             yield from engine_speed.fleet(fleet)
             yield from engine_speed.full_fleet()
             yield from engine_speed.hybrid_against_finite_element()
+        case "known":
+            yield from known_fleet.known_fleet()
         case "samples":
             yield from samples.samples()
         case "machine":

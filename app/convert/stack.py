@@ -215,16 +215,20 @@ def _told(
 ) -> Generator[Progress, None, list[Result | Exception]]:
     """Return results with what is assumed of lines in engineers' forms, and with samples of it if these are asked."""
     told = list(solved)
-    if said.keys().isdisjoint(number for number, _, _ in stack):
+    places = [i for i, (number, _, _) in enumerate(stack) if number in said and isinstance(solved[i], Result)]
+    if not places:
         return told
-    from app.convert.known.samples import with_what_is_known  # noqa: PLC0415 - explicit lines need no estimates
+    # Explicit lines need no estimates.
+    from app.convert.known.samples import Analysed, with_what_is_known  # noqa: PLC0415
+    from engine.known.resolve import end_stiffnesses  # noqa: PLC0415
 
     asked = None if options.uncertainty is None else parts.uncertainty(options.uncertainty)
-    for i, (result, (number, line, analysis)) in enumerate(zip(solved, stack, strict=True)):
-        known = said.get(number)
-        if known is None or isinstance(result, Exception):
-            continue
-        steps = with_what_is_known(result, line, analysis, known_of_document(known), asked)
+    ends = end_stiffnesses([stack[i][1] for i in places])
+    for i, own_ends in zip(places, ends, strict=True):
+        number, line, analysis = stack[i]
+        result, known = told[i], known_of_document(said[number])
+        assert isinstance(result, Result), "only lines with a result are told more of"
+        steps = with_what_is_known(result, Analysed(line, analysis, own_ends), known, asked)
         into = partial(_share_of_stack, i, len(stack))
         try:
             told[i] = yield from translated(steps, into)

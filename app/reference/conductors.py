@@ -1,7 +1,8 @@
 """The catalogue of bare conductors that ships with the service: published figures as printed, with their sources."""
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
@@ -30,15 +31,43 @@ def search(text: str, own: Sequence[CatalogueRow] = ()) -> list[CatalogueRow]:
     return [row for row in _with_own(own) if all(word in _searched(row) for word in words)]
 
 
-def named(name: str, own: Sequence[CatalogueRow] = ()) -> list[CatalogueRow]:
-    """Return the conductors of a designation, or if there are none, of a whole name, ignoring case; several may be."""
-    wanted = name_key(name)
-    for rows, keys in ((own, ("name", "designation")), (shipped(), ("designation", "name"))):
-        for key in keys:
-            found = [row for row in rows if name_key(getattr(row, key)) == wanted]
-            if found:
-                return found
-    return []
+@dataclass(frozen=True, slots=True)
+class NamedRows:
+    """Conductors by the keys of their designations and of their names."""
+
+    by_designation: Mapping[str, Sequence[CatalogueRow]]
+    by_name: Mapping[str, Sequence[CatalogueRow]]
+
+    @classmethod
+    def of(cls, rows: Iterable[CatalogueRow]) -> "NamedRows":
+        """Sort rows by their keys, in their order."""
+        listed = list(rows)
+        return cls(_by_key(listed, "designation"), _by_key(listed, "name"))
+
+
+def _by_key(rows: Iterable[CatalogueRow], field: str) -> dict[str, list[CatalogueRow]]:
+    found: dict[str, list[CatalogueRow]] = {}
+    for row in rows:
+        found.setdefault(name_key(getattr(row, field)), []).append(row)
+    return found
+
+
+_NO_ROWS = NamedRows({}, {})
+
+
+def named(name: str, own: NamedRows = _NO_ROWS) -> Sequence[CatalogueRow]:
+    """Return the conductors of a designation, or if there are none, of a whole name, ignoring case; several may be.
+
+    Among an owner's own rows, which come first, names come before designations.
+    """
+    wanted, listed = name_key(name), _shipped_names()
+    places = (own.by_name, own.by_designation, listed.by_designation, listed.by_name)
+    return next((found for place in places if (found := place.get(wanted))), [])
+
+
+@cache
+def _shipped_names() -> NamedRows:
+    return NamedRows.of(shipped())
 
 
 def _with_own(own: Sequence[CatalogueRow]) -> Iterator[CatalogueRow]:

@@ -21,6 +21,8 @@ COLDEST, HOTTEST = -100.0, 300.0  # degrees Celsius; outside, a temperature is i
 STEEPEST = 3.0  # half the span over the catenary parameter: the conductor is three times as long as the span
 MOST_EXPANSION = 1e-4  # 1/K, several times that of any conductor
 TOLERANCE = 1e-13  # relative, of the logarithm of the tension
+NEAR = 0.01  # relative difference in tension of parabola and catenary, where the solution is sought first
+PARABOLA_STEPS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,15 +101,17 @@ class HungState:
 
 def hung_state(span: HungSpan, tension: float, load: LoadState) -> HungState:
     """Return the state of a span with a horizontal tension along X [N] under a load."""
-    in_plane, extent, rise = _in_plane(span.length, span.level_difference, tension, load.tilt)
+    loaded = _Loaded.of(span, (span.length, span.level_difference), load)
+    in_plane = tension * loaded.incline
     catenary = in_plane / load.resultant
-    low = float(low_point(*_arrays(catenary, extent, rise))[0])
-    steepest = max(abs(low), abs(extent - low))
+    curve = _arrays(catenary, loaded.extent, loaded.rise)
+    low = float(low_point(*curve)[0])
+    steepest = max(abs(low), abs(loaded.extent - low))
     return HungState(
         horizontal_tension=tension,
         largest_tension=in_plane * math.cosh(steepest / catenary),
-        sag=float(chord_sag(*_arrays(catenary, extent, rise))[0]),
-        unstressed_length=_unstressed(span, (span.length, span.level_difference), tension, load),
+        sag=float(chord_sag(*curve)[0]),
+        unstressed_length=loaded.unstressed(tension),
     )
 
 
@@ -144,31 +148,58 @@ def change_of_state(span: HungSpan, tension: float, given: LoadState, wanted: Lo
     held = (span.length, span.level_difference) if span.ruling_span is None else (span.ruling_span, 0.0)
     require(_slack_fault(held[0], tension, given))
     strain = span.thermal_expansion * (wanted.temperature - given.temperature)
-    target = _unstressed(span, held, tension, given) * (1.0 + strain)
+    target = _Loaded.of(span, held, given).unstressed(tension) * (1.0 + strain)
+    loaded = _Loaded.of(span, held, wanted)
 
     def excess(logarithm: float) -> float:
-        return _unstressed(span, held, math.exp(logarithm), wanted) - target
+        return loaded.unstressed(math.exp(logarithm)) - target
 
     lowest = math.log(0.5 * wanted.resultant * held[0] / STEEPEST)
     # Pulled to this tension, the conductor would be shorter than its stretched chord without any sag.
     highest = math.log(span.rigidity + wanted.resultant * held[0])
-    if excess(lowest) < 0.0 or excess(highest) > 0.0:
-        where = f"{target:.4g} m of conductor cannot span {held[0]:g} m"
-        rule = f"has no state at {wanted.temperature:g} degrees Celsius: {where}"
-        require(Fault("span.everyday", tension, rule))
-    return hung_state(span, math.exp(brentq(excess, lowest, highest, xtol=TOLERANCE, rtol=TOLERANCE)), wanted)
+    middle = min(max(math.log(loaded.tension_of_parabola(target, tension)), lowest), highest)
+    ends = max(lowest, middle - NEAR), min(highest, middle + NEAR)
+    if excess(ends[0]) < 0.0 or excess(ends[1]) > 0.0:
+        ends = lowest, highest
+        if excess(lowest) < 0.0 or excess(highest) > 0.0:
+            where = f"{target:.4g} m of conductor cannot span {held[0]:g} m"
+            rule = f"has no state at {wanted.temperature:g} degrees Celsius: {where}"
+            require(Fault("span.everyday", tension, rule))
+    return hung_state(span, math.exp(brentq(excess, *ends, xtol=TOLERANCE, rtol=TOLERANCE)), wanted)
 
 
-def _in_plane(length: float, rise: float, tension: float, tilt: float) -> tuple[float, float, float]:
-    """Return tension, extent and rise in the plane of the sag, from the tension along X."""
-    extent, up = (float(part[0]) for part in plane_extent(*_arrays(length, rise, tilt)))
-    return tension * extent / length, extent, up
+@dataclass(frozen=True, slots=True)
+class _Loaded:
+    """A conductor between supports under a load: extent along and rise in the plane of its sag [m], incline of that
+    plane's tension to the one along X, load per length [N/m], rigidity EA [N].
+    """
 
+    extent: float
+    rise: float
+    incline: float
+    load: float
+    rigidity: float
 
-def _unstressed(span: HungSpan, held: tuple[float, float], tension: float, load: LoadState) -> float:
-    """Return the length without tension [m] of a conductor between supports (distance, rise) [m]."""
-    in_plane, extent, rise = _in_plane(*held, tension, load.tilt)
-    return float(unstressed_length(*_arrays(in_plane, load.resultant, span.rigidity, extent, rise))[0])
+    @classmethod
+    def of(cls, span: HungSpan, held: tuple[float, float], load: LoadState) -> "_Loaded":
+        """Return it between supports (distance, rise) [m]."""
+        extent, rise = (float(part[0]) for part in plane_extent(*_arrays(*held, load.tilt)))
+        return cls(extent, rise, extent / held[0], load.resultant, span.rigidity)
+
+    def unstressed(self, tension: float) -> float:
+        """Return the length without tension [m] at a tension along X [N]."""
+        in_plane = tension * self.incline
+        return float(unstressed_length(*_arrays(in_plane, self.load, self.rigidity, self.extent, self.rise))[0])
+
+    def tension_of_parabola(self, target: float, start: float) -> float:
+        """Return about the tension along X [N] of an unstressed length [m], which a level parabola has."""
+        chord = math.hypot(self.extent, self.rise)
+        slack, hang = target / chord - 1.0, (self.load * self.extent**2 / chord) ** 2 / 24.0
+        tension = start
+        for _ in range(PARABOLA_STEPS):  # of Newton's method
+            wrong = hang / tension**2 - tension / self.rigidity - slack
+            tension = max(tension + wrong / (2.0 * hang / tension**3 + 1.0 / self.rigidity), 0.1 * tension)
+        return tension / self.incline
 
 
 def _slack_fault(length: float, tension: float, load: LoadState) -> Fault | None:

@@ -1,6 +1,6 @@
 """From a line as an engineer knows it to the explicit line that an analysis takes, with the origin of every value."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from engine.known import estimators
@@ -51,13 +51,12 @@ def resolve(known: KnownLine, chosen: Mapping[str, float] | None = None) -> Reso
     Returns
     -------
     Resolved
-        One row for each value, those that others follow from first.
+        One row for each value, those that others follow from first; those of `end_stiffnesses` are not among them.
 
     Raises
     ------
     InvalidSpec
-        If a value breaks its rule or cannot be estimated, a chosen value has no assumed row, or the conductor pulls an
-        insulator string up.
+        If a value breaks its rule or cannot be estimated, or a chosen value has no assumed row.
     """
     values = {} if chosen is None else chosen
     bare = isinstance(known.span, KnownSpan) or known.ice.accretion is not None or known.ice.mass is None
@@ -74,7 +73,7 @@ def resolve(known: KnownLine, chosen: Mapping[str, float] | None = None) -> Reso
     require(*_unknown_choices(values, rows))
     line = _line(known, rows, hung.span if hung else known.span, aerodynamics)
     states = (hung.everyday, hung.iced) if hung else (None, None)
-    return Resolved(line, (*rows.rows, *_ends(line)), iced.section, *states)
+    return Resolved(line, rows.rows, iced.section, *states)
 
 
 def _line(known: KnownLine, rows: Provenance, span: KnownSpan | Span, aerodynamics: Aerodynamics) -> Line:
@@ -149,12 +148,25 @@ def _with_neighbours(supports: Supports, rows: Provenance) -> Supports:
     )
 
 
-def _ends(line: Line) -> Iterator[Assumption]:
-    """Yield the longitudinal stiffness of both ends per sub-conductor that (A10) gives, none at a dead end."""
-    if line.supports.longitudinal_stiffness is not None or line.section is not None:
-        return
+def end_stiffnesses(lines: Sequence[Line]) -> list[list[Assumption]]:
+    """Return for each line the longitudinal stiffness of both ends per sub-conductor that (A10) gives, as rows.
+
+    A dead end has none, nor has a line that gives it or that has a section.
+
+    Raises
+    ------
+    InvalidSpec
+        If the conductor pulls an insulator string up.
+    """
+    sought = [line.supports.longitudinal_stiffness is None and line.section is None for line in lines]
+    computing = [line for line, wanted in zip(lines, sought, strict=True) if wanted]
+    found = iter(static_profile(computing).end_stiffness.tolist() if computing else ())
+    return [list(_ends(line, next(found))) if wanted else [] for line, wanted in zip(lines, sought, strict=True)]
+
+
+def _ends(line: Line, stiffnesses: Sequence[float]) -> Iterator[Assumption]:
     ends = (("left", line.supports.left), ("right", line.supports.right))
-    for (name, end), stiffness in zip(ends, static_profile((line,)).end_stiffness[0].tolist(), strict=True):
+    for (name, end), stiffness in zip(ends, stiffnesses, strict=True):
         if not end.dead_end:
             string = "" if end.insulator_length is None else " and of its string"
             source = f"(A10): static stiffness of the adjacent span{string}, under ice"

@@ -1,7 +1,7 @@
 """Analyse a line as an engineer knows it together with samples of what is assumed of it."""
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from app.convert.known.to_document import document_number, document_path, result_rows
 from engine import spec
@@ -36,14 +36,24 @@ def analyse_known(
     return _in_document_names((yield from steps), assumptions)
 
 
+@dataclass(frozen=True, slots=True)
+class Analysed:
+    """A line with its analysis, and the rows of its `end_stiffnesses`, which are computed for many lines together."""
+
+    line: spec.Line
+    analysis: spec.Analysis
+    ends: Sequence[Assumption]
+
+
 def with_what_is_known(
-    result: Result, line: spec.Line, analysis: spec.Analysis, known: KnownLine, asked: spec.Uncertainty | None
+    result: Result, analysed: Analysed, known: KnownLine, asked: spec.Uncertainty | None
 ) -> Generator[Progress, None, Result]:
     """Return the finished result of a line with its assumptions and, where samples are asked for, their tables."""
     assumptions = resolve(known).assumptions
-    listed = replace(result, assumptions=result_rows(assumptions))
+    listed = replace(result, assumptions=result_rows((*assumptions, *analysed.ends)))
     if asked is None or asked.samples == 0:
         return listed
+    line, analysis = analysed.line, analysed.analysis
     steps = with_samples(listed, line, analysis, _unknowns(known, assumptions, analysis), asked)
     return _in_document_names((yield from steps), assumptions)
 

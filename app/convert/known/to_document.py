@@ -1,9 +1,9 @@
 """Resolve a line as an engineer knows it: the explicit line document, and the origin of every value."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
@@ -17,13 +17,16 @@ from app.schemas.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.known import description as known
 from engine.known.provenance import Assumption
-from engine.known.resolve import Resolved, resolve
+from engine.known.resolve import Resolved, end_stiffnesses, resolve
 from engine.outcome import InvalidSpec
 from engine.result import AssumptionRow
+
+Made = TypeVar("Made")
 
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
 _KEPT = ("design_wind",)
 _AS_SAID = {"name", "asset_id", "tags", "devices", "climate", "phases", "required_clearance"}
+_DOCUMENT_UNITS: Mapping[str, str] = {"rad": "deg", "": "1"}
 # What the document calls otherwise than the engine, and what only the engine has, with its unit.
 _OTHER_NAMES: Mapping[str, str] = {
     "conductor.modulus": "conductor.youngs_modulus_pa",
@@ -57,12 +60,13 @@ def resolved_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
     """
     resolved = _resolved(line, own)
     explicit = _explicit(line, resolved)
+    ends = _faulty(line, lambda: end_stiffnesses([resolved.line])[0])
     faults = _faults_of_whole(explicit)
     if faults:
         raise BadInput(faults)
     return {
         "line": explicit,
-        "assumptions": [_row(row) for row in resolved.assumptions],
+        "assumptions": [_row(row) for row in (*resolved.assumptions, *ends)],
         "states": _states(resolved),
         "doubts": doubts_of(resolved.line.ice.aerodynamics),
         "kept": line.model_dump(mode="json", by_alias=True, include=set(_KEPT), exclude_defaults=True),
@@ -81,8 +85,13 @@ def explicit_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
 
 
 def _resolved(line: said.KnownLine, own: OwnRows) -> Resolved:
+    return _faulty(line, lambda: resolve(known_line(line, own)))
+
+
+def _faulty(line: said.KnownLine, make: Callable[[], Made]) -> Made:
+    """Return what is made, or raise its faults with the pointers of the document."""
     try:
-        return resolve(known_line(line, own))
+        return make()
     except InvalidSpec as error:
         raise BadInput([to_pointer(fault, line) for fault in error.faults]) from error
 
@@ -195,22 +204,22 @@ def _states(resolved: Resolved) -> dict[str, Any]:
 
 def _row(row: Assumption) -> dict[str, Any]:
     """Return a row of the assumptions; angles in degrees."""
-    numbers = (row.value, row.lowest, row.highest)
-    value, lowest, highest = (None if number is None else document_number(number, row.unit) for number in numbers)
+    lowest, highest, unit = row.lowest, row.highest, row.unit
     return {
         "path": document_path(row.path),
-        "value": value,
-        "unit": {"rad": "deg", "": "1"}.get(row.unit, row.unit),
+        "value": document_number(row.value, unit),
+        "unit": _DOCUMENT_UNITS.get(unit, unit),
         "origin": row.origin.value,
         "source": row.source,
-        "lowest": lowest,
-        "highest": highest,
+        "lowest": None if lowest is None else document_number(lowest, unit),
+        "highest": None if highest is None else document_number(highest, unit),
     }
 
 
 def assumption_rows(line: known.KnownLine) -> tuple[AssumptionRow, ...]:
     """Return the rows of a result about where the values of a line came from."""
-    return result_rows(resolve(line).assumptions)
+    resolved = resolve(line)
+    return result_rows((*resolved.assumptions, *end_stiffnesses([resolved.line])[0]))
 
 
 def result_rows(assumptions: Iterable[Assumption]) -> tuple[AssumptionRow, ...]:

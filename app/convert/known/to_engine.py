@@ -114,7 +114,7 @@ def _conductor(part: said.KnownConductor, own: OwnRows) -> known.KnownConductor:
 
 
 def _named_conductor(name: str, own: OwnRows) -> CatalogueRow:
-    found = conductors.named(name, own.conductors)
+    found = conductors.named(name, own.named)
     if len(found) == 1:
         return found[0]
     if found:

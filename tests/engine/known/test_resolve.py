@@ -21,7 +21,7 @@ from engine.known.description import (
 from engine.known.estimators import torsional_rigidity_of_diameter
 from engine.known.ice_sections import Accretion, Shape
 from engine.known.provenance import Origin
-from engine.known.resolve import resolve
+from engine.known.resolve import end_stiffnesses, resolve
 from engine.mechanics.static_profile import static_profile
 from engine.outcome import InvalidSpec
 from engine.spec import Damping, Section, SectionSpan, Support, Supports, SuspensionString, Wind
@@ -87,8 +87,9 @@ def test_every_value_has_one_row_and_every_assumption_a_range() -> None:
 
 def test_the_rows_are_the_line() -> None:
     found = resolve(GUIDE)
-    rows = {row.path: row.value for row in found.assumptions}
     conductor, line = found.line.conductor, found.line
+    (stiffnesses,) = end_stiffnesses([line])
+    rows = {row.path: row.value for row in (*found.assumptions, *stiffnesses)}
     for name in ("diameter", "axial_rigidity", "torsional_rigidity", "mass", "polar_inertia", "rated_strength"):
         assert rows[f"conductor.{name}"] == getattr(conductor, name)
     assert rows["ice.eccentricity_z"] == line.ice.eccentricity_z
@@ -151,6 +152,7 @@ def test_a_line_of_which_little_is_said_resolves() -> None:
 
 def test_supports_wind_and_damping_are_kept() -> None:
     supports = Supports(left=Support(dead_end=True), right=Support(insulator_length=3.0, insulator_weight=400.0))
+    stiff = Supports(longitudinal_stiffness=2e5)
     known = replace(SPARSE, supports=supports, wind=Wind(1.2, yaw=0.3), damping=KnownDamping(0.002, 0.003, 0.04))
     found = resolve(known)
     assert found.line.supports.left == supports.left
@@ -158,6 +160,9 @@ def test_supports_wind_and_damping_are_kept() -> None:
     assert found.line.wind == Wind(1.2, yaw=0.3)
     assert found.line.damping == Damping(0.002, 0.003, 0.04)
     origins = {row.path: row.origin for row in found.assumptions}
+    both, held, none = end_stiffnesses([resolve(GUIDE).line, replace(found.line, supports=stiff), found.line])
+    assert (len(both), held) == (2, [])
+    origins |= {row.path: row.origin for row in none}
     assert origins["wind.air_density"] is Origin.GIVEN
     assert origins["supports.right.insulator_length"] is Origin.GIVEN
     assert "supports.left.adjacent_span" not in origins
