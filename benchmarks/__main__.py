@@ -7,11 +7,11 @@ import platform
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks import cores, engine_speed, known_fleet, samples, scaling, service_speed
+from benchmarks import cores, engine_speed, first_answer, known_fleet, samples, scaling, service_speed
 
 ROOT = Path(__file__).parents[1]
 LATEST = ROOT / "benchmarks" / "latest.json"
-SECTIONS = ("cycle", "branch", "fleet", "known", "samples", "machine", "service")
+SECTIONS = ("cycle", "branch", "fleet", "known", "samples", "machine", "answer", "service")
 
 MEANING = {
     "cycle_ratio": "one limit cycle of the source's lines: time of direct integration over the engine's, in one stack",
@@ -50,6 +50,14 @@ MEANING = {
     "machine_two_core_speedup": "rate of two processes of the engine alone over one: the upper limit on this machine",
     "analyse_start_seconds": "time from the start of `galloping analyse` until it has read and checked a line [s]",
     "analyse_seconds": "`galloping analyse` of a line with both models at one wind speed, whole process [s]",
+    "first_answer_seconds": "POST of a hybrid line until its result is read, embedded service just started [s]",
+    "answer_median_seconds": "the same for later lines, one now and then: median [s]",
+    "answer_95_seconds": "the same, 95th percentile [s]",
+    "answer_post_seconds": "part of that median: POST until it is accepted [s]",
+    "answer_queue_seconds": "accepted until a worker begins [s]",
+    "answer_compute_seconds": "computing and storing [s]",
+    "answer_notice_seconds": "stored until the waiting client knows [s]",
+    "answer_read_seconds": "reading the result [s]",
     "claim_database_ms": "processor time of PostgreSQL to claim and finish a chunk, without its lines [ms]",
     "heartbeat_database_ms": "the same for a heartbeat [ms]",
     "sweep_database_ms": "the same for a sweep that finds nothing [ms]",
@@ -116,6 +124,8 @@ def _section(name: str, fleet: int, lines: int) -> Iterator[tuple[str, float]]:
             yield from cores.plain_python()
             yield from cores.command_line()
             yield from cores.two_processes()
+        case "answer":
+            yield from first_answer.first_answer()
         case _:
             yield from service_speed.service(lines)
 

@@ -39,8 +39,7 @@ def worker_application(settings: Settings, owner: str) -> Celery:
 
 def _worker_options(settings: Settings) -> dict[str, object]:
     transport_options = dict(celery_application(settings).conf.broker_transport_options)
-    embedded = settings.broker_url.startswith("filesystem:")
-    if not embedded:
+    if not settings.has_embedded_broker:
         # Unlike a sender, a worker blocks in reads of one second, and nobody waits for it.
         transport_options |= {"socket_timeout": 10.0, "health_check_interval": 10, "max_retries": None}
     return {
@@ -54,7 +53,7 @@ def _worker_options(settings: Settings) -> dict[str, object]:
         "worker_cancel_long_running_tasks_on_connection_loss": False,
         "worker_concurrency": settings.worker_processes,
         "worker_max_tasks_per_child": settings.max_jobs_per_process,
-        "worker_pool": "worker.pool:EmbeddedPool" if embedded else "prefork",
+        "worker_pool": "worker.pool:EmbeddedPool" if settings.has_embedded_broker else "prefork",
         "worker_prefetch_multiplier": 1,
         "worker_send_task_events": False,
         "worker_soft_shutdown_timeout": settings.shutdown_seconds,

@@ -59,8 +59,9 @@ def _queue_name(chunk: bool) -> str:
 
 def celery_application(settings: Settings) -> Celery:
     """Make the Celery application that senders and workers share; it knows no task and opens no connection yet."""
-    application = Celery("galloping", broker=settings.broker_url, set_as_current=False)
+    application = Celery("galloping", set_as_current=False)
     application.conf.update(
+        **_broker(settings),
         broker_transport_options=_transport_options(settings),
         broker_connection_timeout=settings.broker_timeout_seconds,
         task_default_queue=QUEUE_NAME,
@@ -126,8 +127,15 @@ def _send(application: Celery, job_id: UUID, queue: Any, **by: Any) -> None:
     application.send_task(TASK_NAME, args=[str(job_id)], queue=queue, retry=False, **by)
 
 
+def _broker(settings: Settings) -> dict[str, str]:
+    """Return what names the broker; Kombu takes a transport class only where the address has no scheme."""
+    if settings.has_embedded_broker:
+        return {"broker_url": "localhost", "broker_transport": "app.jobs.folder_broker:Transport"}
+    return {"broker_url": settings.broker_url}
+
+
 def _transport_options(settings: Settings) -> dict[str, object]:
-    if settings.broker_url.startswith("filesystem:"):
+    if settings.has_embedded_broker:
         return _folders(settings)
     return {
         "socket_timeout": settings.broker_timeout_seconds,
@@ -155,5 +163,5 @@ def _folders(settings: Settings) -> dict[str, object]:
         "data_folder_out": str(folders["messages"]),
         "control_folder": str(folders["control"]),
         "processed_folder": str(folders["processed"]),
-        "polling_interval": 0.1,
+        "polling_interval": 0.02,
     }

@@ -68,7 +68,7 @@ class Settings(BaseSettings):
     most_chunk_lines: Count = Field(default=256, description="Most lines in one chunk of a batch")
 
     longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait granted to `Prefer: wait`")
-    watch_seconds: Seconds = Field(default=0.3, description="Time between two queries for what clients wait for")
+    watch_seconds: Seconds = Field(default=0.3, description="Longest pause between queries for what clients wait for")
 
     lease_seconds: Seconds = Field(default=30.0, description="A worker silent for this long loses its job")
     heartbeat_seconds: Seconds = Field(default=1.0, description="Time between a worker's two reports on its job")
@@ -131,6 +131,11 @@ class Settings(BaseSettings):
         if weak := weak_secrets(self.database_url, self.broker_url, secret):
             raise ValueError("; ".join(weak))
         return self
+
+    @property
+    def has_embedded_broker(self) -> bool:
+        """Tell whether messages are files of this machine."""
+        return self.broker_url.startswith("filesystem:")
 
     def environment(self) -> dict[str, str]:
         """Return the environment variables that pass these settings to a child process."""

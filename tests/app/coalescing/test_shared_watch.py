@@ -1,7 +1,8 @@
 import asyncio
 import threading
 from collections.abc import Mapping
-from contextlib import aclosing
+from contextlib import aclosing, suppress
+from unittest.mock import patch
 
 from sqlalchemy.exc import OperationalError
 
@@ -134,3 +135,35 @@ def test_release_ends_all_followers() -> None:
         return seen
 
     assert asyncio.run(main())[3] == []
+
+
+def test_a_request_that_comes_cuts_the_pause_of_those_that_have_waited_long() -> None:
+    table = Table(n1="a", n2="b")
+
+    async def main() -> str | None:
+        watch = SharedWatch("test", table.query, 3600.0)
+        with patch("app.coalescing.shared_watch._SHARE_OF_WAIT", 1e9):  # as after hours
+            async with aclosing(watch.follow(1)) as states:
+                await anext(states)
+                await asyncio.sleep(0.05)  # a pause of an hour has begun
+                async with asyncio.timeout(30.0):
+                    found = await first(watch, 2)
+        await watch.close()
+        return found
+
+    assert asyncio.run(main()) == "b"
+
+
+def test_pauses_grow_with_the_wait() -> None:
+    table = Table(n1="a")
+
+    async def main() -> None:
+        watch = SharedWatch("test", table.query, 3600.0)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(0.5), aclosing(watch.follow(1)) as states:
+                async for _ in states:
+                    pass
+        await watch.close()
+
+    asyncio.run(main())
+    assert 2 < len(table.queries) < 40  # 50 with the shortest pause throughout
