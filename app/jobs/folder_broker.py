@@ -16,7 +16,7 @@ class Channel(filesystem.Channel):
     empty message and loses the job until the sweeper sends it again.
     """
 
-    def _put(self, queue: str, payload: Any, **kwargs: Any) -> None:
+    def _put(self, queue: str, payload: Any, **kwargs: Any) -> None:  # type: ignore[override]  # bases disagree
         folder = Path(self.data_folder_out)
         name = f"{monotonic_ns():020d}_{uuid4()}.{queue}.msg"  # the channel reads in the order of names
         draft = folder / f"{name}.draft"
