@@ -14,7 +14,7 @@ from app import schemas
 from app.convert import parts
 from app.convert.gathered import Gathered
 from engine import spec
-from engine.outcome import Fault
+from engine.outcome import Fault, InvalidSpec
 
 _STEEPEST = 100.0  # far beyond a sag equal to the length, and far below overflow
 _STILL = spec.Aerodynamics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), at_rest=(0.0, 0.0, 0.0))
@@ -201,6 +201,21 @@ def _ice(ice: schemas.Ice, gathered: Gathered) -> spec.Ice:
     )
     coefficients = parts.aerodynamics(ice.aerodynamics, ice.at_rest)
     return spec.Ice(coefficients, ice.eccentricity_y, ice.eccentricity_z, segments)
+
+
+def section_with_ice(section: schemas.Section) -> spec.Section:
+    """Build a section by itself.
+
+    Raises
+    ------
+    InvalidSpec
+        With the faults of all its parts.
+    """
+    gathered = Gathered()
+    made = _section(section, gathered)
+    if made is None or gathered.faults:
+        raise InvalidSpec(*gathered.faults)
+    return made
 
 
 def _section(section: schemas.Section, gathered: Gathered) -> spec.Section | None:

@@ -7,7 +7,7 @@ from enum import StrEnum
 from engine.known.ice_sections import Accretion
 from engine.known.provenance import Origin
 from engine.outcome import Fault, require
-from engine.spec import Aerodynamics, Bundle, DampingModel, Device, IceSegment, Section, Span, Supports, Wind
+from engine.spec import Aerodynamics, Bundle, DampingModel, Device, IceSegment, Phase, Section, Span, Supports, Wind
 from engine.spec.rules import finite, not_negative, positive
 
 _PERCENT = 100.0
@@ -225,7 +225,8 @@ class KnownDamping:
 class KnownLine:
     """A span with everything that is known of it. A `Span` in the place of a `KnownSpan` says its iced tension.
 
-    section: the spans and strings around it, which then hold its ends.
+    section: the spans and strings around it, which then hold its ends; phases: those that spacers may tie, by name and
+    place, since what differs of them changes nothing of the line.
     """
 
     conductor: KnownConductor
@@ -237,3 +238,4 @@ class KnownLine:
     damping: KnownDamping = KnownDamping()
     devices: tuple[Device, ...] = ()
     section: Section | None = None
+    phases: tuple[Phase, ...] = ()

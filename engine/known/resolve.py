@@ -101,6 +101,7 @@ def _line(known: KnownLine, rows: Provenance, span: KnownSpan | Span, aerodynami
         supports=_with_neighbours(known.supports, rows),
         devices=known.devices,
         section=known.section,
+        phases=known.phases,
     )
 
 

@@ -1,4 +1,4 @@
-"""Ten lines of different make, as engineers know them."""
+"""Twelve lines of different make, as engineers know them."""
 
 from copy import deepcopy
 from typing import Any
@@ -103,6 +103,29 @@ LINES: dict[str, dict[str, Any]] = {
                 "reference_diameter_m": 0.035,
             },
         },
+    ),
+    "in a section on a slope": {
+        **changed(
+            span={
+                "length_m": 300.0,
+                "level_difference_m": 12.0,
+                "temperature_c": -5.0,
+                "everyday": {"horizontal_tension_n": 28000.0},
+            },
+            section={
+                "spans": [
+                    {"length_m": 280.0},
+                    {"length_m": 300.0, "level_difference_m": 12.0},
+                    {"length_m": 330.0, "level_difference_m": -5.0},
+                ],
+                "span_of_interest": 2,
+                "strings": [{"length_m": 2.4, "weight_n": 1200.0}] * 2,
+            },
+        ),
+        "supports": {},
+    },
+    "tied to a phase": changed(
+        devices=[{"type": "interphase_spacer", "position_m": 150.0, "mass_kg": 20.0, "between": ["this", "top"]}]
     ),
     "overridden, dead ends, a device": changed(
         conductor={"catalogue": "drake", "torsional_rigidity_n_m2": 150.0, "youngs_modulus_pa": 74e9},

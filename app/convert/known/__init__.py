@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from app.convert.known.forms import is_known_form
 from app.convert.known.own_rows import OwnRows
 from app.schemas import JobRequest, Line
 from app.schemas.faults import BadInput, Fault, faults_of
@@ -25,37 +26,6 @@ __all__ = [
 ]
 
 _NO_OWN_ROWS = OwnRows()
-_FORMS: Mapping[str, frozenset[str]] = {
-    "conductor": frozenset(
-        {
-            "catalogue",
-            "bare_mass_kg_per_m",
-            "bare_polar_inertia_kg_m",
-            "aluminium_area_m2",
-            "thermal_expansion_per_k",
-            "aluminium_wires",
-            "steel_wires",
-        }
-    ),
-    "bundle": frozenset({"spacing_m", "arrangement"}),
-    "span": frozenset({"everyday", "ruling_span_m", "temperature_c"}),
-    "ice": frozenset({"accretion"}),
-}
-_OF_AERODYNAMICS = frozenset({"catalogue", "reference_diameter_m"})
-_OF_LINE = frozenset({"design_wind_m_per_s"})
-
-
-def is_known_form(line: object) -> bool:
-    """Tell whether a line document has a form that the explicit line has not."""
-    if not isinstance(line, dict):
-        return False
-    ice = line.get("ice")
-    coefficients = ice.get("aerodynamics") if isinstance(ice, dict) else None
-    parts = [(line.get(name), forms) for name, forms in _FORMS.items()]
-    return any(
-        isinstance(part, dict) and not forms.isdisjoint(part)
-        for part, forms in (*parts, (coefficients, _OF_AERODYNAMICS), (line, _OF_LINE))
-    )
 
 
 def explicit_line(line: Any, own: OwnRows = _NO_OWN_ROWS) -> tuple[Any, dict[str, Any] | None]:

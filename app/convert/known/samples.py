@@ -5,12 +5,18 @@ from dataclasses import dataclass, replace
 
 from app.convert.known.to_document import document_number, document_path, result_rows
 from engine import spec
+from engine.analysis import analyse
 from engine.known.description import KnownLine
 from engine.known.provenance import Assumption
 from engine.known.resolve import resolve
 from engine.progress import Progress
 from engine.result import Result, SensitivityRow
 from engine.uncertainty.weighing import Unknowns, analyse_with_samples, intervals, with_samples
+
+TIED = (
+    "What is assumed was not sampled: phases that interphase spacers tie need the finite element model, "
+    "and samples have the hybrid one."
+)
 
 
 def analyse_known(
@@ -31,6 +37,8 @@ def analyse_known(
     Result
         With the document's names and units of the assumed values.
     """
+    if line.interphase_spacers and asked.samples:
+        return _unsampled((yield from analyse(line, analysis)))
     assumptions = resolve(known).assumptions
     steps = analyse_with_samples(line, analysis, _unknowns(known, assumptions, analysis), asked)
     return _in_document_names((yield from steps), assumptions)
@@ -54,8 +62,14 @@ def with_what_is_known(
     if asked is None or asked.samples == 0:
         return listed
     line, analysis = analysed.line, analysed.analysis
+    if line.interphase_spacers:
+        return _unsampled(listed)
     steps = with_samples(listed, line, analysis, _unknowns(known, assumptions, analysis), asked)
     return _in_document_names((yield from steps), assumptions)
+
+
+def _unsampled(result: Result) -> Result:
+    return replace(result, warnings=(*result.warnings, TIED))
 
 
 def _unknowns(known: KnownLine, assumptions: Sequence[Assumption], analysis: spec.Analysis) -> Unknowns:

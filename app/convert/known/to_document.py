@@ -25,7 +25,7 @@ Made = TypeVar("Made")
 
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
 _KEPT = ("design_wind",)
-_AS_SAID = {"name", "asset_id", "tags", "devices", "climate", "phases", "required_clearance"}
+_AS_SAID = {"name", "asset_id", "tags", "devices", "climate", "phases", "required_clearance", "section"}
 _DOCUMENT_UNITS: Mapping[str, str] = {"rad": "deg", "": "1"}
 # What the document calls otherwise than the engine, and what only the engine has, with its unit.
 _OTHER_NAMES: Mapping[str, str] = {

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 from app.convert import parts
+from app.convert.assemble import section_with_ice
 from app.convert.known.own_rows import OwnRows
 from app.convert.pointers import json_names
 from app.reference import conductors, ice_shapes
@@ -15,6 +16,7 @@ from app.reference.catalogue_row import CatalogueRow, name_key
 from app.schemas import IceSegment
 from app.schemas import known as said
 from app.schemas.faults import Fault, json_pointer
+from app.schemas.line import Phase
 from app.schemas.measured import OwnTable
 from engine import spec
 from engine.known import description as known
@@ -75,6 +77,8 @@ def known_line(line: said.KnownLine, own: OwnRows) -> known.KnownLine:
     ice = gathered.part(lambda: _ice(line, own))
     supports = gathered.part(lambda: parts.supports(line.supports))
     wind = gathered.part(lambda: None if line.wind is None else parts.wind(line.wind))
+    section = gathered.part(lambda: None if line.section is None else section_with_ice(line.section))
+    phases = [gathered.part(partial(_phase, i, part)) for i, part in enumerate(line.phases)]
     devices = [gathered.part(partial(_device, i, part)) for i, part in enumerate(line.devices)]
     if conductor is None or bundle is None or span is None or ice is None or supports is None or gathered.faults:
         raise InvalidSpec(*gathered.faults)
@@ -87,6 +91,8 @@ def known_line(line: said.KnownLine, own: OwnRows) -> known.KnownLine:
         wind=wind,
         damping=_damping(line.damping),
         devices=tuple(device for device in devices if device is not None),
+        section=section,
+        phases=tuple(phase for phase in phases if phase is not None),
     )
 
 
@@ -190,6 +196,13 @@ def _device(index: int, part: Any) -> spec.Device:
         return parts.device(part)
     except InvalidSpec as error:
         raise InvalidSpec(*(replace(f, field=f"devices.{index}.{f.field}") for f in error.faults)) from error
+
+
+def _phase(index: int, part: Phase) -> spec.Phase:
+    try:
+        return spec.Phase(part.name, part.y, part.z, part.required_clearance)
+    except InvalidSpec as error:
+        raise InvalidSpec(*(replace(f, field=f"phases.{index}.{f.field}") for f in error.faults)) from error
 
 
 def _accretion(part: said.Accretion) -> Accretion:

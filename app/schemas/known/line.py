@@ -11,6 +11,7 @@ from app.schemas.fields import Document, Label, TagKey, quantity
 from app.schemas.known.ice import ACCRETION, KnownIce
 from app.schemas.known.parts import KnownBundle, KnownConductor, KnownSpan, as_in
 from app.schemas.line import Line, Phase, Supports
+from app.schemas.section import Section
 
 _EVERYDAY = {"temperature_c": 15.0, "share_of_rated_strength": 0.2}
 
@@ -75,6 +76,11 @@ class KnownLine(Document):
     required_clearance: float | None = as_in(Line, "required_clearance")
     design_wind: float | None = quantity(
         "design_wind_m_per_s", "Wind speed of design; kept as it is", "m/s", (0.1, 100.0), 10.0, None
+    )
+    section: Section | None = Field(
+        default=None,
+        description=Line.model_fields["section"].description,
+        examples=Line.model_fields["section"].examples,
     )
     climate: Climate | None = Field(
         default=None, description="Winds and icing of the year, for the table `risk`", examples=[CLIMATE]

@@ -7,14 +7,7 @@ from app.reference.conductors import named
 from app.reference.source_lines import example
 from app.schemas.faults import BadInput
 from engine.known.resolve import resolve
-from tests.app.known_documents import CONTRACT, LINES, changed
-
-EXPLICIT = {"explicit", "explicit without what can be assumed"}
-
-
-@pytest.mark.parametrize("name", LINES)
-def test_forms_beyond_the_explicit_line_are_told(name: str) -> None:
-    assert convert.is_known_form(LINES[name]) is (name not in EXPLICIT)
+from tests.app.known_documents import CONTRACT, changed
 
 
 def test_an_explicit_line_stays_the_object_that_it_is() -> None:
@@ -71,3 +64,34 @@ def test_a_request_that_was_given_back_is_taken_again_unless_it_was_changed() ->
         with pytest.raises(BadInput) as caught:
             convert.explicit_request(wrong)
         assert [fault.pointer for fault in caught.value.faults] == ["/known"]
+
+
+@pytest.mark.parametrize(
+    ("part", "field"),
+    [
+        ("damping", "vertical_ratio"),
+        ("conductor", "torsional_rigidity_n_m2"),
+        ("conductor", "polar_inertia_kg_m"),
+        ("conductor", "axial_rigidity_n"),
+    ],
+)
+def test_nothing_that_can_be_estimated_is_required(part: str, field: str) -> None:
+    line = example("c11-twin")
+    line[part] = {name: value for name, value in line[part].items() if name != field}
+    request = convert.read(convert.explicit_request({"line": line}))
+    assert request.known is not None
+    rows = {row["path"]: row for row in convert.resolve_document(line)["assumptions"]}
+    assert rows[f"{part}.{field}"]["origin"] in {"assumed", "computed"}
+    told = request.line.model_dump(by_alias=True)[part][field]
+    assert told == pytest.approx(rows[f"{part}.{field}"]["value"])
+    assert request.kept()["line"]["span"]["horizontal_tension_n"] == line["span"]["horizontal_tension_n"]
+
+
+def test_what_cannot_be_estimated_is_missed_by_its_name() -> None:
+    line = example("c11-twin")
+    del line["conductor"]["mass_kg_per_m"]
+    with pytest.raises(BadInput) as caught:
+        convert.read(convert.explicit_request({"line": line}))
+    assert [(fault.pointer, fault.code) for fault in caught.value.faults] == [
+        ("/line/conductor/mass_kg_per_m", "missing")
+    ]

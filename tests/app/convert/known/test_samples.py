@@ -6,8 +6,14 @@ from typing import Any
 import pytest
 
 from app import convert
+from app.convert.known.samples import TIED, Analysed, with_what_is_known
 from app.schemas.faults import BadInput
-from tests.app.known_documents import CONTRACT, changed
+from engine import spec
+from engine.analysis import analyse
+from engine.known.resolve import resolve
+from engine.progress import finished
+from tests.app.known_documents import CONTRACT, LINES, changed
+from tests.builders import source_line
 
 ANALYSIS = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 10.0]}
 LYING = changed(ice={**CONTRACT["ice"], "accretion": {"shape": "crescent", "thickness_m": 0.012}})
@@ -75,3 +81,17 @@ def test_what_cannot_be_asked_is_refused(field: str, value: int) -> None:
     with pytest.raises(BadInput) as caught:
         convert.read({"line": convert.resolve_document(LYING)["line"], "analysis": {"uncertainty": {field: value}}})
     assert [fault.pointer for fault in caught.value.faults] == [f"/analysis/uncertainty/{field}"]
+
+
+def test_what_is_assumed_of_tied_phases_is_listed_and_said_not_to_be_sampled() -> None:
+    known = convert.known_of(convert.read(convert.explicit_request({"line": LINES["tied to a phase"]})))
+    assert known is not None
+    line = resolve(known).line
+    assert [phase.name for phase in line.phases] == ["top", "ground wire"]
+    result = finished(
+        analyse(source_line(2), spec.Analysis(loops=(1,), models=(spec.Model.HYBRID,), wind_speeds=(5.0,)))
+    )
+    told = finished(with_what_is_known(result, Analysed(line, spec.Analysis(), ()), known, spec.Uncertainty(8)))
+    assert told.warnings == (*result.warnings, TIED)
+    assert (told.uncertainty, told.sensitivities) == ((), ())
+    assert {row.path for row in told.assumptions} >= {"damping.vertical_ratio", "conductor.torsional_rigidity_n_m2"}

@@ -32,9 +32,9 @@ def test_the_explicit_document_is_the_line_that_was_resolved(name: str) -> None:
     read, _, faults = gather(SoundParts.of(Line.model_validate(explicit)), None)
     assert faults == []
     assert read is not None
-    # The analysis decides on the section, and resolving hands on climate and phases as they were said.
+    # The analysis decides on the section, and resolving hands on the climate as it was said.
     bundle = replace(read.bundle, section=made.bundle.section)
-    settled = replace(read, bundle=bundle, climate=None, phases=(), required_clearance=None)
+    settled = replace(read, bundle=bundle, climate=None, required_clearance=None)
     expected, found = numbers(asdict(made)), numbers(asdict(settled))
     assert len(expected) == len(found)
     for here, there in zip(expected, found, strict=True):
@@ -111,3 +111,25 @@ def test_faults_of_the_whole_line_are_found() -> None:
 )
 def test_paths_are_those_of_documents(engine: str, document: str) -> None:
     assert document_path(engine) == document
+
+
+def test_a_section_has_the_ruling_span_of_its_spans_and_holds_the_ends() -> None:
+    resolved = convert.resolve_document(LINES["in a section on a slope"])
+    rows = {row["path"]: row for row in resolved["assumptions"]}
+    ruling = rows["span.ruling_span_m"]
+    assert (ruling["origin"], ruling["value"]) == ("computed", pytest.approx((84.889e6 / 910.0) ** 0.5))
+    assert not any(path.startswith("supports.") for path in rows)
+    assert [span["level_difference_m"] for span in resolved["line"]["section"]["spans"]] == [0.0, 12.0, -5.0]
+    alone = dict(LINES["in a section on a slope"])
+    del alone["section"]
+    alone["span"] = {**alone["span"], "ruling_span_m": ruling["value"]}
+    spelled = convert.resolve_document(alone)["line"]
+    assert resolved["line"]["span"] == spelled["span"]
+
+
+def test_faults_of_a_section_point_into_it() -> None:
+    line = dict(LINES["in a section on a slope"])
+    line["section"] = {**line["section"], "strings": []}
+    with pytest.raises(BadInput) as caught:
+        convert.resolve_document(line)
+    assert [fault.pointer for fault in caught.value.faults] == ["/section/strings"]
