@@ -270,6 +270,7 @@ def _unexpanded_parts(load: UnexpandedLoad) -> tuple[AnyArray, ...]:
         load.rest_angle,
         load.at_rest,
         curves.origin,
+        curves.density,
         begins,
         curves.knots,
         curves.powers,

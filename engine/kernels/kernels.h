@@ -32,12 +32,12 @@ static inline int monomials_of(int variables)
 
 /* The load of the relative wind as it stands, laid out as engine.models.unexpanded_load.UnexpandedLoad: fields (points, 3,
  * m), strength, factor, rest_angle, which (points), diameter, positions (points, subconductors, 2), present (subconductors)
- * and at_rest (m) of a member; curves of all members: first (curves + 1), the pieces of each, periodic, turning, origin
- * (curves), begins, knots (pieces) and powers (pieces, 3, 4). */
+ * and at_rest (m) of a member; curves of all members: first (curves + 1), the pieces of each, periodic, turning, origin,
+ * density (curves), begins, knots (pieces) and powers (pieces, 3, 4). */
 typedef struct {
     ptrdiff_t points, subconductors;
     const double *fields, *strength, *factor, *diameter, *positions, *present, *rest_angle, *at_rest;
-    const double *origin, *begins, *knots, *powers;
+    const double *origin, *density, *begins, *knots, *powers;
     const ptrdiff_t *which, *first, *periodic, *turning;
 } Unexpanded;
 
@@ -54,8 +54,8 @@ typedef struct {
 /* Return one member of a stack of unexpanded loads with m coordinates. */
 Unexpanded unexpanded_of(const Unexpanded *stack, int m, ptrdiff_t member);
 
-/* Evaluate an unexpanded load (m) and, if it is wanted, its gradient (m, 2 m) at one state (2 m). */
-void unexpanded_force(const Unexpanded *load, int m, const double *state, double *force, double *gradient);
+/* Evaluate an unexpanded load (m) at LANES states (2 m). */
+void unexpanded_force(const Unexpanded *load, int m, const Lanes *state, Lanes *force);
 
 /* Evaluate an unexpanded load (m) and its gradient by (q, q'/U), (m, 2 m), at LANES states (2 m). */
 void unexpanded_at(const Unexpanded *load, int m, const Lanes *state, Lanes *force, Lanes *gradient);

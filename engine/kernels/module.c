@@ -72,12 +72,12 @@ static int read_unexpanded(Buffers *held, PyObject *parts, const int *shape, Une
     const Py_ssize_t pieces = first[curves];
     const Py_ssize_t sizes[] = {members * points * 3 * m, members * points, members * points, members,
                                 members * points * n * 2, members * n, members * points, members * m,
-                                curves, pieces, pieces, 12 * pieces};
-    const double *read[12];
-    if (!read_reals(held, parts, 9, 12, sizes, read))
+                                curves, curves, pieces, pieces, 12 * pieces};
+    const double *read[13];
+    if (!read_reals(held, parts, 9, 13, sizes, read))
         return 0;
     *load = (Unexpanded){points,  n,       read[0], read[1], read[2],  read[3],  read[4], read[5],  read[6],
-                         read[7], read[8], read[9], read[10], read[11], which,    first,   periodic, turning};
+                         read[7], read[8], read[9], read[10], read[11], read[12], which,   first,   periodic, turning};
     return 1;
 }
 

@@ -51,21 +51,34 @@ static void find_reach(const Group *group)
     }
 }
 
+/* Evaluate the unexpanded loads at (q, q'/U): all lanes at once where they have the same one. */
+WITHIN void unexpanded_forces(const Group *group, const Lanes *state, Lanes *force)
+{
+    const int m = group->m;
+    unexpanded_force(group->unexpanded, m, state, force);
+    for (int lane = 1; lane < LANES; lane++) {
+        Lanes own[m];
+        if (group->unexpanded[lane].fields == group->unexpanded->fields)
+            continue;
+        unexpanded_force(group->unexpanded + lane, m, state, own);
+        for (int i = 0; i < m; i++)
+            force[i][lane] = own[i][lane];
+    }
+}
+
 /* Add the part of an unexpanded load, less its linear part, to q'' (m) at a state (2 m). */
 static void add_unexpanded(const Group *group, const Lanes *state, Lanes *result)
 {
     const int m = group->m;
-    double x[2 * m], force[m];
-    for (int lane = 0; lane < LANES; lane++) {
-        for (int i = 0; i < m; i++) {
-            x[i] = state[i][lane];
-            x[m + i] = state[m + i][lane] / (*group->wind_speed)[lane];
-        }
-        unexpanded_force(group->unexpanded + lane, m, x, force, NULL);
-        for (int i = 0; i < m; i++)
-            for (int j = 0; j < m; j++)
-                result[i][lane] += group->gain[i * m + j][lane] * force[j];
+    Lanes x[2 * m], force[m];
+    for (int i = 0; i < m; i++) {
+        x[i] = state[i];
+        x[m + i] = state[m + i] / *group->wind_speed;
     }
+    unexpanded_forces(group, x, force);
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < m; j++)
+            result[i] += group->gain[i * m + j] * force[j];
     for (int i = 0; i < m; i++)
         for (int j = 0; j < 2 * m; j++)
             result[i] -= group->linear[i * 2 * m + j] * state[j];

@@ -18,6 +18,7 @@ from engine.spec import CLOSED, TURN, Aerodynamics, Line, MeasuredCoefficients
 
 SPACING = 32.0  # rad between the search keys of two curves: more than a full turn and its margins
 MARGIN = 1.0  # rad beyond the ends of a table, within which the search keys of the linear pieces lie
+EQUAL = 1e-13  # rad: largest error of the beginning of a piece that is as long as the others
 ORDER = 3
 FIT_POINTS = 41  # angles at which a curve is evaluated to fit a cubic to it
 LIFT, DRAG, MOMENT = range(3)
@@ -51,6 +52,12 @@ class CoefficientCurves:
         count = self.origin.size
         first = np.searchsorted(self.keys, np.arange(count + 1) * SPACING - 3.0 * MARGIN)
         return first, self.keys - np.repeat(np.arange(count), np.diff(first)) * SPACING
+
+    @property
+    def density(self) -> FloatArray:
+        """The number of pieces a radian where those between the first and the last row are equally long, else 0."""
+        first, begins = self.pieces
+        return np.array([_density(part[part >= 0.0]) for part in np.split(begins, first[1:-1])])
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,6 +265,14 @@ def _table_pieces(table: MeasuredCoefficients) -> tuple[FloatArray, FloatArray, 
     knots = np.concatenate([angle[:1], angle])
     keys = np.concatenate([[-2.0 * MARGIN], angle - angle[0]])
     return keys, knots, np.concatenate([left, powers, right])
+
+
+def _density(begins: FloatArray) -> float:
+    """Return how many of the pieces that begin at these distances make a radian, 0 if they differ in length."""
+    if begins.size < 2:
+        return 0.0
+    density = (begins.size - 1) / begins[-1]
+    return float(density) if np.abs(begins - np.arange(begins.size) / density).max() < EQUAL else 0.0
 
 
 def _ends(source: Aerodynamics) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,13 +17,14 @@ from engine.cycles.harmonic_balance import Orbits, balance, linearized
 from engine.cycles.search import Cycles, find_cycles
 from engine.cycles.starts import energy_starts
 from engine.kernels import compiled
+from engine.mechanics.coefficients import fit_measured
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.newton import NewtonOptions, Solution
 from engine.outcome import Outcome
-from engine.spec import Analysis, Closure
+from engine.spec import Analysis, Closure, MeasuredCoefficients
 from tests.builders import hybrid, source_line
-from tests.engine.motions import COPIES, MODELS, perturbed, random_orbits
+from tests.engine.motions import COPIES, MODELS, TABLE, perturbed, random_orbits, short
 
 
 def test_a_machine_with_a_compiler_has_them() -> None:
@@ -221,3 +223,27 @@ def test_direct_integration_that_diverges_is_noticed_by_both_forms(both: pytest.
         both.setattr(compiled, "AVAILABLE", available)
         runs = integrate_until_settled(model, member, wind, start, 2)
         assert runs.outcome.tolist() == [Outcome.LIMIT_REACHED, Outcome.NO_CONVERGENCE]
+
+
+UNEVEN = np.radians([-60.0, -33.0, -20.0, -12.0, -7.0, 0.0, 4.0, 9.0, 15.0, 31.0, 47.0])
+
+
+@pytest.mark.parametrize("rows", [np.linspace(-0.7, 0.8, 16), UNEVEN, np.append(UNEVEN, UNEVEN[0] + 2.0 * np.pi)])
+def test_the_load_of_a_table_is_that_of_the_numpy_form_whatever_its_rows(
+    rows: FloatArray, both: pytest.MonkeyPatch
+) -> None:
+    """Rows at equal distances need no search; motions here leave a stretch at both ends and outrun the wind."""
+    columns = (np.sin(2.0 * rows) + 0.3 * np.cos(rows), 1.0 - 0.5 * np.cos(2.0 * rows), 0.2 * np.sin(3.0 * rows))
+    lift, drag, moment = (tuple(column.tolist()) for column in columns)
+    table = MeasuredCoefficients(tuple(rows.tolist()), lift, drag, moment, 0.05, 0.5)
+    line = short(source_line(3))
+    line = replace(line, ice=replace(line.ice, aerodynamics=fit_measured(table)))
+    model = hybrid(line, 2, TABLE)
+    orbits = random_orbits(model, 3, 8)
+    orbits = replace(orbits, coefficients=np.geomspace(0.01, 3.0, 8)[:, None, None] * orbits.coefficients)
+    found = linearized(model, np.zeros(8, dtype=np.intp), orbits)
+    both.setattr(compiled, "AVAILABLE", False)
+    expected = linearized(model, np.zeros(8, dtype=np.intp), orbits)
+    for mine, theirs in zip(found, expected, strict=True):
+        size = np.abs(theirs).max(axis=0)
+        assert (np.abs(mine - theirs) <= 1e-9 * np.abs(theirs) + 1e-11 * size).all()

@@ -145,3 +145,14 @@ def test_every_point_has_the_curve_of_its_ice_and_its_static_angle() -> None:
     assert (local.which[1] == 0).all()
     assert local.angle[1] == pytest.approx(math.radians(20.0))
     assert set(local.angle[0][local.which[0] == 1].tolist()) == {0.0}
+
+
+def test_density_of_rows_at_equal_distances_and_of_others() -> None:
+    table = measured(0.0)
+    rows = [*range(0, 20), *range(20, len(table.angle), 5)]
+    uneven = replace(
+        table, **{name: tuple(getattr(table, name)[i] for i in rows) for name in ("angle", "lift", "drag", "moment")}
+    )
+    sources = (fit_measured(table), fit_measured(stretch(table, -30.0, 40.0)), fit_measured(uneven), AT_REST)
+    per_degree = 180.0 / math.pi
+    assert coefficient_curves(sources).density == pytest.approx([per_degree, per_degree, 0.0, 0.0], rel=1e-9)
