@@ -149,10 +149,11 @@ def test_every_point_has_the_curve_of_its_ice_and_its_static_angle() -> None:
 
 def test_density_of_rows_at_equal_distances_and_of_others() -> None:
     table = measured(0.0)
-    rows = [*range(0, 20), *range(20, len(table.angle), 5)]
-    uneven = replace(
-        table, **{name: tuple(getattr(table, name)[i] for i in rows) for name in ("angle", "lift", "drag", "moment")}
+    rows = [*range(20), *range(20, len(table.angle), 5)]
+    angle, lift, drag, moment = (
+        tuple(column[i] for i in rows) for column in (table.angle, table.lift, table.drag, table.moment)
     )
+    uneven = MeasuredCoefficients(angle, lift, drag, moment, table.static_angle, table.half_range)
     sources = (fit_measured(table), fit_measured(stretch(table, -30.0, 40.0)), fit_measured(uneven), AT_REST)
     per_degree = 180.0 / math.pi
     assert coefficient_curves(sources).density == pytest.approx([per_degree, per_degree, 0.0, 0.0], rel=1e-9)
