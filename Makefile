@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: setup demo test test-faults reliability check bench capacity validation
+.PHONY: setup demo test test-pages test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -21,6 +21,10 @@ demo: setup
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal tests
+
+# Opens every page in the chromium of the system; CHROMIUM names another one.
+test-pages: setup
+	$(BIN)/python -m pytest tests/browser
 
 # Kills and restarts processes for some seven minutes and prints the figures; `make reliability` writes them into
 # docs/reliability.md.

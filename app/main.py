@@ -21,6 +21,7 @@ from app.jobs.dispatch import Sender, celery_application
 from app.jobs.job_records import look_up
 from app.jobs.watched_states import batches_seen, jobs_seen
 from app.operation import metrics
+from app.pages import assets, frame, views
 from app.routes import (
     aerodynamics,
     batch_intake,
@@ -107,15 +108,19 @@ def create_app(settings: Settings | None = None) -> Service:
         responses={"default": documentation.ANY_PROBLEM},
     )
     _equip(app, settings, database)
-    meter = Meter(settings)
+    app.state.meter = meter = Meter(settings)
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
-    problems.install(app, {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes})
+    limits = {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes}
+    problems.install(app, limits, frame.shown_problem)
     app.add_middleware(HeadAsGet)
     for module in (jobs, lines, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)
     for module in (events, deliveries, aerodynamics, own_aerodynamics, own_conductors, reference, health, explorer):
         app.include_router(module.router)
-    app.mount(explorer.ASSETS, explorer.assets())
+    for router in views.routers():
+        app.include_router(router)
+    for address, files in {explorer.ASSETS: explorer.assets(), **assets.folders()}.items():
+        app.mount(address, files)
     return app
 
 

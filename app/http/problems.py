@@ -120,8 +120,13 @@ def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequ
     }
 
 
-def install(app: FastAPI, max_body_bytes: Mapping[str, int]) -> None:
+Shown = Callable[[Request, ProblemError], Response | None]
+"""Returns a page that explains a problem to a person, or None where a program asked."""
+
+
+def install(app: FastAPI, max_body_bytes: Mapping[str, int], shown: Shown) -> None:
     """Make an application answer every error with a problem, and limit its bodies by path; "" means all other paths."""
+    app.state.shown_problem = shown
     app.add_exception_handler(ProblemError, answer)
     app.add_exception_handler(Bodiless, _on_bodiless)
     app.add_exception_handler(HTTPException, _on_http)
@@ -196,7 +201,10 @@ def _count(faults: Sequence[Fault]) -> str:
     return f"The document has {len(faults)} fault{'s' if len(faults) != 1 else ''}."
 
 
-def _respond(request: Request, problem: ProblemError) -> JSONResponse:
+def _respond(request: Request, problem: ProblemError) -> Response:
+    shown: Response | None = request.app.state.shown_problem(request, problem)
+    if shown is not None:
+        return shown
     document = problem_document(problem.kind, problem.detail, request.url.path[:500], problem.faults)
     if problem.links:
         document["links"] = list(problem.links)

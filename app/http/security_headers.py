@@ -7,7 +7,7 @@ _PICTURES_AND_PROBLEMS = (
     b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 _SWAGGER = (
-    b"default-src 'none'; connect-src 'self'; img-src 'self' data:; "
+    b"default-src 'none'; connect-src 'self'; img-src 'self' data: blob:; "
     b"script-src 'unsafe-inline' 'self'; style-src 'unsafe-inline' 'self'; "
     b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )

@@ -15,11 +15,12 @@ from app.http import problems
 from app.http.problems import ProblemError, ProblemKind
 from app.runtime.loopback import is_loopback
 from app.runtime.settings import Settings
-from app.security import keys
+from app.security import keys, sessions
 from app.security.caller import LOCAL, Caller, Scope
 from app.security.quotas import Meter, Quota, Standing
 
-_OPEN = ("/docs", "/health", "/openapi.json", "/problems")
+_OPEN = ("/docs", "/health", "/openapi.json", "/pages/assets", "/pages/sign-in", "/problems")
+_PAGES = "/pages"
 _FORWARDED = (b"forwarded", b"x-forwarded-for")
 _NEEDED = {"GET": Scope.READ, "POST": Scope.SUBMIT, "PUT": Scope.SUBMIT, "PATCH": Scope.SUBMIT, "DELETE": Scope.CANCEL}
 
@@ -29,8 +30,9 @@ Headers = Mapping[bytes, bytes]
 class Gate:
     """ASGI middleware that admits requests with a valid key, the right scope and remaining quota.
 
-    While no key exists, the service answers its own machine only, without quotas. The gate stores the caller in the
-    request's state as `caller`.
+    While no key exists, the service answers its own machine only, without quotas. A browser may show a session in place
+    of a key to read, and to send the forms of pages, which have marks of their own against forgery. The gate stores the
+    caller in the request's state as `caller`.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class Gate:
     ) -> None:
         """Wrap an application."""
         self.app = app
+        self._settings = settings
         self._meter = meter
         self._callers = ExpiringCache(partial(_look_up, readers, writers), settings.key_cache_seconds)
         self._unguarded: ExpiringCache[str, bool] = ExpiringCache(
@@ -87,13 +90,12 @@ class Gate:
         return caller, await self._take(self._reads if needed is Scope.READ else self._changes, caller.owner)
 
     async def _caller(self, scope: types.Scope, headers: Headers) -> Caller:
-        text = _bearer(headers)
-        if text is None:
+        digest = self._digest(scope, headers)
+        if digest is None:
             if _is_from_this_machine(scope, headers) and await self._unguarded.get(""):
                 return LOCAL
             detail = "Send a key as Authorization: Bearer; a service without keys answers its own machine only."
             raise _refused(ProblemKind.UNAUTHENTICATED, detail)
-        digest = keys.digest_of(text)
         if not self._callers.holds(digest):
             # An unfamiliar key costs a database query, so limit how many one client address may try.
             await self._take(self._strangers, str((scope.get("client") or ("",))[0]))
@@ -102,6 +104,16 @@ class Gate:
             detail = "The key is unknown, revoked or expired."
             raise _refused(ProblemKind.UNAUTHENTICATED, detail, error="invalid_token")
         return caller
+
+    def _digest(self, scope: types.Scope, headers: Headers) -> str | None:
+        """Return the digest of the key that a request shows, itself or by its session."""
+        text = _bearer(headers)
+        if text is not None:
+            return keys.digest_of(text)
+        path: str = scope["path"].removeprefix(scope.get("root_path", ""))
+        if b"cookie" in headers and (scope["method"] in {"GET", "HEAD"} or path.startswith(f"{_PAGES}/")):
+            return sessions.digest_of(self._settings, headers[b"cookie"].decode("latin-1"))
+        return None
 
     async def _take(self, quota: Quota, client: str) -> Standing:
         standing = await self._meter.take(quota, client)

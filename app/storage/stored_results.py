@@ -83,6 +83,13 @@ def rows(session: Session, job_id: UUID, table: str) -> Iterator[dict[str, Any]]
             yield {**point_axes, **row}
 
 
+def tables_of_point(session: Session, job_id: UUID, point: int) -> dict[str, list[dict[str, Any]]] | None:
+    """Return the rows of all tables of one point, None if the job has no such point."""
+    statement = select(PointRow.tables).where(PointRow.job_id == job_id, PointRow.point == point)
+    found = session.execute(statement).one_or_none()
+    return None if found is None else tables_of(found.tables)
+
+
 def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
     """Stream the points: number, axes, static state, Den Hartog coefficient, warnings, engine version, failure."""
     static = [getattr(PointRow, name) for name in STATIC]

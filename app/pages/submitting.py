@@ -1,0 +1,45 @@
+"""Submit what a form says, by the same way as `POST /v1/jobs`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from anyio import to_thread
+from fastapi import Request
+from pydantic import ValidationError
+
+from app import convert, schemas
+from app.jobs.job_records import Submission
+from app.jobs.submissions import Order
+from app.owned import records
+from app.pages.frame import caller_of
+from app.schemas.faults import BadInput, faults_of
+from app.tables import Job, JobStatus
+
+
+async def submit(request: Request, document: Mapping[str, Any], *, may_reuse: bool = True) -> Job:
+    """Check a request document, store its job and tell the workers.
+
+    Raises
+    ------
+    BadInput
+        With every fault of the document.
+    """
+    checked = await to_thread.run_sync(lambda: _checked(request, document))
+    line, shared = checked.line, request.app.state
+    submission = Submission(caller_of(request), checked.kept(), line.name, line.asset_id, line.tags)
+    job: Job = await shared.inbox.call(Order(submission, may_reuse=may_reuse))
+    if job.status is JobStatus.ACCEPTED:
+        shared.messages.submit(job.id)
+    return job
+
+
+def _checked(request: Request, document: Mapping[str, Any]) -> schemas.JobRequest:
+    with request.app.state.readers() as session:
+        own = records.own_rows(session, caller_of(request).owner)
+    try:
+        found = schemas.JobRequest.model_validate(convert.explicit_request(dict(document), own))
+    except ValidationError as error:
+        raise BadInput(faults_of(error.errors(include_url=False))) from error
+    if faults := convert.request_faults(found):
+        raise BadInput(faults)
+    return found

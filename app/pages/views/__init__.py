@@ -1,0 +1,12 @@
+"""The addresses of pages: each module answers those of one page, and turns forms into what the API takes."""
+
+from fastapi import APIRouter
+
+from app.pages.views import jobs, line_form, preferences, result, sign_in, start
+
+__all__ = ["routers"]
+
+
+def routers() -> tuple[APIRouter, ...]:
+    """Return the routers of all pages."""
+    return tuple(module.router for module in (start, jobs, line_form, result, preferences, sign_in))

@@ -1,0 +1,30 @@
+"""What a reader prefers, units and appearance, kept in cookies for a year."""
+
+from fastapi import APIRouter, Request, Response
+
+from app.pages.forms import Fields, local_path
+from app.pages.frame import THEMES, address, moved
+from app.pages.measures import BY_NAME
+
+router = APIRouter(include_in_schema=False)
+
+_YEAR_SECONDS = 365 * 24 * 3600
+_CHOICES = {"units": tuple(BY_NAME), "theme": THEMES}
+
+
+@router.post("/pages/preferences")
+async def keep_preferences(request: Request, fields: Fields) -> Response:
+    """Keep what the form says, and go back to the page on which it was."""
+    answer = moved(request, local_path(fields.get("back", "/")))
+    for name, choices in _CHOICES.items():
+        if fields.get(name) in choices:
+            answer.set_cookie(
+                f"galloping_{name}",
+                fields[name],
+                max_age=_YEAR_SECONDS,
+                path=address(request)("/"),
+                secure=request.url.scheme == "https",
+                httponly=True,
+                samesite="lax",
+            )
+    return answer

@@ -1,0 +1,86 @@
+"""The page of a job: its progress while it runs, then the verdict and everything behind it."""
+
+from typing import Annotated, Any
+from uuid import UUID
+
+from fastapi import APIRouter, Query, Request, Response
+from fastapi.responses import JSONResponse
+
+from app.http.problems import ProblemError, ProblemKind
+from app.jobs import job_records
+from app.jobs.job_records import CancelOutcome
+from app.pages.curves import curves
+from app.pages.findings import Findings, findings
+from app.pages.forms import Fields
+from app.pages.frame import moved, page, units_of
+from app.pages.recipes import recipes
+from app.pages.result_parts import parts
+from app.pages.submitting import submit
+from app.pages.wording import words
+from app.routes.dependencies import CallerOf, Readers, Writers
+from app.routes.finished_jobs import FinishedJob
+from app.routes.job_status import find_job
+from app.security.caller import Scope
+from app.tables import Job, JobStatus
+
+router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}")
+
+Point = Annotated[int, Query(ge=0, description="Number of the study's point, from 0")]
+_UNDER_WAY = {JobStatus.ACCEPTED, JobStatus.RUNNING}
+
+
+@router.get("")
+def job_page(request: Request, job_id: UUID, caller: CallerOf, readers: Readers, point: Point = 0) -> Response:
+    """Return the page of a job in its state."""
+    with readers() as session:
+        job = find_job(session, caller, job_id)
+        if job.status in _UNDER_WAY:
+            return page(request, "job_under_way.html", job=job)
+        found = None if job.status is JobStatus.DISMISSED else findings(session, job, point)
+    if found is None or found.here["failure"]:
+        return page(request, "job_without_result.html", job=job, found=found)
+    service = str(request.base_url).rstrip("/")
+    repeat = recipes(job, service, with_key=caller.key_id is not None)
+    return page(request, "result.html", job=job, found=found, recipes=repeat, **parts(job, found, units_of(request)))
+
+
+@router.get("/curves")
+def curves_of_job(request: Request, finished: FinishedJob, readers: Readers, point: Point = 0) -> Response:
+    """Return the curves that the page draws."""
+    return JSONResponse(curves(_found(readers, finished.job, point), units_of(request)))
+
+
+@router.post("/cancel")
+def cancel(request: Request, job_id: UUID, caller: CallerOf, writers: Writers, fields: Fields) -> Response:
+    """Cancel a job that is under way, or remove one that has ended.
+
+    Raises
+    ------
+    ProblemError
+        403 if the key may not cancel.
+    """
+    del fields
+    if Scope.CANCEL not in caller.scopes:
+        raise ProblemError(ProblemKind.FORBIDDEN, words().result.may_not_cancel)
+    with writers.begin() as session:
+        outcome = job_records.cancel(session, caller, job_id)
+    gone = outcome in {CancelOutcome.REMOVED, CancelOutcome.MISSING}
+    return moved(request, "/pages/jobs" if gone else f"/pages/jobs/{job_id}")
+
+
+@router.post("/again")
+async def again(request: Request, job_id: UUID, caller: CallerOf, readers: Readers, fields: Fields) -> Response:
+    """Submit the document of a job once more, to be computed anew."""
+    del fields
+    with readers() as session:
+        document: dict[str, Any] = dict(find_job(session, caller, job_id).document)
+    job = await submit(request, document, may_reuse=False)
+    return moved(request, f"/pages/jobs/{job.id}")
+
+
+def _found(readers: Any, job: Job, point: int) -> Findings:
+    with readers() as session:
+        found = findings(session, job, point)
+    if found is None:
+        raise ProblemError(ProblemKind.NOT_FOUND, words().result.no_results)
+    return found

@@ -1,0 +1,62 @@
+"""Sign in with a key, and out again. The cookie is for this service only, and scripts cannot read it."""
+
+from anyio import to_thread
+from fastapi import APIRouter, Request, Response
+
+from app.http.problems import ProblemError, ProblemKind
+from app.pages.forms import Fields, local_path
+from app.pages.frame import address, moved, page
+from app.pages.wording import words
+from app.security import keys, sessions
+from app.security.quotas import Quota
+
+router = APIRouter(include_in_schema=False)
+
+
+@router.get("/pages/sign-in")
+async def sign_in_form(request: Request, back: str = "/") -> Response:
+    """Return the form that asks for a key."""
+    return page(request, "sign_in.html", back=local_path(back), fault=None)
+
+
+@router.post("/pages/sign-in")
+async def sign_in(request: Request, fields: Fields) -> Response:
+    """Begin a session for a valid key, and go to the page that wanted one.
+
+    Raises
+    ------
+    ProblemError
+        429 if too many keys were tried from this address.
+    """
+    settings, back = request.app.state.settings, local_path(fields.get("back", "/"))
+    strangers = Quota("strangers", settings.strangers_per_minute)
+    standing = await request.app.state.meter.take(strangers, request.client.host if request.client else "")
+    if standing.left is None:
+        raise ProblemError(ProblemKind.TOO_MANY_REQUESTS, words().sign_in.too_often, headers=standing.fields)
+    digest = keys.digest_of(fields.get("key", "").strip())
+
+    def is_valid() -> bool:
+        with request.app.state.readers() as session:
+            return keys.look_up(session, digest)[0] is not None
+
+    if not await to_thread.run_sync(is_valid):
+        return page(request, "sign_in.html", 401, back=back, fault=words().sign_in.wrong)
+    answer = moved(request, back)
+    answer.set_cookie(
+        sessions.COOKIE,
+        sessions.issue(settings, digest),
+        max_age=sessions.LASTS_SECONDS,
+        path=address(request)("/"),
+        secure=request.url.scheme == "https",
+        httponly=True,
+        samesite="lax",
+    )
+    return answer
+
+
+@router.post("/pages/sign-out")
+async def sign_out(request: Request, fields: Fields) -> Response:
+    """End the session of this browser."""
+    answer = moved(request, "/pages/sign-in")
+    answer.delete_cookie(sessions.COOKIE, path=address(request)("/"), httponly=True, samesite="lax")
+    return answer

@@ -1,0 +1,65 @@
+from uuid import UUID
+
+import httpx
+import pytest
+from sqlalchemy import update
+
+from app.runtime.settings import Settings
+from app.storage.database import make_engine, session_factory
+from app.tables import FailureKind, Job, JobStatus
+from tests.app import service
+from tests.app.pages.reading import BROWSER, read, send
+
+
+def test_the_page_of_a_result_begins_with_the_verdict(shared_client: httpx.Client, known_job: str) -> None:
+    page = read(shared_client, f"/pages/jobs/{known_job}")
+    row = shared_client.get(f"/v1/jobs/{known_job}/results/verdict").json()["verdict"][0]
+    assert row["sentence"] in page.text
+    assert page.text.index("It gallops") < page.text.index("Amplitude over wind speed") < page.text.index("Assumptions")
+    for part in ("What decides", "Critical wind speeds", "Clearances", "Tensions", "Downloads", "curl"):
+        assert part in page.text
+
+
+def test_every_download_of_the_page_is_there(shared_client: httpx.Client, known_job: str) -> None:
+    addresses = read(shared_client, f"/pages/jobs/{known_job}").addresses
+    files = [address for address in addresses if address.startswith(f"/v1/jobs/{known_job}/")]
+    assert len(files) > 40
+    for address in [files[0], *(file for file in files if "verdict" in file or "orbit" in file)]:
+        assert shared_client.get(address).status_code == 200, address
+
+
+def test_curves_are_those_of_the_job(shared_client: httpx.Client, known_job: str) -> None:
+    drawn = shared_client.get(f"/pages/jobs/{known_job}/curves").json()
+    assert drawn["pieces"]
+    assert shared_client.get(f"/pages/jobs/{known_job}/curves?point=9").status_code == 404
+
+
+def test_a_waiting_job_shows_its_progress_and_can_be_cancelled(shared_client: httpx.Client) -> None:
+    job = service.submit(shared_client)["id"]
+    page = read(shared_client, f"/pages/jobs/{job}")
+    assert "waits for a worker" in page.text
+    answer = send(shared_client, f"/pages/jobs/{job}/cancel", {})
+    assert answer.headers["location"] == f"/pages/jobs/{job}"
+    assert "was cancelled" in read(shared_client, f"/pages/jobs/{job}").text
+    assert send(shared_client, f"/pages/jobs/{job}/cancel", {}).headers["location"] == "/pages/jobs"
+
+
+@pytest.mark.parametrize("kind", list(FailureKind))
+def test_a_failed_job_says_why_and_what_to_try(
+    shared_client: httpx.Client, shared_settings: Settings, kind: FailureKind
+) -> None:
+    job = service.submit(shared_client)["id"]
+    engine = make_engine(shared_settings)
+    with session_factory(engine).begin() as session:
+        failed = {"status": JobStatus.FAILED, "failure_kind": kind, "failure_detail": "The reason."}
+        session.execute(update(Job).where(Job.id == UUID(job)).values(**failed))
+    engine.dispose()
+    page = read(shared_client, f"/pages/jobs/{job}")
+    assert "The reason." in page.text
+    assert "What to try" in page.text
+
+
+def test_a_job_is_computed_anew_on_request(shared_client: httpx.Client, known_job: str) -> None:
+    answer = send(shared_client, f"/pages/jobs/{known_job}/again", {})
+    assert answer.status_code == 303
+    assert "waits for a worker" in shared_client.get(answer.headers["location"], headers=BROWSER).text
