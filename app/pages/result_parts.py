@@ -4,10 +4,15 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from markupsafe import Markup
+
 from app.convert import TABLES
 from app.pages import tornado
+from app.pages.drawings.orbits import orbit_picture
 from app.pages.findings import Findings, Row
 from app.pages.measures import Units
+from app.pages.motions import Motion, worst
+from app.pages.moving import name_of, surroundings
 from app.pages.shown_tables import ADDRESSES, ShownTable, shown_table
 from app.pages.wording import words
 from app.tables import Job
@@ -73,10 +78,12 @@ _COLUMNS = {
 }
 
 
-def parts(job: Job, found: Findings, units: Units) -> dict[str, Any]:
-    """Return the values of the template beside the job and what it found."""
+def parts(job: Job, found: Findings, units: Units, seen: Sequence[Motion]) -> dict[str, Any]:
+    """Return the values of the template beside the job, what it found, and the motions of which courses are stored."""
+    largest = worst(seen)
     return {
         "chart_words": json.dumps(vars(words().chart)),
+        "largest": None if largest is None else _largest(found, largest, units),
         "facts": facts(found, units),
         "assumed": [row for row in found.rows("assumptions") if row["origin"] == "assumed"],
         "known": [row for row in found.rows("assumptions") if row["origin"] != "assumed"],
@@ -108,6 +115,13 @@ def facts(found: Findings, units: Units) -> Sequence[tuple[str, str]]:
         (said.sag, static.get("sag_m"), "m"),
     )
     return [(name, units.shown(value, si)) for name, value, si in given if value is not None]
+
+
+def _largest(found: Findings, motion: Motion, units: Units) -> tuple[str, Markup]:
+    """Return the name of the motion that the verdict is about, and its picture."""
+    name = name_of(motion, units)
+    title = words().motion.orbit_title.format(name=name)
+    return name, orbit_picture(motion, surroundings(found), units, title)
 
 
 def _table(name: str, found: Findings, units: Units) -> ShownTable:

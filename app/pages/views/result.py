@@ -5,6 +5,7 @@ from uuid import UUID
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import JSONResponse
+from sqlalchemy.orm import Session
 
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import job_records
@@ -13,6 +14,8 @@ from app.pages.curves import curves
 from app.pages.findings import Findings, findings
 from app.pages.forms import Fields
 from app.pages.frame import moved, page, units_of
+from app.pages.motions import motions, worst
+from app.pages.moving import moving, name_of
 from app.pages.recipes import recipes
 from app.pages.result_parts import parts
 from app.pages.submitting import submit
@@ -37,17 +40,44 @@ def job_page(request: Request, job_id: UUID, caller: CallerOf, readers: Readers,
         if job.status in _UNDER_WAY:
             return page(request, "job_under_way.html", job=job)
         found = None if job.status is JobStatus.DISMISSED else findings(session, job, point)
+        seen = motions(session, job, found) if found is not None else []
     if found is None or found.here["failure"]:
         return page(request, "job_without_result.html", job=job, found=found)
     service = str(request.base_url).rstrip("/")
     repeat = recipes(job, service, with_key=caller.key_id is not None)
-    return page(request, "result.html", job=job, found=found, recipes=repeat, **parts(job, found, units_of(request)))
+    shown = parts(job, found, units_of(request), seen)
+    return page(request, "result.html", job=job, found=found, recipes=repeat, **shown)
+
+
+@router.get("/motion")
+def motion_of_job(
+    request: Request, finished: FinishedJob, readers: Readers, point: Point = 0, cycle: int | None = None
+) -> Response:
+    """Return the part of the page that shows one motion in its course: the one asked for, or the largest stable one.
+
+    Raises
+    ------
+    ProblemError
+        404 if there is no such motion.
+    """
+    job, units = finished.job, units_of(request)
+    with readers() as session:
+        found = _found(session, job, point)
+        seen = motions(session, job, found)
+    chosen = worst(seen) if cycle is None else next((motion for motion in seen if motion.number == cycle), None)
+    if chosen is None:
+        raise ProblemError(ProblemKind.NOT_FOUND, words().motion.none)
+    names = [(motion.number, name_of(motion, units)) for motion in seen]
+    shown = moving(job, found, chosen, units)
+    return page(request, "parts/motion.html", job=job, found=found, shown=shown, names=names)
 
 
 @router.get("/curves")
 def curves_of_job(request: Request, finished: FinishedJob, readers: Readers, point: Point = 0) -> Response:
     """Return the curves that the page draws."""
-    return JSONResponse(curves(_found(readers, finished.job, point), units_of(request)))
+    with readers() as session:
+        found = _found(session, finished.job, point)
+    return JSONResponse(curves(found, units_of(request)))
 
 
 @router.post("/cancel")
@@ -78,9 +108,8 @@ async def again(request: Request, job_id: UUID, caller: CallerOf, readers: Reade
     return moved(request, f"/pages/jobs/{job.id}")
 
 
-def _found(readers: Any, job: Job, point: int) -> Findings:
-    with readers() as session:
-        found = findings(session, job, point)
+def _found(session: Session, job: Job, point: int) -> Findings:
+    found = findings(session, job, point)
     if found is None:
         raise ProblemError(ProblemKind.NOT_FOUND, words().result.no_results)
     return found

@@ -14,7 +14,7 @@ def test_facts_are_those_of_the_verdict_in_the_units_of_the_reader(found: Findin
 
 
 def test_parts_hold_what_was_found_and_a_download_for_each_table(found: Findings) -> None:
-    made = parts(Job(tags=[]), found, SI)
+    made = parts(Job(tags=[]), found, SI, [])
     assert {row["origin"] for row in made["assumed"]} == {"assumed"}
     assert len(made["assumed"]) + len(made["known"]) == len(found.rows("assumptions"))
     assert {"critical_wind_speeds", "limit_cycles", "tensions", "clearances"} <= made["shown"].keys()

@@ -63,3 +63,10 @@ def test_a_job_is_computed_anew_on_request(shared_client: httpx.Client, known_jo
     answer = send(shared_client, f"/pages/jobs/{known_job}/again", {})
     assert answer.status_code == 303
     assert "waits for a worker" in shared_client.get(answer.headers["location"], headers=BROWSER).text
+
+
+def test_a_motion_is_shown_in_its_course(shared_client: httpx.Client, known_job: str) -> None:
+    text = shared_client.get(f"/pages/jobs/{known_job}/motion", headers=BROWSER).text
+    assert "data-motion=" in text
+    assert "style=" not in text
+    assert shared_client.get(f"/pages/jobs/{known_job}/motion?cycle=9999").status_code == 404
