@@ -11,6 +11,7 @@ from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths,
 from engine.cycles.branch_set import BranchSet, CycleProblem, orbits_of, points_of
 from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, first_harmonic_angle, select, total_size
+from engine.cycles.known_cycles import SLOWEST
 from engine.cycles.refinement import KnownExponents, judged_points, refined
 from engine.models.critical_wind_speeds import Crossings, critical_modes
 from engine.models.reduced_model import ReducedModel, lowest_frequency
@@ -23,12 +24,12 @@ from engine.numerics.continuation import (
     make_points,
     tangents,
 )
+from engine.outcome import Outcome
 from engine.progress import driven
 
 STEPS = StepControl(first=0.2)
 REFERENCE_ANGLE = 0.05  # rad; the amplitude with this angle of attack is the smallest scale of a branch
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
-SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is really a static one
 REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
 CLOSED = 0.7  # scaled distance from its start within which a branch that had left it farther than LEFT is closed
 LEFT = 1.0
@@ -38,9 +39,18 @@ CELLS = 8  # parts of a segment between two points that are searched for a given
 LOWEST_WIND = 0.25  # of the lowest requested wind speed: branches are not followed below it
 HIGHEST_WIND = 1.05  # of the highest wind speed: a branch may fold just above it and return
 
+Limits = tuple[float | FloatArray, float]
+"""Lowest value of the parameter, of all branches or (branches,), and highest one."""
+
 
 def follow_from_hopf_points(
-    model: ReducedModel, crossings: Crossings, hopf: IntArray, harmonics: int, winds: FloatArray
+    model: ReducedModel,
+    crossings: Crossings,
+    hopf: IntArray,
+    harmonics: int,
+    winds: FloatArray,
+    *,
+    into_range: bool = True,
 ) -> BranchSet:
     """Follow the branches that start at Hopf points.
 
@@ -56,6 +66,8 @@ def follow_from_hopf_points(
         H of the balance.
     winds : (winds,)
         Requested wind speeds in rising order [m/s]; branches are followed a little beyond the highest.
+    into_range : bool
+        Whether those that start beyond that are followed on where they enter it, see `entering` and `followed_into`.
     """
     member, speed = crossings.member[hopf], crossings.wind_speed[hopf]
     shape = critical_modes(model, member, speed)
@@ -67,13 +79,35 @@ def follow_from_hopf_points(
     problem = CycleProblem(model, member, reference)
     start = points_of(Orbits(np.zeros_like(first), hopf_wind_speed.angular_frequency, speed))
     direction = points_of(Orbits(first, np.zeros(hopf.size), np.zeros(hopf.size)))
-    return follow_branches(problem, start, direction, _wind_limits(winds), speed)
+    lowest, highest = wind_limits(winds)
+    own_lowest = np.where((speed > highest) & (not into_range), highest, lowest)
+    return follow_branches(problem, start, direction, (own_lowest, highest), speed)
+
+
+def entering(branch_set: BranchSet, winds: FloatArray) -> IntArray:
+    """Return the branches from Hopf points beyond the highest wind speed that end where they enter the range: (k,)."""
+    highest, last = wind_limits(winds)[1], branch_set.last
+    inside = branch_set.points.z[last, -1] < highest
+    began_beyond = np.isfinite(branch_set.hopf_wind_speed) & (branch_set.hopf_wind_speed > highest)
+    return np.flatnonzero(
+        began_beyond & inside & (branch_set.outcome == Outcome.CONVERGED) & ~branch_set.ended_at_equilibrium
+    )
+
+
+def followed_into(branch_set: BranchSet, index: IntArray, winds: FloatArray) -> BranchSet:
+    """Follow some of the branches on from their last points, within the range of wind speeds."""
+    if index.size == 0:
+        return branch_set
+    first = np.searchsorted(branch_set.points.branch, np.arange(branch_set.problem.member.size))
+    origin = branch_set.points.select(first)
+    limits = wind_limits(winds)
+    return _refined_throughout(_followed_on(branch_set, origin, index, limits), origin, limits)
 
 
 def follow_from_cycles(model: ReducedModel, member: IntArray, orbits: Orbits, winds: FloatArray) -> BranchSet:
     """Follow the branch of each cycle (k,): 2 k branches, k to higher wind speeds, then k to lower ones."""
     problem = CycleProblem(model, member, reference_size(model, member, orbits))
-    return follow_both_ways(problem, points_of(orbits), _wind_limits(winds))
+    return follow_both_ways(problem, points_of(orbits), wind_limits(winds))
 
 
 def reference_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
@@ -94,7 +128,8 @@ def follow_both_ways(problem: CycleProblem, start: FloatArray, limits: tuple[flo
     return follow_branches(problem, start, direction, limits, np.full(both.size, np.inf))
 
 
-def _wind_limits(winds: FloatArray) -> tuple[float, float]:
+def wind_limits(winds: FloatArray) -> tuple[float, float]:
+    """Return the wind speeds between which branches are followed for requested ones (winds,) [m/s]."""
     return LOWEST_WIND * float(winds[0]), HIGHEST_WIND * float(winds[-1])
 
 
@@ -137,7 +172,7 @@ def follow_branches(
     problem: CycleProblem,
     start: FloatArray,
     direction: FloatArray,
-    limits: tuple[float, float],
+    limits: Limits,
     hopf_wind_speed: FloatArray,
 ) -> BranchSet:
     """Follow branches from points (branches, n + 1) until they end or leave the limits of the parameter."""
@@ -146,6 +181,11 @@ def follow_branches(
     points = concatenated([origin, points])
     points = points.select(np.argsort(points.branch, kind="stable"))
     found = BranchSet(problem, points, outcome, ended, hopf_wind_speed, judged_points(problem, points))
+    return _refined_throughout(found, origin, limits)
+
+
+def _refined_throughout(found: BranchSet, origin: BranchPoints, limits: Limits) -> BranchSet:
+    """Refine branches, and follow those on that the continuation had left; origin: their first points."""
     exponents: KnownExponents = {}
     for _ in range(MOST_CUTS):
         found, cut = refined(found, exponents)
@@ -155,13 +195,14 @@ def follow_branches(
     return found
 
 
-def _followed_on(found: BranchSet, origin: BranchPoints, index: IntArray, limits: tuple[float, float]) -> BranchSet:
+def _followed_on(found: BranchSet, origin: BranchPoints, index: IntArray, limits: Limits) -> BranchSet:
     """Follow some of the branches on from their last points; origin: the first points of all branches."""
     own, last = found.problem.repeated(index), found.points.select(found.last[index])
     here, first = (
         make_points(own, np.arange(index.size), part.z, part.tangent) for part in (last, origin.select(index))
     )
-    points, outcome, ended = _followed(own, here, first, limits)
+    lowest = np.broadcast_to(limits[0], found.problem.member.shape)[index]
+    points, outcome, ended = _followed(own, here, first, (lowest, limits[1]))
     new = BranchPoints(index[points.branch], points.z, points.scale, points.tangent)
     every, judged = concatenated([found.points, new]), judged_points(found.problem, new)
     order = np.argsort(every.branch, kind="stable")
@@ -183,7 +224,7 @@ def _followed_on(found: BranchSet, origin: BranchPoints, index: IntArray, limits
 
 
 def _followed(
-    problem: CycleProblem, start: BranchPoints, origin: BranchPoints, limits: tuple[float, float]
+    problem: CycleProblem, start: BranchPoints, origin: BranchPoints, limits: Limits
 ) -> tuple[BranchPoints, ObjectArray, BoolArray]:
     """Follow branches from start points until they end; origin: their first points, at which closed ones end.
 
@@ -219,14 +260,13 @@ def _passed_equilibrium(problem: CycleProblem, before: BranchPoints, new: Branch
     return np.asarray(np.einsum("kmc,kmc,km->k", first, second, weight) < 0.0)
 
 
-def _stays_in_range(
-    problem: CycleProblem, new: BranchPoints, limits: tuple[float, float], slowest: FloatArray
-) -> BoolArray:
+def _stays_in_range(problem: CycleProblem, new: BranchPoints, limits: Limits, slowest: FloatArray) -> BoolArray:
     """Return which branches stay within the limits of parameter, angle of attack and frequency."""
     member = problem.member[new.branch]
     orbits = problem.orbits(new.z, new.branch)
     rising, value = new.tangent[:, -1] > 0.0, new.z[:, -1]
-    inside = (rising | (value > limits[0])) & (~rising | (value < limits[1]))
+    lowest = np.broadcast_to(limits[0], problem.member.shape)[new.branch]
+    inside = (rising | (value > lowest)) & (~rising | (value < limits[1]))
     quick = orbits.angular_frequency > slowest[new.branch]
     return np.asarray(inside & quick & (first_harmonic_angle(problem.model, member, orbits) < LARGEST_ANGLE))
 

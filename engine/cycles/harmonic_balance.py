@@ -249,10 +249,11 @@ def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
     harmonics = coefficients.shape[-1] // 2
     samples = 16 * harmonics + 16
     values = coefficients @ fourier(2.0 * np.pi * np.arange(samples) / samples, harmonics).T
-    return np.asarray(0.5 * (_peak(values) + _peak(-values)))
+    return np.asarray(0.5 * (peaks(values) + peaks(-values)))
 
 
-def _peak(values: FloatArray) -> FloatArray:
+def peaks(values: FloatArray) -> FloatArray:
+    """Return the largest of samples (..., samples) over one period, by a parabola through three of them: (...)."""
     top = values.argmax(axis=-1)[..., None]
     left, middle, right = (
         np.take_along_axis(values, (top + shift) % values.shape[-1], axis=-1)[..., 0] for shift in (-1, 0, 1)

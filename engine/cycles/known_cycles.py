@@ -6,10 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, lengths, merge_axes
-from engine.cycles.harmonic_balance import Orbits, select
-from engine.models.reduced_model import ReducedModel
+from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, select
+from engine.models.reduced_model import ReducedModel, lowest_frequency
+from engine.numerics.newton import NewtonOptions
 from engine.result import FoundBy
 
+SLOWEST = 0.1  # of the lowest natural frequency: a slower solution is really a static one
+SMALLEST = 1e-6  # size relative to the start's, below which a solution is the equilibrium
 SAME = 1e-3  # relative distance below which two solutions are the same cycle
 NEAR = 0.02  # relative difference of frequency up to which a start may lead to a known cycle
 
@@ -40,6 +43,7 @@ class KnownCycles:
         self._locations: list[tuple[int, int]] = []
         self._orbits: list[tuple[FloatArray, float, float]] = []
         self._links: list[tuple[int, int]] = []
+        self._joints: list[tuple[int, int]] = []
         self._followed: list[tuple[int, float]] = []
         self._left_alone: set[int] = set()
         self._sizes: list[float] = []
@@ -157,6 +161,10 @@ class KnownCycles:
         """Record that cycles (k,) lie on followed branches (k,)."""
         self._links += zip(numbers.tolist(), followed.tolist(), strict=True)
 
+    def join(self, joints: Sequence[tuple[int, int]]) -> None:
+        """Record pairs of followed branches that are parts of one."""
+        self._joints += joints
+
     def leave_alone(self, numbers: IntArray) -> None:
         """Record that the branches of these cycles are not to be followed."""
         self._left_alone.update(numbers.tolist())
@@ -201,6 +209,8 @@ class KnownCycles:
         parents = list(range(len(self._locations) + len(self._followed)))
         for cycle, branch in self._links:
             parents[_root(parents, cycle)] = _root(parents, len(self._locations) + branch)
+        for one, other in self._joints:
+            parents[_root(parents, len(self._locations) + one)] = _root(parents, len(self._locations) + other)
         return np.array([_root(parents, node) for node in range(len(parents))], dtype=np.intp)
 
 
@@ -218,3 +228,13 @@ def _phase_invariants(model: ReducedModel, starts: Starts) -> FloatArray:
     coefficients = starts.orbits.coefficients * weight[..., None]
     size = np.hypot(coefficients[..., 1::2], coefficients[..., 2::2])
     return np.concatenate([coefficients[..., 0], merge_axes(size, -2)], axis=-1)
+
+
+def solve_starts(model: ReducedModel, starts: Starts, options: NewtonOptions | None = None) -> tuple[Starts, BoolArray]:
+    """Solve the balance from all starts; return the solutions and which of them are cycles (starts,)."""
+    orbits, solution = balance(model, starts.member, starts.orbits, options)
+    before = oscillation_size(model, starts.member, starts.orbits)
+    size = oscillation_size(model, starts.member, orbits)
+    slowest = lowest_frequency(model)[starts.member]
+    good = solution.converged & (size > SMALLEST * before) & (orbits.angular_frequency > SLOWEST * slowest)
+    return Starts(starts.member, starts.wind, orbits), good

@@ -9,29 +9,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
+from engine.arrays import FloatArray, IntArray, eigenvalues
 from engine.cycles.branch_set import BranchSet
-from engine.cycles.branches import (
-    SLOWEST,
-    ends_at_hopf_points,
-    follow_from_cycles,
-    follow_from_hopf_points,
-    guessed_cycles,
-)
+from engine.cycles.branches import follow_from_cycles, guessed_cycles
 from engine.cycles.floquet import Floquet
-from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
-from engine.cycles.known_cycles import KnownCycles, Starts
+from engine.cycles.harmonic_balance import Orbits, resized, select
+from engine.cycles.hopf_branches import branches_in_groups
+from engine.cycles.known_cycles import KnownCycles, Starts, solve_starts
 from engine.cycles.resolution import MOST_HARMONICS, harmonics_needed, resolved_in_groups, unresolved_members
 from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
-from engine.models.reduced_model import ReducedModel, lowest_frequency, take
+from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.result import FoundBy
 
 ROUGH = 2  # harmonics of a first solution: with the mean and the second harmonic, which stretching needs
 ROUGHLY = NewtonOptions(tolerance=1e-3, iterations=14)
-SMALLEST = 1e-6  # size relative to the start's, below which a solution is the equilibrium
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,13 +109,14 @@ def find_cycles(
     if wind_speeds.size == 0:
         return _sorted_cycles(model, known, ())
     needed = harmonics_needed(model, wind_speeds, harmonics)
-    branch_sets = _branches_in_groups(model, crossings, wind_speeds, needed)
+    branch_sets, joints = branches_in_groups(model, crossings, wind_speeds, needed)
     coarse = (needed > harmonics) & unresolved_members(model, branch_sets)
     if coarse.any():
         needed = np.where(coarse, MOST_HARMONICS, needed)
-        branch_sets = _branches_in_groups(model, crossings, wind_speeds, needed)
+        branch_sets, joints = branches_in_groups(model, crossings, wind_speeds, needed)
     for branch_set in branch_sets:
         _add_cycles_on(known, branch_set, wind_speeds, "hopf_branch")
+    known.join(joints)
     _add_solutions(known, _roughly_balanced(known, known.new_starts(starts)), needed, "explicit")
     _add_solutions(known, known.new_starts(energy_starts(model, wind_speeds, harmonics)), needed, "energy_balance")
     integration = integration or DirectIntegration()
@@ -192,31 +187,6 @@ def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: Flo
     return member[unstable], wind[unstable]
 
 
-def _branches_in_groups(
-    model: ReducedModel, crossings: Crossings, winds: FloatArray, needed: IntArray
-) -> list[BranchSet]:
-    """Follow the branches from all Hopf points, each with the number of harmonics of its member (members,)."""
-    branch_sets: list[BranchSet] = []
-    for count in np.unique(needed).tolist():
-        own = np.isin(crossings.member, np.flatnonzero(needed == count))
-        branch_sets += _branches_from_hopf_points(model, crossings, own, winds, count)
-    return branch_sets
-
-
-def _branches_from_hopf_points(
-    model: ReducedModel, crossings: Crossings, selected: BoolArray, winds: FloatArray, harmonics: int
-) -> list[BranchSet]:
-    """Follow the branches from all selected onsets, then from the Hopf points at which none of these ended."""
-    onset = np.flatnonzero(crossings.oscillation & crossings.onset & selected)
-    first = follow_from_hopf_points(model, crossings, onset, harmonics, winds)
-    restabilizations = np.flatnonzero(crossings.oscillation & ~crossings.onset & selected)
-    same = first.problem.member[:, None] == crossings.member[restabilizations]
-    unreached = restabilizations[~(same & ends_at_hopf_points(first, crossings, restabilizations)).any(axis=0)]
-    if not unreached.size:
-        return [first]
-    return [first, follow_from_hopf_points(model, crossings, unreached, harmonics, winds)]
-
-
 def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray, found_by: FoundBy) -> IntArray:
     """Solve for the cycles where followed branches cross the wind speeds; return the numbers of these branches."""
     followed = known.add_branches(branch_set.problem.member, branch_set.hopf_wind_speed)
@@ -225,16 +195,6 @@ def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray,
     numbers = known.add(starts, good, found_by)
     known.link(followed[branch[good]], numbers[good])
     return followed
-
-
-def solve_starts(model: ReducedModel, starts: Starts, options: NewtonOptions | None = None) -> tuple[Starts, BoolArray]:
-    """Solve the balance from all starts; return the solutions and which of them are cycles (starts,)."""
-    orbits, solution = balance(model, starts.member, starts.orbits, options)
-    before = oscillation_size(model, starts.member, starts.orbits)
-    size = oscillation_size(model, starts.member, orbits)
-    slowest = lowest_frequency(model)[starts.member]
-    good = solution.converged & (size > SMALLEST * before) & (orbits.angular_frequency > SLOWEST * slowest)
-    return Starts(starts.member, starts.wind, orbits), good
 
 
 def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[BranchSet, ...]) -> Cycles:

@@ -185,8 +185,11 @@ def tension_range(stretching: StretchingForce, q: FloatArray, spans: int = 1) ->
 
 def take_stretching(stretching: StretchingForce | None, index: Any) -> StretchingForce | None:
     """Select or repeat along the leading axes; None where stretching is neglected."""
-    if stretching is None:
-        return None
+    return None if stretching is None else take_members(stretching, index)
+
+
+def take_members(stretching: StretchingForce, index: Any) -> StretchingForce:
+    """Select or repeat along the leading axes."""
     return StretchingForce(*(getattr(stretching, field.name)[index] for field in fields(stretching)))
 
 

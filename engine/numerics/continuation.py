@@ -14,8 +14,9 @@ from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled, 
 from engine.numerics.newton import NewtonOptions, Solution, newton, solve_systems
 from engine.outcome import Outcome
 
-CONTINUATION_OPTIONS = NewtonOptions(tolerance=1e-4, iterations=8)
+CONTINUATION_OPTIONS = NewtonOptions(tolerance=3e-5, iterations=5)  # a step that needs more of them is too long
 ALL_UNKNOWNS = slice(None)
+QUICKEST = 2.0  # largest growth of a step from one point to the next
 
 
 class Problem(Protocol):
@@ -110,16 +111,16 @@ def make_points(problem: Problem, branch: IntArray, z: FloatArray, direction: Fl
 class StepControl:
     """Step lengths in the problem's scale, and the limits at which a branch is abandoned.
 
-    A step grows if Newton's method needs fewer than `iterations` iterations and shrinks if it needs more. It is halved
-    if the method fails, if the cosine between successive tangents falls below `straightness`, or if the prediction
-    misses the solution by more than the fraction `miss` of the step. `points` is the largest number of points. First
-    and largest steps may differ between branches: (branches,).
+    A step grows or shrinks so that the prediction misses the next solution by the fraction `aim` of the step. It is
+    halved if Newton's method fails, if the cosine between successive tangents falls below `straightness`, or if the
+    prediction misses by more than the fraction `miss`. `points` is the largest number of points. First and largest
+    steps may differ between branches: (branches,).
     """
 
     first: float | FloatArray = 0.05
     largest: float | FloatArray = 0.7
     smallest: float = 1e-5
-    iterations: float = 2.5
+    aim: float = 0.02
     straightness: float = 0.85
     miss: float = 0.08
     points: int = 400
@@ -175,9 +176,10 @@ def continue_branches(
         # A starting point may have no phase, as an equilibrium has none.
         anchor = np.where(np.isnan(before.z[active]), guess, here.z)
         new, solution = solve_at_length(problem, here, length[active], guess, anchor, CONTINUATION_OPTIONS)
-        good = solution.converged & _stays_on_branch(here, new, guess, steps)
-        growth = 2.0 ** ((steps.iterations - solution.iterations) / steps.iterations)
-        length[active] = np.minimum(length[active] * np.where(good, growth, 0.5), largest[active])
+        missed = _relative_miss(here, new, guess)
+        good = solution.converged & (missed < steps.miss) & (_cosine(here, new) > steps.straightness)
+        growth = np.where(good, _growth(missed, steps), 0.5)
+        length[active] = np.minimum(length[active] * growth, largest[active])
         accepted = new.select(good)
         before.overwrite(here.select(good))
         last.overwrite(accepted)
@@ -218,12 +220,22 @@ def _predict(before: BranchPoints, here: BranchPoints, length: FloatArray) -> Fl
     return np.where(np.isnan(cubic), here.z + length[:, None] * here.tangent, cubic)
 
 
-def _stays_on_branch(here: BranchPoints, new: BranchPoints, guess: FloatArray, steps: StepControl) -> BoolArray:
-    """Return which new points lie near their guess and along the branch; others may lie on another branch."""
+def _cosine(here: BranchPoints, new: BranchPoints) -> FloatArray:
+    """Return the cosine between successive tangents: where it is small, the new point may lie on another branch."""
     new_tangent = new.tangent / here.scale
-    cosine = np.einsum("ki,ki->k", new_tangent, here.tangent / here.scale) / lengths(new_tangent)
+    return np.asarray(np.einsum("ki,ki->k", new_tangent, here.tangent / here.scale) / lengths(new_tangent))
+
+
+def _relative_miss(here: BranchPoints, new: BranchPoints, guess: FloatArray) -> FloatArray:
+    """Return the distance of new points from their guesses over that from the last points."""
     far, missed = (lengths((new.z - z) / here.scale) for z in (here.z, guess))
-    return np.asarray((cosine > steps.straightness) & (missed < steps.miss * far))
+    return np.asarray(missed / far)
+
+
+def _growth(missed: FloatArray, steps: StepControl) -> FloatArray:
+    """Return the factor on the length of the next step: the cubic's error grows with the fourth power of the length."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.minimum(QUICKEST, np.cbrt(steps.aim / missed))
 
 
 def solve_at_length(

@@ -25,7 +25,7 @@ from engine.report.findings import (
 )
 from engine.report.internal_resonances import divide_by_direction, motion_shares
 from engine.report.observers.observer import Observed, Observer
-from engine.report.tensions import cycle_tensions, torus_tensions
+from engine.report.tensions import MotionTensions
 from engine.result import LimitCycleRow
 from engine.spec import AerodynamicModel, Analysis
 from engine.tori.spectrum import amplitude_range, base_frequencies, mean_square_velocity, sampled_states
@@ -50,7 +50,7 @@ class Motion:
 
 
 def limit_cycle_rows(
-    observer: Observer, findings: ModelFindings, analysis: Analysis, lowest: FloatArray
+    observer: Observer, findings: ModelFindings, tensions: MotionTensions, analysis: Analysis, lowest: FloatArray
 ) -> list[list[Motion]]:
     """Return a row for the equilibrium, every cycle and every torus at each wind speed, one list per line.
 
@@ -58,13 +58,15 @@ def limit_cycle_rows(
     ----------
     observer : Observer
     findings : ModelFindings
+    tensions : MotionTensions
+        Of these findings.
     analysis : Analysis
         Its loops, for each of which the equilibrium has a row, and its aerodynamic model.
     lowest : (lines,)
         Lowest vertical frequency of each line [Hz].
     """
     table: list[list[Motion]] = lists_by_line(findings.line)
-    seen = _Seen(observer, findings, lowest * observer.span_length, analysis.aerodynamic_model)
+    seen = _Seen(observer, findings, tensions, lowest * observer.span_length, analysis.aerodynamic_model)
     for line, motion in chain(_equilibria(seen, analysis.loops), _cycles(seen), _quasi_periodic_motions(seen)):
         table[line].append(motion)
     for motions in table:
@@ -74,10 +76,11 @@ def limit_cycle_rows(
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """The findings with who observes them, f L_x [m/s] of each line (lines,), and the aerodynamic model."""
+    """Findings with who observes them, their tensions, f L_x [m/s] of each line (lines,), and the aerodynamic model."""
 
     observer: Observer
     findings: ModelFindings
+    tensions: MotionTensions
     speed: FloatArray
     model: AerodynamicModel
 
@@ -149,7 +152,7 @@ def _cycles(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     series = observed.shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients
     reach = largest_reach(observer.local_motion(findings, seen.model), cycles.member, state)
     measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
-    slack = cycle_tensions(observer, findings)[..., 0].min(axis=-1) <= 0.0
+    slack = seen.tensions.cycles[..., 0].min(axis=-1) <= 0.0
     keys = _RowKeys(findings.line[cycles.member], cycle_loops(findings), cycles.orbits.wind_speed, observed)
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("periodic"),
@@ -186,7 +189,7 @@ def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     energy = model.modal_masses[member] * mean_square_velocity(tori)
     state = sampled_states(tori)
     observed = observer.moving(findings, member, torus_coordinates(findings), state)
-    slack = torus_tensions(observer, findings)[..., 0].min(axis=-1) <= 0.0
+    slack = seen.tensions.tori[..., 0].min(axis=-1) <= 0.0
     motion = observer.local_motion(findings, seen.model)
     ranges, reach = np.empty((2, 3, member.size)), np.empty((2, member.size))
     for i in range(member.size):

@@ -22,7 +22,7 @@ from engine.report.internal_resonances import internal_resonance_rows
 from engine.report.limit_cycles import Motion, limit_cycle_rows
 from engine.report.observers.observer import SpanObserver
 from engine.report.static_equilibria import static_equilibrium_rows
-from engine.report.tensions import tension_rows
+from engine.report.tensions import motion_tensions, tension_rows
 from engine.report.warnings import (
     dropped_warnings,
     fit_warnings,
@@ -79,11 +79,13 @@ def line_results(
     frequencies = [frequency_rows(table, analysis.loops) for table in natural_frequencies]
     longitudinal = longitudinal_share(discretization.matrices, shapes)
     observer = SpanObserver(discretization)
-    motions = [limit_cycle_rows(observer, one, analysis, lowest) for one in findings]
+    tensions = [motion_tensions(observer, one) for one in findings]
+    found = list(zip(findings, tensions, strict=True))
+    motions = [limit_cycle_rows(observer, one, own, analysis, lowest) for one, own in found]
     reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     tables: dict[str, list[Any]] = {
         "critical_wind_speeds": [critical_wind_speed_rows(one, shapes.loops, longitudinal) for one in findings],
-        "tensions": [tension_rows(observer, one) for one in findings],
+        "tensions": [tension_rows(observer, one, own) for one, own in found],
         "bifurcations": [bifurcation_rows(one) for one in findings],
         "amplitude_curves": [amplitude_curve_rows(observer, one) for one in reported],
     }
@@ -95,7 +97,7 @@ def line_results(
         cycles, orbits = cycles_and_orbits(_of_line(motions, i))
         own_frequencies = tuple(_of_line(frequencies, i))
         about_motions = fit_warnings(cycles, analysis) + motion_warnings(cycles)
-        own: dict[str, Any] = {name: tuple(_of_line(parts, i)) for name, parts in tables.items()}
+        of_line: dict[str, Any] = {name: tuple(_of_line(parts, i)) for name, parts in tables.items()}
         results.append(
             Result(
                 static=static_state(discretization, i),
@@ -110,7 +112,7 @@ def line_results(
                 orbits=orbits,
                 warnings=(*about_lines[i], *about_motions, *_of_line(dropped, i)),
                 engine_version=ENGINE_VERSION,
-                **own,
+                **of_line,
             )
         )
     return results

@@ -1,82 +1,108 @@
 """The table of dynamic tensions: extremes over the sub-conductors and over time. Theory sections 12.1 and 12.2."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.cycles.harmonic_balance import fourier
-from engine.models.stretching import take_stretching, tension_range
+from engine.cycles.harmonic_balance import fourier, peaks
+from engine.models.stretching import dynamic_tension, take_members, tension_range
 from engine.outcome import Outcome
 from engine.report.cells import lists_by_line
 from engine.report.findings import ModelFindings, cycle_loops, torus_loops
 from engine.report.observers.observer import Observer
 from engine.result import TensionRow
-from engine.spec import Line
 from engine.tori.spectrum import sampled_states
 
-SAMPLES = 192  # over one period; the error is 2e-4 of the range
+SAMPLES = 64  # over one period; a parabola through the extremes leaves an error of 1e-4 of the range
+BLOCK = 64  # motions sampled together, so that all their samples stay in the processor's cache
 _NONE = None, None, None, None, None
 
 
-def tension_rows(observer: Observer, findings: ModelFindings) -> list[list[TensionRow]]:
+@dataclass(frozen=True, slots=True)
+class MotionTensions:
+    """Smallest and largest H + N_i of each span in each motion, infinite without stretching [N].
+
+    cycles: (cycles, spans, 2); tori: (tori, spans, 2), of quasi-periodic motions.
+    """
+
+    cycles: FloatArray
+    tori: FloatArray
+
+
+def motion_tensions(observer: Observer, findings: ModelFindings) -> MotionTensions:
+    """Return the ranges of tension of all motions."""
+    return MotionTensions(_cycle_tensions(observer, findings), _torus_tensions(observer, findings))
+
+
+def tension_rows(observer: Observer, findings: ModelFindings, tensions: MotionTensions) -> list[list[TensionRow]]:
     """Return a row for every motion and span of models with stretching, one list per line."""
     table: list[list[TensionRow]] = lists_by_line(findings.line)
     if findings.model.stretching is None:
         return table
     cycles, tori = findings.cycles, findings.quasi_periodic
-    of_cycles = (cycles.member, cycle_loops(findings), cycles.orbits.wind_speed, cycles.branch)
-    of_tori = (tori.member, torus_loops(findings), tori.tori.wind_speed, tori.branch)
-    for kind, columns, stabilities, tensions in (
-        ("periodic", of_cycles, cycles.floquet.stability, cycle_tensions(observer, findings)),
-        ("quasi_periodic", of_tori, tori.stability, torus_tensions(observer, findings)),
-    ):
-        for member, loops, wind, branch, stability, own in zip(*columns, stabilities, tensions, strict=True):
-            line = int(findings.line[member])
-            keys = (findings.name, int(loops), float(wind), int(branch), kind, stability)
-            table[line] += _rows_of_motion(observer, line, keys, own)
+    of_cycles = (cycle_loops(findings), cycles.orbits.wind_speed, cycles.branch)
+    of_tori = (torus_loops(findings), tori.tori.wind_speed, tori.branch)
+    rows = chain(
+        _rows(observer, findings, cycles.member, (*of_cycles, "periodic", cycles.floquet.stability), tensions.cycles),
+        _rows(observer, findings, tori.member, (*of_tori, "quasi_periodic", tori.stability), tensions.tori),
+    )
+    for line, row in rows:
+        table[line].append(row)
     return table
 
 
-def _rows_of_motion(observer: Observer, line: int, keys: tuple[Any, ...], own: FloatArray) -> Iterator[TensionRow]:
-    """Yield a row for each span, whose range of H + N_i are the rows of own (spans, 2)."""
-    for span, (tension, steepness) in enumerate(zip(own, observer.steepness[line].tolist(), strict=True), start=1):
-        slack = bool(tension[0] <= 0.0)
-        forces = _NONE if slack else _forces(observer.lines[line], tension, steepness)
-        outcome = Outcome.SLACK if slack else Outcome.CONVERGED
-        cells: tuple[Any, ...] = (*keys, *forces, outcome, span if len(own) > 1 else None)
-        yield TensionRow(*cells)
+def _rows(
+    observer: Observer, findings: ModelFindings, member: IntArray, keys: tuple[Any, ...], own: FloatArray
+) -> Iterator[tuple[int, TensionRow]]:
+    """Yield a row for each motion and span, with the line of each.
 
-
-def cycle_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:
-    """Return the smallest and the largest H + N_i of each span in each cycle: (cycles, spans, 2) [N].
-
-    Without stretching they are infinite.
+    keys: loops, wind speed and branch of each motion, their kind, and the stability of each; own: (motions, spans, 2),
+    the ranges of H + N_i.
     """
-    cycles = findings.cycles
-    coefficients = cycles.orbits.coefficients
-    values = fourier(2.0 * np.pi * np.arange(SAMPLES) / SAMPLES, coefficients.shape[-1] // 2)
-    return _ranges(observer, findings, cycles.member, (coefficients @ values.T).swapaxes(-1, -2))
+    line = findings.line[member]
+    loops, wind, branch, kind, stability = keys
+    at_support = own * observer.steepness[line][..., None]
+    strength = [one.conductor.rated_strength for one in observer.lines]
+    columns = (line.tolist(), loops.tolist(), wind.tolist(), branch.tolist(), stability.tolist())
+    ranges = (own.tolist(), at_support.tolist())
+    for i, number, speed, family, verdict, horizontal, at_end in zip(*columns, *ranges, strict=True):
+        for span, (here, there) in enumerate(zip(horizontal, at_end, strict=True), start=1):
+            slack = here[0] <= 0.0
+            share = None if strength[i] is None else there[1] / strength[i]
+            forces = _NONE if slack else (*here, *there, share)
+            outcome = Outcome.SLACK if slack else Outcome.CONVERGED
+            which = span if len(horizontal) > 1 else None
+            cells: tuple[Any, ...] = (findings.name, number, speed, family, kind, verdict, *forces, outcome, which)
+            yield i, TensionRow(*cells)
 
 
-def torus_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:
-    """Return the ranges of H + N_i in each quasi-periodic motion, as `cycle_tensions`: (tori, spans, 2) [N]."""
-    known = findings.quasi_periodic
-    q = sampled_states(known.tori)[..., : findings.model.mass.shape[-1]]
-    return _ranges(observer, findings, known.member, q)
-
-
-def _ranges(observer: Observer, findings: ModelFindings, member: IntArray, q: FloatArray) -> FloatArray:
-    stretching = take_stretching(findings.model.stretching, member)
-    static = observer.tension[findings.line[member], :, None]
+def _cycle_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:
+    """Return the smallest and the largest H + N_i of each span in each cycle: (cycles, spans, 2) [N]."""
+    cycles, stretching = findings.cycles, findings.model.stretching
+    static = observer.tension[findings.line[cycles.member]]
+    ranges = np.full((*static.shape, 2), np.inf)
     if stretching is None:
-        return np.full((member.size, static.shape[1], 2), np.inf)
-    return np.asarray(static + tension_range(stretching, q, static.shape[1]))
+        return ranges
+    values = fourier(2.0 * np.pi * np.arange(SAMPLES) / SAMPLES, cycles.orbits.coefficients.shape[-1] // 2)
+    for first in range(0, cycles.member.size, BLOCK):
+        here = slice(first, first + BLOCK)
+        q = (cycles.orbits.coefficients[here] @ values.T).swapaxes(-1, -2)
+        tension = dynamic_tension(take_members(stretching, cycles.member[here]), q).swapaxes(-1, -2)
+        by_span = tension.reshape(tension.shape[0], static.shape[1], -1, SAMPLES)
+        ranges[here] = np.stack([-peaks(-by_span).max(axis=-1), peaks(by_span).max(axis=-1)], axis=-1)
+    return np.asarray(static[..., None] + ranges)
 
 
-def _forces(line: Line, horizontal: FloatArray, steepness: float) -> tuple[Any, ...]:
-    """Return the range of H + N_i, that of the tension at the higher support, and its share of the rated strength."""
-    strength = line.conductor.rated_strength
-    at_support = steepness * horizontal
-    return (*horizontal.tolist(), *at_support.tolist(), None if strength is None else float(at_support[1] / strength))
+def _torus_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:
+    """Return the ranges of H + N_i in each quasi-periodic motion, as `_cycle_tensions`: (tori, spans, 2) [N]."""
+    known, model = findings.quasi_periodic, findings.model
+    static = observer.tension[findings.line[known.member], :, None]
+    if model.stretching is None:
+        return np.full((known.member.size, static.shape[1], 2), np.inf)
+    q = sampled_states(known.tori)[..., : model.mass.shape[-1]]
+    own = take_members(model.stretching, known.member)
+    return np.asarray(static + tension_range(own, q, static.shape[1]))

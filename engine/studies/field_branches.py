@@ -15,8 +15,7 @@ from engine.cycles.bifurcations import Bifurcations, bifurcations_on, distinct
 from engine.cycles.branch_set import BranchSet, CycleProblem
 from engine.cycles.branches import follow_both_ways, guessed_cycles, reference_size
 from engine.cycles.harmonic_balance import Orbits, linearized, residual
-from engine.cycles.known_cycles import KnownCycles, Starts
-from engine.cycles.search import solve_starts
+from engine.cycles.known_cycles import KnownCycles, Starts, solve_starts
 from engine.cycles.transitions import Kind
 from engine.models.critical_wind_speeds import at_wind, state_matrices
 from engine.models.reduced_model import ReducedModel, take

@@ -7,9 +7,8 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select
-from engine.cycles.known_cycles import Starts
+from engine.cycles.known_cycles import Starts, solve_starts
 from engine.cycles.resolution import resolved_stability
-from engine.cycles.search import solve_starts
 from engine.mechanics.modes import directional_shapes
 from engine.mechanics.static_profile import horizontal_position
 from engine.models.discretization import Discretization, discretize, observation

@@ -18,7 +18,7 @@ from engine.report.frequencies import NaturalFrequencies, frequency_rows
 from engine.report.limit_cycles import limit_cycle_rows
 from engine.report.line_results import cycles_and_orbits, den_hartog, physics_row, static_state
 from engine.report.observers.section_observer import SectionObserver
-from engine.report.tensions import tension_rows
+from engine.report.tensions import motion_tensions, tension_rows
 from engine.report.warnings import (
     dropped_warnings,
     fit_warnings,
@@ -52,7 +52,8 @@ def section_result(found: SectionFindings, analysis: Analysis, observer: Section
     """Return the result of one section, or of another assembly that is observed in its own way."""
     whole, observer = found.whole, observer or SectionObserver(found.whole)
     lowest = np.array([found.lowest])
-    motions = list(chain(*(limit_cycle_rows(observer, one, analysis, lowest)[0] for one in found.findings)))
+    findings = [(one, motion_tensions(observer, one)) for one in found.findings]
+    motions = list(chain(*(limit_cycle_rows(observer, one, own, analysis, lowest)[0] for one, own in findings)))
     motions.sort(key=lambda motion: motion.row.model != "hybrid")
     cycles, orbits = cycles_and_orbits(motions)
     reported = found.findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
@@ -61,7 +62,7 @@ def section_result(found: SectionFindings, analysis: Analysis, observer: Section
         "section_modes": tuple(found.modes),
         "critical_wind_speeds": _joined(_critical_wind_speeds(observer, one) for one in found.findings),
         "limit_cycles": cycles,
-        "tensions": _joined(tension_rows(observer, one)[0] for one in found.findings),
+        "tensions": _joined(tension_rows(observer, one, own)[0] for one, own in findings),
         "bifurcations": _joined(bifurcation_rows(one)[0] for one in found.findings),
         "amplitude_curves": _joined(amplitude_curve_rows(observer, one)[0] for one in reported),
         "model_comparisons": model_comparisons(cycles),

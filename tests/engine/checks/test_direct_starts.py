@@ -9,9 +9,9 @@ from engine.arrays import FloatArray
 from engine.checks.direct_starts import WINDS, direct_starts
 from engine.cycles import search
 from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select
-from engine.cycles.known_cycles import Starts
+from engine.cycles.known_cycles import Starts, solve_starts
 from engine.cycles.resolution import resolved_stability
-from engine.cycles.search import Cycles, DirectIntegration, find_cycles, solve_starts
+from engine.cycles.search import Cycles, DirectIntegration, find_cycles
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability

@@ -68,7 +68,8 @@ def test_a_bifurcation_that_more_harmonics_do_not_locate_has_the_frequency_of_it
     found = bifurcations(cycles.branch_sets, cycles.followed, model, crossings)
     assert {*found.kind} == {*located.kind}
     for i, kind in enumerate(found.kind):
-        alike = [j for j in range(located.parameter.size) if located.kind[j] is kind]
+        same_branch = np.flatnonzero(located.branch == found.branch[i]).tolist()
+        alike = [j for j in same_branch if located.kind[j] is kind]
         near = min(alike, key=lambda j: abs(located.parameter[j] - found.parameter[i]))
         assert abs(located.parameter[near] - found.parameter[i]) <= found.uncertainty[i]
         assert found.angular_frequency[i] == pytest.approx(located.angular_frequency[near], rel=1e-2)

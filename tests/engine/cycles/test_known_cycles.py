@@ -59,3 +59,13 @@ def test_families_are_numbered_by_their_hopf_points_and_then_by_the_wind() -> No
     assert branches.tolist() == [1, 0]
     assert cycles.tolist() == [1, 0, 2, 0, 0]
     assert known.unfollowed().tolist() == [2, 4]
+
+
+def test_joined_branches_and_their_cycles_are_one_family() -> None:
+    known = KnownCycles(MODEL)
+    numbers = np.array(recorded(known, starts((0, 0, 1.0), (0, 0, 3.0), (0, 1, 5.0))))
+    branches = known.add_branches(np.array([0, 0, 0]), np.array([2.0, 9.0, 8.0]))
+    known.link(branches, numbers)
+    assert [part.tolist() for part in known.families()] == [[0, 2, 1], [0, 2, 1]]
+    known.join([(0, 1)])
+    assert [part.tolist() for part in known.families()] == [[0, 0, 1], [0, 0, 1]]

@@ -1,6 +1,6 @@
 """Pseudo-arclength continuation on curves that are known exactly."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -85,7 +85,7 @@ def test_caller_ends_a_branch() -> None:
 
 def test_end_of_a_curve_is_an_outcome() -> None:
     points: list[BranchPoints] = []
-    outcome = driven(continue_branches(Kink(), np.array([[1.0, -0.35]]), np.array([[0.0, 1.0]])), points.append)
+    outcome = driven(continue_branches(Kink(), np.array([[1.0, -0.3]]), np.array([[0.0, 1.0]])), points.append)
     assert outcome.tolist() == [Outcome.NO_CONVERGENCE]
     assert -1e-3 < points[-1].z[0, 1] <= 0.0
     assert points[-1].z[0, 0] == pytest.approx(1.0)
@@ -145,3 +145,15 @@ def test_first_and_largest_steps_may_differ_between_branches() -> None:
     assert turned[1][0] == pytest.approx(0.1, rel=1e-2)
     assert turned[0].max() == pytest.approx(0.02, rel=1e-3)
     assert turned[1].max() < 0.42
+
+
+def test_steps_become_as_long_as_the_prediction_allows_wherever_they_begin() -> None:
+    def turn(**control: float) -> float:
+        steps = replace(StepControl(largest=5.0, points=30), **control)  # type: ignore[arg-type]
+        points = followed(Circles(np.ones(1)), START[:1], ALONG[:1], steps)
+        z = np.array([p.z[0] for p in points])[-2:]
+        return float(abs(np.diff(np.unwrap(np.arctan2(z[:, 1], z[:, 0])))[0]))
+
+    assert turn(first=0.01) == pytest.approx(turn(first=0.5), rel=1e-4)
+    # On a circle the cubic, with the chord for the arc, misses by the third power of the step: the share by its square.
+    assert turn(first=0.1, aim=0.005) == pytest.approx(0.5 * turn(first=0.1, aim=0.02), rel=0.02)

@@ -43,6 +43,14 @@ def test_every_cycle_has_a_row_with_the_support_steeper_than_mid_span() -> None:
         assert row.largest_share_of_rated_strength == pytest.approx(steepness * row.largest_horizontal_n / 140e3)
 
 
+def test_the_range_is_that_of_many_samples(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = run(iced(), ASKED).tensions
+    monkeypatch.setattr("engine.report.tensions.SAMPLES", 4096)
+    for row, fine in zip(rows, run(iced(), ASKED).tensions, strict=True):
+        ends = [(one.smallest_horizontal_n or 0.0, one.largest_horizontal_n or 0.0) for one in (row, fine)]
+        assert ends[0] == pytest.approx(ends[1], rel=0.0, abs=1e-4 * (ends[1][1] - ends[1][0]))
+
+
 def test_without_a_rated_strength_there_is_no_share_of_it() -> None:
     result = run(iced(), ASKED)
     assert {row.largest_share_of_rated_strength for row in result.tensions} == {None}
