@@ -99,6 +99,7 @@ class LineFault(Answer):
     number: int = described("Number of the line, from 1; headers and the analysis do not count [1]", 3)
     reference: str | None = described("The caller's reference of the line", "row-3")
     row: int | None = described("Number of the row as the spreadsheet shows it; null if the body was none [1]", 4)
+    place: str | None = described("Where the line stands in the body, if that was a sheet or features", "row 4")
     pointer: str = described("JSON pointer from the root of the line", "/span/length_m")
     code: str = described("The kind of fault, for programs", "greater_than_equal")
     detail: str = described("What is wrong, in a sentence", "input should be greater than or equal to 1, got -5.0")

@@ -1,6 +1,6 @@
 """Results of a batch's lines, streamed in the order of their numbers with few lines in memory at a time."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 from uuid import UUID
 
@@ -41,8 +41,16 @@ def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any
             yield _summary(item)
         elif _is_solved(item):
             labels = _labels(item)
-            for row in tables_of(item.tables).get(table, ()):
+            found = tables_of(item.tables).get(table, [])
+            for row in _with_computed(found, item.computed) if table == "assumptions" else found:
                 yield {**labels, **row}
+
+
+def features(session: Session, batch_id: UUID) -> Iterator[dict[str, Any]]:
+    """Yield the summary of each line as a GeoJSON feature with the coordinates of the line, null if it has none."""
+    for item in _lines(session, batch_id, in_short=True):
+        summary = _summary(item)
+        yield {"type": "Feature", "id": item.number, "geometry": item.geometry, "properties": summary}
 
 
 def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
@@ -50,7 +58,21 @@ def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
     for item in _lines(session, batch_id, in_short=False):
         # The packed tables are JSON already; splice them into the object without parsing.
         head = orjson.dumps({**_labels(item), **_state(item), **_point(item)})
-        yield b"%b,%b\n" % (head[:-1], unpacked(item.tables if _is_solved(item) else None)[1:])
+        yield b"%b,%b\n" % (head[:-1], _tables(item)[1:])
+
+
+def _tables(item: Row[Any]) -> bytes:
+    """Return the tables of a line as a JSON object."""
+    if not _is_solved(item) or not item.computed:
+        return unpacked(item.tables if _is_solved(item) else None)
+    tables = tables_of(item.tables)
+    return orjson.dumps({**tables, "assumptions": _with_computed(tables.get("assumptions", []), item.computed)})
+
+
+def _with_computed(rows: Iterable[dict[str, Any]], computed: Sequence[dict[str, Any]] | None) -> list[dict[str, Any]]:
+    """Return rows of the table `assumptions`, in which values that follow from coordinates say so."""
+    paths = {row["path"] for row in computed or ()}
+    return [*(computed or ()), *(row for row in rows if row["path"] not in paths)]
 
 
 def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterator[dict[str, Any]]:
@@ -60,7 +82,7 @@ def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterato
     statement = select(*wanted).where(*rejected).order_by(BatchItem.number).limit(most)
     for number, reference, faults in session.execute(statement.execution_options(yield_per=_LINES_A_FETCH)):
         for fault in faults or ():
-            yield {"number": number, "reference": reference, "row": None, **fault}
+            yield {"number": number, "reference": reference, "row": None, "place": None, **fault}
 
 
 def _lines(session: Session, batch_id: UUID, *, in_short: bool) -> Iterator[Row[Any]]:
@@ -72,11 +94,11 @@ def _lines(session: Session, batch_id: UUID, *, in_short: bool) -> Iterator[Row[
     names = (*STATIC, *_HARTOG, *RANKING_FIGURES, "warnings", "engine_version", "failure")
     older = case((PointRow.verdict.is_(None), PointRow.tables), else_=None).label("tables")
     name = BatchItem.document["name"].as_string().label("name")
-    contents = (PointRow.verdict, older, name) if in_short else (PointRow.tables,)
+    short, whole = (PointRow.verdict, older, name, BatchItem.geometry), (PointRow.tables, BatchItem.computed)
     statement = (
         select(BatchItem.number, BatchItem.reference, BatchItem.asset_id, BatchItem.chunk_id, BatchItem.faults)
         .add_columns(Job.status, Job.failure_kind, Job.failure_detail, PointRow.point)
-        .add_columns(*(getattr(PointRow, name) for name in names), *contents)
+        .add_columns(*(getattr(PointRow, name) for name in names), *(short if in_short else whole))
         .outerjoin(Job, Job.id == BatchItem.chunk_id)
         .outerjoin(PointRow, of_line)
         .where(BatchItem.batch_id == batch_id)

@@ -12,6 +12,7 @@ Format = Literal["json", "csv", "parquet", "xlsx"]
 Dialect = Literal["plain", "excel", "excel_semicolon"]
 Name = TypeVar("Name", bound=str)
 PARQUET = "application/vnd.apache.parquet"
+GEOJSON = "application/geo+json"
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 MEDIA_TYPES: Mapping[Format, str] = {
     "json": "application/json",
@@ -85,6 +86,13 @@ def ndjson_text(rows: Iterable[Row]) -> Iterator[str]:
     """Yield rows as JSON, one object on each line."""
     for row in rows:
         yield _dump(row) + "\n"
+
+
+def geojson_text(features: Iterable[Row]) -> Iterator[str]:
+    """Yield the pieces of a FeatureCollection (RFC 7946) of these features."""
+    yield '{"type":"FeatureCollection",'
+    yield from _member("features", features)
+    yield "}"
 
 
 def result_text(

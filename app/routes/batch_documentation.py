@@ -5,7 +5,7 @@ from typing import Any
 
 from app import convert
 from app.answers.batches import RankedLine
-from app.export.formats import PARQUET, XLSX
+from app.export.formats import GEOJSON, PARQUET, XLSX
 from app.reference.source_lines import example
 from app.routes import documentation
 from app.schemas.batch import BatchRequest
@@ -41,6 +41,7 @@ FAULT = {
     "number": 3,
     "reference": "row-3",
     "row": 4,
+    "place": "row 4",
     "pointer": "/span/length_m",
     "code": "greater_than_equal",
     "detail": "input should be greater than or equal to 1",
@@ -86,6 +87,38 @@ RESULT: dict[str, Any] = {
     "engine_version": "0.1.0",
     **convert.example_tables(),
 }
+_GEOMETRY = {"type": "LineString", "coordinates": [[14.4205, 50.0871, 312.0], [14.4236, 50.0889, 318.5]]}
+_RESULT_FEATURE: dict[str, Any] = {
+    "type": "Feature",
+    "id": 1,
+    "geometry": _GEOMETRY,
+    "properties": {
+        **_LABELS,
+        "name": "C11 twin",
+        "status": "successful",
+        "failure": None,
+        **convert.example_row(convert.TABLES["verdict"].row),
+    },
+}
+_COLLECTION: dict[str, Any] = {
+    "type": "object",
+    "required": ["type", "features"],
+    "properties": {
+        "type": {"const": "FeatureCollection"},
+        "features": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "required": ["type", "geometry", "properties"],
+                "properties": {
+                    "type": {"const": "Feature"},
+                    "geometry": {"type": ["object", "null"], "description": "LineString or Point in WGS 84, or null"},
+                    "properties": {"type": ["object", "null"], "description": "Fields of the line by their names"},
+                },
+            },
+        },
+    },
+}
 RESULTS_ANSWER: dict[str, Any] = {
     "description": "NDJSON with one object for each line, or the rows of one table",
     "content": {
@@ -96,7 +129,27 @@ RESULTS_ANSWER: dict[str, Any] = {
         },
         PARQUET: {"schema": {"type": "string", "format": "binary"}},
         XLSX: {"schema": {"type": "string", "format": "binary"}},
+        GEOJSON: {"schema": _COLLECTION, "example": {"type": "FeatureCollection", "features": [_RESULT_FEATURE]}},
     },
+}
+
+
+_FEATURES: dict[str, Any] = {
+    "type": "FeatureCollection",
+    "analysis": _ANALYSIS,
+    "defaults": {
+        "conductor": {"catalogue": "Drake"},
+        "span": {"everyday": {"share_of_rated_strength": 0.2}},
+        "ice": {"accretion": {"shape": "crescent", "thickness_m": 0.012}, "aerodynamics": {"catalogue": "c11-40"}},
+    },
+    "features": [
+        {
+            "type": "Feature",
+            "id": "L204-S017",
+            "geometry": _GEOMETRY,
+            "properties": {"name": "Span 17", "bundle.subconductors": 2, "bundle.spacing_m": 0.457},
+        }
+    ],
 }
 
 
@@ -109,16 +162,19 @@ def request_body() -> dict[str, Any]:
     return {
         "requestBody": {
             "required": True,
-            "description": "JSON; NDJSON whose first object is the analysis; or CSV or the first sheet of a workbook "
-            "(XLSX) with the analysis in the query. Columns are dotted field names such as `span.length_m`; a list is "
-            "JSON in one cell, or one column for each item (`ice.aerodynamics.vertical.0`). Commas, semicolons or tabs "
-            "separate the cells of a CSV; decimal commas, UTF-16 and Windows-1252 are understood, and the status says "
-            "so. `Content-Encoding: gzip` is accepted.",
+            "description": "JSON; NDJSON whose first object is the analysis; or CSV, the first sheet of a workbook "
+            "(XLSX) or GeoJSON with the analysis in the query. `defaults`, beside the analysis, are fields of a line "
+            "for all lines that leave them open. Columns, and properties of features, are dotted field names such as "
+            "`span.length_m`; a list is JSON in one cell, or one column for each item (`ice.aerodynamics.vertical.0`). "
+            "Commas, semicolons or tabs separate the cells of a CSV; decimal commas, UTF-16 and Windows-1252 are "
+            "understood, and the status says so. A LineString of GeoJSON is a span, or one for each of its segments; "
+            "length, direction and level difference follow from its coordinates. `Content-Encoding: gzip` is accepted.",
             "content": {
                 "application/json": {"schema": schema, "example": {"lines": _LINES, "analysis": _ANALYSIS}},
                 "application/x-ndjson": {"schema": {"type": "string"}, "example": ndjson},
                 "text/csv": {"schema": {"type": "string"}, "example": _CSV},
                 XLSX: {"schema": {"type": "string", "format": "binary"}},
+                GEOJSON: {"schema": _COLLECTION, "example": _FEATURES},
             },
         }
     }

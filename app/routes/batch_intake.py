@@ -18,7 +18,7 @@ from starlette.requests import ClientDisconnect
 from app.answers.batches import BatchDocument
 from app.batches import intake
 from app.batches.intake import BodyTooLarge, Incoming
-from app.export.formats import XLSX
+from app.export.formats import GEOJSON, XLSX
 from app.http.problems import ProblemError, ProblemKind, invalid_document, query_fault
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
@@ -36,8 +36,9 @@ if TYPE_CHECKING:
 router = APIRouter(prefix=BATCHES, tags=["batches"])
 
 _SILENT_SECONDS = 60.0
-_SHEETS = ("text/csv", XLSX)
-_TYPES = ("application/json", "application/x-ndjson", *_SHEETS)
+# Bodies that have no room for an analysis and for defaults, or need not have it.
+_ADDRESSED = ("text/csv", XLSX, GEOJSON)
+_TYPES = ("application/json", "application/x-ndjson", *_ADDRESSED)
 
 
 def _limiter(request: Request) -> CapacityLimiter:
@@ -53,7 +54,14 @@ class IntakeQuery(BaseModel):
     """How to receive a batch."""
 
     atomic: bool = Field(default=False, description="Reject the whole batch if any line is wrong")
-    analysis: str | None = Field(default=None, max_length=20_000, description="The analysis of a sheet, as JSON")
+    analysis: str | None = Field(
+        default=None, max_length=20_000, description="The analysis of a sheet or of features, as JSON"
+    )
+    defaults: str | None = Field(
+        default=None,
+        max_length=20_000,
+        description="What the lines of a sheet or of features leave open, as a JSON object with fields of a line",
+    )
     webhook_url: str | None = Field(
         default=None,
         max_length=2000,
@@ -167,24 +175,33 @@ def _incoming(posted: _Posted) -> Incoming:
     if media_type not in _TYPES:
         detail = f"The body is {media_type[:100]!r}, not one of {', '.join(_TYPES)}."
         raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Post": ", ".join(_TYPES)})
-    if posted.how.analysis is not None and media_type not in _SHEETS:
-        raise query_fault("analysis", "is allowed for a CSV or XLSX batch only; put the analysis into the body")
+    said = _said(posted, media_type)
     pieces = _inflated(posted)
     if media_type == "application/json":
         return intake.read_json(pieces, settings.max_body_bytes)
     if media_type == "application/x-ndjson":
         return intake.read_ndjson(pieces, settings.max_batch_line_bytes)
-    analysis = _parsed_analysis(posted.how.analysis)
     if media_type == XLSX:
-        return intake.read_xlsx(pieces, analysis, settings.max_batch_bytes, settings.max_body_bytes)
-    return intake.read_csv(pieces, analysis, settings.max_batch_line_bytes)
+        return intake.read_xlsx(pieces, said, settings.max_batch_bytes, settings.max_body_bytes)
+    if media_type == GEOJSON:
+        return intake.read_geojson(pieces, said, settings.max_batch_line_bytes)
+    return intake.read_csv(pieces, said, settings.max_batch_line_bytes)
 
 
-def _parsed_analysis(analysis: str | None) -> Any:
+def _said(posted: _Posted, media_type: str) -> dict[str, Any]:
+    """Return the analysis and the defaults in the address, which only some bodies leave there."""
+    texts = {"analysis": posted.how.analysis, "defaults": posted.how.defaults}
+    given = {name: text for name, text in texts.items() if text is not None}
+    if given and media_type not in _ADDRESSED:
+        raise query_fault(next(iter(given)), f"is not for a body of {media_type}; put it into the body")
+    return {name: _parsed(name, text) for name, text in given.items()}
+
+
+def _parsed(name: str, text: str) -> Any:
     try:
-        return parse_json((analysis or "{}").encode())
+        return parse_json(text.encode())
     except BadInput as error:
-        raise query_fault("analysis", error.faults[0].detail) from error
+        raise query_fault(name, error.faults[0].detail) from error
 
 
 def _inflated(posted: _Posted) -> Iterator[bytes]:

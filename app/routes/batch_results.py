@@ -1,4 +1,4 @@
-"""Results of a batch, streamed as NDJSON, CSV, Parquet or XLSX, and the faults of rejected lines."""
+"""Results of a batch, streamed as NDJSON, CSV, Parquet, XLSX or GeoJSON, and the faults of rejected lines."""
 
 from collections.abc import Iterator
 from typing import Annotated, Literal
@@ -25,12 +25,13 @@ from app.routes.streaming import streamed
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
-BatchFormat = Literal["ndjson", "csv", "parquet", "xlsx"]
+BatchFormat = Literal["ndjson", "csv", "parquet", "xlsx", "geojson"]
 _MEDIA_TYPES: dict[BatchFormat, str] = {
     "ndjson": "application/x-ndjson",
     "csv": "text/csv",
     "parquet": formats.PARQUET,
     "xlsx": formats.XLSX,
+    "geojson": formats.GEOJSON,
 }
 
 
@@ -68,19 +69,24 @@ def batch_results(
 ) -> StreamingResponse:
     """Return the results of the lines in the order of their numbers: one object with all results each, or one table.
 
-    Every row has `number`, `reference` and `asset_id`. A line without results has its failure.
+    Every row has `number`, `reference` and `asset_id`. A line without results has its failure. GeoJSON has a feature
+    for each line: the coordinates with which it was sent, or null, and the summary as properties.
     """
     form = asked.format or formats.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
     if form is None:
         raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Results are {', '.join(_MEDIA_TYPES.values())}.")
     if asked.dialect != "plain" and form != "csv":
         raise query_fault("dialect", "is for CSV only")
+    if form == "geojson" and asked.table not in {None, "summary"}:
+        raise query_fault("table", "must be summary or absent for GeoJSON, which has one feature a line")
     state = require_results(readers, caller, batch_id, partial=asked.partial)
     # Results that may still change get no tag: it would have to be known before the last row is read.
     headers = unless_known(known, strong_tag(state, form, asked.dialect)) if state else {"Vary": "Accept"}
     name = convert.TABLES_BY_ADDRESS.get(asked.table or "summary", "summary")
 
     def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
+        if form == "geojson":
+            return formats.in_blocks(formats.geojson_text(line_results.features(session, batch_id)))
         if form == "ndjson" and asked.table is None:
             return formats.in_blocks(line_results.documents(session, batch_id))
         rows = line_results.rows(session, batch_id, name)

@@ -1,5 +1,7 @@
 """Batches as they come in."""
 
+from typing import Any
+
 from pydantic import Field
 
 from app.reference.source_lines import example
@@ -23,6 +25,11 @@ class BatchRequest(Document):
         min_length=1, max_length=100_000, description="The lines", examples=[[example("c11-twin")]]
     )
     analysis: Analysis = Field(default=Analysis(), description="Analysis of every line", examples=[{"loops": [1, 2]}])
+    defaults: dict[str, Any] | None = Field(
+        default=None,
+        description="Fields of a line, for the lines that leave them open",
+        examples=[{"wind": {"air_density_kg_per_m3": 1.34}}],
+    )
     webhook_url: str | None = Field(
         default=None,
         max_length=2000,

@@ -43,6 +43,10 @@ class BadInput(ValueError):
         super().__init__("; ".join(str(fault) for fault in self.faults))
 
 
+class BodyTooLarge(Exception):
+    """Raised when a body, or one line of it, is too large; the text names it and the limit."""
+
+
 def parse_json(raw: bytes) -> Any:
     """Return the value of a JSON text; NaN and infinities pass, and the schema then names their fields.
 

@@ -33,6 +33,7 @@ class BatchItem(Base):
     """One line of a batch: its document and its chunk, or its faults if it was rejected.
 
     known: what was said of a line in an engineer's form, with the own rows that it names; document is what follows.
+    geometry is its place as GeoJSON, computed the rows of the table `assumptions` that follow from it; null without.
     chunk_id has no foreign key: lines are stored as they arrive, their chunks all together at the end.
     """
 
@@ -51,3 +52,5 @@ class BatchItem(Base):
     document: Mapped[dict[str, Any] | None]
     faults: Mapped[list[dict[str, str]] | None]
     known: Mapped[dict[str, Any] | None]
+    geometry: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    computed: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON(none_as_null=True))

@@ -1,15 +1,16 @@
 """Receive batches: read bodies as streams, check lines one by one, and store them in blocks."""
 
 from app.batches.intake.body_formats import (
-    BodyTooLarge,
     Incoming,
     gunzipped,
     read_csv,
+    read_geojson,
     read_json,
     read_ndjson,
     read_xlsx,
 )
 from app.batches.intake.receive import Receipt, lines_a_chunk, receive
+from app.schemas.faults import BodyTooLarge
 
 __all__ = [
     "BodyTooLarge",
@@ -18,6 +19,7 @@ __all__ = [
     "gunzipped",
     "lines_a_chunk",
     "read_csv",
+    "read_geojson",
     "read_json",
     "read_ndjson",
     "read_xlsx",

@@ -2,33 +2,31 @@
 
 import tempfile
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from typing import IO, Any
 
-from app.batches.intake.csv_columns import Columns
-from app.schemas.faults import BadInput, Fault, parse_json
+from app.exchange.features import read_features
+from app.schemas.faults import BadInput, BodyTooLarge, Fault, parse_json
+from app.sheets.columns import Columns
 from app.sheets.delimited import read_delimited
 from app.sheets.encodings import as_utf8
 
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _INFLATED_A_STEP = 1 << 18
 _IN_MEMORY_BYTES = 4_000_000
-_KNOWN = frozenset({"lines", "analysis", "webhook_url"})
-
-
-class BodyTooLarge(Exception):
-    """Raised when a body, or one line of it, is too large; the text names it and the limit."""
+_KNOWN = frozenset({"lines", "analysis", "defaults", "webhook_url"})
 
 
 @dataclass(frozen=True, slots=True)
 class Incoming:
     """An analysis document and the documents of the lines; a `BadInput` stands for an unreadable line.
 
-    With `anew`, workers compute the lines even if their results are stored. `notes` tells how the body was read; its
-    sentences are complete when the last line was taken. `close` it when no more lines are taken.
+    `defaults` is a document of what the lines leave open. With `anew`, workers compute the lines even if their results
+    are stored. `notes` tells how the body was read; its sentences are complete when the last line was taken. `close` it
+    when no more lines are taken.
     """
 
     analysis: object
@@ -37,6 +35,7 @@ class Incoming:
     anew: bool = False
     notes: Callable[[], list[str]] = list
     file: IO[bytes] | None = None
+    defaults: object = None
 
     def close(self) -> None:
         """Close the file from which the lines come, if they come from one."""
@@ -96,7 +95,8 @@ def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
         faults.append(Fault("/lines", "list_type", "must be a list of lines"))
     if faults:
         raise BadInput(faults)
-    return Incoming(document.get("analysis", {}), iter(document["lines"]), document.get("webhook_url"))
+    lines, defaults = iter(document["lines"]), document.get("defaults")
+    return Incoming(document.get("analysis", {}), lines, document.get("webhook_url"), defaults=defaults)
 
 
 def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
@@ -111,23 +111,17 @@ def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
     """
     texts = (text for text in _text_lines(as_utf8(pieces), most_line_bytes) if not text.isspace())
     first = parse_json(next(texts, b"{}"))
-    if not isinstance(first, dict) or first.keys() - {"webhook_url"} != {"analysis"}:
-        raise BadInput(
-            [
-                Fault(
-                    "",
-                    "missing",
-                    'the first object must be {"analysis": {...}}, optionally with a webhook_url',
-                )
-            ]
-        )
-    return Incoming(first["analysis"], map(_parsed, texts), first.get("webhook_url"))
+    if not isinstance(first, dict) or first.keys() - {"webhook_url", "defaults"} != {"analysis"}:
+        rule = 'the first object must be {"analysis": {...}}, optionally with defaults and a webhook_url'
+        raise BadInput([Fault("", "missing", rule)])
+    return Incoming(first["analysis"], map(_parsed, texts), first.get("webhook_url"), defaults=first.get("defaults"))
 
 
-def read_csv(pieces: Iterable[bytes], analysis: object, most_line_bytes: int) -> Incoming:
+def read_csv(pieces: Iterable[bytes], said: Mapping[str, object], most_line_bytes: int) -> Incoming:
     """Read a table whose header holds dotted field names; an empty cell means an absent field.
 
-    Cells are apart by commas, semicolons or tabs, in UTF-8, UTF-16 or Windows-1252 (`app.sheets.delimited`).
+    `said` holds the analysis and the defaults. Cells are apart by commas, semicolons or tabs, in UTF-8, UTF-16 or
+    Windows-1252 (`app.sheets.delimited`).
 
     Raises
     ------
@@ -137,10 +131,11 @@ def read_csv(pieces: Iterable[bytes], analysis: object, most_line_bytes: int) ->
         If the header is missing or wrong; while the lines are read, if a text in UTF-16 breaks its rules.
     """
     table = read_delimited(pieces, partial(_text_lines, most_bytes=most_line_bytes))
-    return Incoming(analysis, map(Columns.of(table.header).line, table.rows), notes=table.notes.sentences)
+    lines = map(Columns.of(table.header).line, table.rows)
+    return Incoming(said.get("analysis", {}), lines, notes=table.notes.sentences, defaults=said.get("defaults"))
 
 
-def read_xlsx(pieces: Iterable[bytes], analysis: object, most_bytes: int, most_other_bytes: int) -> Incoming:
+def read_xlsx(pieces: Iterable[bytes], said: Mapping[str, object], most_bytes: int, most_other_bytes: int) -> Incoming:
     """Read the first sheet of a workbook like a CSV; `app.sheets.workbooks` says what the bounds are for.
 
     Raises
@@ -162,7 +157,35 @@ def read_xlsx(pieces: Iterable[bytes], analysis: object, most_bytes: int, most_o
         table = read_workbook(file, most_bytes, most_other_bytes)
         lines = map(Columns.of(table.header).line, table.rows)
         until_read.pop_all()  # the lines are read from the file
-    return Incoming(analysis, lines, notes=table.notes.sentences, file=file)
+    analysis, defaults = said.get("analysis", {}), said.get("defaults")
+    return Incoming(analysis, lines, notes=table.notes.sentences, file=file, defaults=defaults)
+
+
+def read_geojson(pieces: Iterable[bytes], said: Mapping[str, object], most_line_bytes: int) -> Incoming:
+    """Read a FeatureCollection whose features are lines (`app.exchange.features`).
+
+    `said` holds the analysis and the defaults that the address names; else they stand before the features.
+
+    Raises
+    ------
+    BodyTooLarge
+        If a feature is too long; raised now or while the lines are read.
+    BadInput
+        If it is no such collection, or a part is given twice; also while the lines are read.
+    """
+    found = read_features(as_utf8(pieces), most_line_bytes)
+    twice = [name for name in said if name in found.members]
+    if twice:
+        detail = "is given twice: in the body and in the address"
+        raise BadInput([Fault(f"/{name}", "given_twice", detail) for name in twice])
+    parts = {**found.members, **said}
+    return Incoming(
+        parts.get("analysis", {}),
+        found.lines,
+        parts.get("webhook_url"),
+        notes=found.notes.sentences,
+        defaults=parts.get("defaults"),
+    )
 
 
 def _parsed(text: bytes) -> Any:

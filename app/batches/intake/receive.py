@@ -3,7 +3,7 @@
 No transaction lasts longer than one block, so a slow sender blocks nobody.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import islice
@@ -19,12 +19,13 @@ from app import convert, schemas
 from app.batches import batch_records
 from app.batches.batch_records import Chunk
 from app.batches.intake.body_formats import Incoming
-from app.batches.intake.csv_columns import SheetLine
+from app.exchange.defaults import checked_defaults, filled
 from app.owned import records
 from app.runtime.settings import Settings
-from app.schemas.faults import MOST_FAULTS, BadInput, Fault
+from app.schemas.faults import MOST_FAULTS, BadInput, Fault, json_pointer
 from app.schemas.fields import Label
 from app.security.caller import Caller
+from app.sheets.columns import Computed, PlacedLine
 
 _LINES_A_BLOCK = 500
 _FAULTS_A_LINE = 20
@@ -48,6 +49,7 @@ class _Draft:
     chunk_lines: int
     atomic: bool
     own: convert.OwnRows
+    defaults: Mapping[str, Any]
     chunks: list[Chunk] = field(default_factory=list)
     taken: int = 0
     rejected: int = 0
@@ -81,10 +83,11 @@ def receive(
         If the database fails; stored lines are removed now or by a later sweep.
     """
     analysis = convert.read_analysis(incoming.analysis)
+    defaults = checked_defaults(incoming.defaults)
     with sessions.begin() as session:
         batch_id = batch_records.begin(session, caller, analysis.model_dump(mode="json", by_alias=True))
         own = records.own_rows(session, caller.owner)
-    draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic, own)
+    draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic, own, defaults)
     try:
         for block in _blocks(settings, draft, incoming.lines):
             with sessions.begin() as session:
@@ -118,23 +121,26 @@ def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Itera
         yield items
 
 
-def _item(draft: _Draft, document: object) -> dict[str, Any]:
+def _item(draft: _Draft, sent: object) -> dict[str, Any]:
     draft.taken += 1
+    placed = sent if isinstance(sent, PlacedLine) else PlacedLine("", sent)
     reference, faults = None, []
-    row = document.row if isinstance(document, SheetLine) else None
     line, known = None, None
+    computed: list[Computed] = []
     try:
-        reference, fields = _split(document.document if isinstance(document, SheetLine) else document)
-        if isinstance(document, SheetLine) and document.faults:
-            raise BadInput(document.faults)
+        reference, fields = _split(placed.document)
+        if placed.faults:
+            raise BadInput(placed.faults)
+        if isinstance(fields, dict):
+            fields, computed = filled(fields, placed.computed, draft.defaults)
         explicit, known = convert.explicit_line(fields, draft.own)
         line = convert.read_line(explicit, draft.analysis)
     except BadInput as error:
-        faults = list(error.faults[:_FAULTS_A_LINE])
+        faults = [_with_source(fault, placed, computed) for fault in error.faults[:_FAULTS_A_LINE]]
     if line is None:
         draft.rejected += 1
         room = max(0, MOST_FAULTS - len(draft.faults))
-        draft.faults += [_placed(draft.taken, row, fault) for fault in faults[:room]]
+        draft.faults += [_placed(draft.taken, placed.place, fault) for fault in faults[:room]]
     return {
         "batch_id": draft.batch_id,
         "number": draft.taken,
@@ -143,10 +149,28 @@ def _item(draft: _Draft, document: object) -> dict[str, Any]:
         "asset_id": line.asset_id if line is not None else None,
         "document": line.model_dump(mode="json", by_alias=True) if line is not None else None,
         "known": known if line is not None else None,
-        "faults": None
-        if line is not None
-        else [{"row": row, "pointer": fault.pointer, "code": fault.code, "detail": fault.detail} for fault in faults],
+        "geometry": placed.geometry,
+        "computed": [_as_row(value) for value in computed] or None,
+        "faults": None if line is not None else [_stored(placed, fault) for fault in faults],
     }
+
+
+def _with_source(fault: Fault, placed: PlacedLine, computed: Iterable[Computed]) -> Fault:
+    """Return a fault of a value that the body does not name like the line, with its name or origin there."""
+    sources = {**{json_pointer(value.path): value.source for value in computed}, **placed.sources}
+    source = sources.get(fault.pointer)
+    return fault if source is None else Fault(fault.pointer, fault.code, f"{fault.detail} ({source})")
+
+
+def _stored(placed: PlacedLine, fault: Fault) -> dict[str, Any]:
+    place = {"row": placed.row, "place": placed.place or None}
+    return {**place, "pointer": fault.pointer, "code": fault.code, "detail": fault.detail}
+
+
+def _as_row(value: Computed) -> dict[str, Any]:
+    """Return a computed value as a row of the table `assumptions`."""
+    row = {"path": value.name, "value": value.value, "unit": value.unit, "origin": "computed", "source": value.source}
+    return {**row, "lowest": None, "highest": None}
 
 
 def _split(document: object) -> tuple[str | None, object]:
@@ -179,10 +203,9 @@ def _chunk_id(draft: _Draft) -> UUID:
     return last.id
 
 
-def _placed(number: int, row: int | None, fault: Fault) -> Fault:
+def _placed(number: int, place: str, fault: Fault) -> Fault:
     """Return a fault of the whole batch; a row of a spreadsheet is named as the spreadsheet shows it."""
-    named = f"line {number}" if row is None else f"row {row}"
-    return Fault(f"/lines/{number - 1}{fault.pointer}", fault.code, f"{named}: {fault.detail}")
+    return Fault(f"/lines/{number - 1}{fault.pointer}", fault.code, f"{place or f'line {number}'}: {fault.detail}")
 
 
 def _refuse_hopeless(draft: _Draft) -> None:

@@ -3,8 +3,8 @@ from collections.abc import Iterator
 import pytest
 
 from app.batches.intake import read_csv
-from app.batches.intake.csv_columns import Columns, SheetLine
 from app.schemas.faults import BadInput
+from app.sheets.columns import Columns, PlacedLine
 from app.sheets.delimited import SheetRow
 
 
@@ -17,10 +17,10 @@ def codes(error: pytest.ExceptionInfo[BadInput]) -> list[tuple[str, str]]:
     return [(fault.pointer, fault.code) for fault in error.value.faults]
 
 
-def taken(body: bytes, size: int = 1000) -> list[SheetLine]:
+def taken(body: bytes, size: int = 1000) -> list[PlacedLine]:
     lines = []
     for line in read_csv(pieces(body, size), {}, 1000).lines:
-        assert isinstance(line, SheetLine)
+        assert isinstance(line, PlacedLine)
         lines.append(line)
     return lines
 

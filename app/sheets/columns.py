@@ -1,7 +1,7 @@
 """Convert columns with dotted field names to line documents: `span.length_m`, `ice.aerodynamics.vertical.0`."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from app.schemas.faults import BadInput, Fault, json_pointer
@@ -11,19 +11,42 @@ from app.sheets.delimited import SheetRow
 _MOST_COLUMNS = 500
 _MOST_TOKENS = 8
 _MOST_ITEMS = 200
-_TEXTS = frozenset({"reference", "name", "asset_id", "tags"})
+_TEXTS = frozenset({"reference", "name", "asset_id"})
 _TEXTS_WITHIN = frozenset({"name", "catalogue"})
 
 Path = tuple[str | int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class SheetLine:
-    """The document of a row, or a `BadInput`; the row's number in the spreadsheet, and faults of its cells."""
+class Computed:
+    """A value that follows from what was sent: path in the line, value, unit, and the sentence that says whence."""
 
-    row: int
+    path: tuple[str, str]
+    value: float
+    unit: str
+    source: str
+
+    @property
+    def name(self) -> str:
+        """Dotted name of the field."""
+        return ".".join(self.path)
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedLine:
+    """A line document, or a `BadInput`, and where in the body it stands: "row 5", "feature 3".
+
+    row: its number in the spreadsheet; faults: of single values; geometry: its coordinates as GeoJSON, to be kept with
+    it; computed: what follows from them; sources: what a field was called in the body, by its JSON pointer.
+    """
+
+    place: str
     document: object
     faults: tuple[Fault, ...] = ()
+    row: int | None = None
+    geometry: Mapping[str, Any] | None = None
+    computed: tuple[Computed, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +73,13 @@ class Columns:
             raise BadInput(faults)
         return cls(tuple(paths))
 
-    def line(self, row: SheetRow) -> SheetLine:
+    def line(self, row: SheetRow) -> PlacedLine:
         """Return the document of a row; cells beyond its end are empty, and cells beyond the header must be."""
         if row.fault is not None:
-            return SheetLine(row.number, BadInput([Fault("", "csv_invalid", row.fault)]))
+            return _of_row(row, BadInput([Fault("", "csv_invalid", row.fault)]))
         if any(not _is_empty(cell) for cell in row.cells[len(self.paths) :]):
             detail = f"the row has {len(row.cells)} cells, but the header has {len(self.paths)}"
-            return SheetLine(row.number, BadInput([Fault("", "csv_row", detail)]))
+            return _of_row(row, BadInput([Fault("", "csv_row", detail)]))
         document: dict[str | int, Any] = {}
         faults = []
         for path, cell in zip(self.paths, row.cells, strict=False):
@@ -67,12 +90,16 @@ class Columns:
                 faults.append(Fault(json_pointer(path), "csv_value", value.sentence))
             else:
                 _put(document, path, value)
-        return SheetLine(row.number, _with_lists(document), tuple(faults))
+        return _of_row(row, _with_lists(document), faults)
+
+
+def _of_row(row: SheetRow, document: object, faults: Sequence[Fault] = ()) -> PlacedLine:
+    return PlacedLine(f"row {row.number}", document, tuple(faults), row.number)
 
 
 def _path(name: str) -> Path:
     tokens = name.split(".")
-    if tokens[0] == "tags":  # a tag's key may contain dots
+    if name.startswith("tags."):  # a tag's key may contain dots
         return ("tags", name.partition(".")[2])
     return tuple(int(token) if token.isdecimal() and token.isascii() else token for token in tokens)
 
@@ -112,10 +139,11 @@ def _is_empty(cell: object) -> bool:
 
 def _value(path: Path, cell: object, row: SheetRow) -> object:
     """Return the text of a text field as it is, otherwise what the cell means; the schema judges what is left."""
-    if isinstance(cell, str) and (path[0] in _TEXTS or path[-1] in _TEXTS_WITHIN):
+    is_text = path[0] in _TEXTS or path[-1] in _TEXTS_WITHIN or (path[0] == "tags" and len(path) > 1)
+    if isinstance(cell, str) and is_text:
         return cell
     value = value_of(cell, comma=row.comma, others_comma=row.others_comma)
-    return str(value) if path[0] in _TEXTS or path[-1] in _TEXTS_WITHIN else value
+    return str(value) if is_text and isinstance(value, int | float) else value
 
 
 def _with_lists(node: Any) -> Any:
