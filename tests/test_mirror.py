@@ -101,6 +101,7 @@ OF_NO_SINGLE_MODULE = {
     "tests/app/convert/test_whole_lines.py": "Requests made by Hypothesis pass the whole border and the engine.",
     "tests/app/routes/test_further_tables.py": "Tables that are asked for are fetched in every form.",
     "tests/app/routes/test_idempotent_crashes.py": "A process is killed at each step of an idempotent post.",
+    "tests/app/routes/test_exchange.py": "Features and CIM files pass reading, intake and results.",
     "tests/app/routes/test_spreadsheets.py": "Sheets of several programs pass reading, intake and results.",
     "tests/app/test_costs.py": "SQL statements, messages and imports are counted on whole ways through the service.",
     "tests/app/test_result_tables.py": "A table that a test declares goes through every form of an answer.",

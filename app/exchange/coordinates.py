@@ -16,6 +16,7 @@ from app.sheets.columns import Computed
 
 _WITHIN = (("longitude", -180.0, 180.0), ("latitude", -90.0, 90.0), ("height", -1000.0, 9000.0))
 _KINDS = ("Point", "LineString")
+_WGS84 = frozenset({"CRS84", "CRS84H", "4326", "4979"})
 _SHOWN = 60
 _HUGE = 1e18
 
@@ -31,6 +32,10 @@ class Course:
 
     positions: tuple[Position, ...]
 
+    def length(self) -> float:
+        """Return the length of all spans together [m]."""
+        return sum(distance(*ends)[0] for ends in self.spans())
+
     def spans(self) -> Iterator[tuple[Position, Position]]:
         """Yield the two ends of each span."""
         yield from zip(self.positions, self.positions[1:], strict=False)
@@ -40,6 +45,11 @@ def distance(start: Position, end: Position) -> tuple[float, float]:
     """Return the length of the geodesic [m] and its azimuth at the start [deg], clockwise from north, 0 to 360."""
     found = Geodesic.WGS84.Inverse(start[1], start[0], end[1], end[0], Geodesic.DISTANCE | Geodesic.AZIMUTH)
     return float(found["s12"]), float(found["azi1"]) % 360.0
+
+
+def is_wgs84(name: str) -> bool:
+    """Tell whether a name of a reference system, such as `urn:ogc:def:crs:EPSG::4326`, is that of WGS 84."""
+    return name.upper().rpartition(":")[2] in _WGS84
 
 
 def computed_of(start: Position, end: Position) -> tuple[Computed, ...]:

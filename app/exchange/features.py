@@ -1,44 +1,19 @@
 """Read the features of GeoJSON (RFC 7946) as lines: a LineString is a span, or one for each of its segments."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from app.exchange.coordinates import (
-    Course,
-    as_geometry,
-    computed_of,
-    distance,
-    kept_geometry,
-    length_fault,
-    read_geometry,
-)
+from app.exchange.coordinates import is_wgs84, kept_geometry, read_geometry
 from app.exchange.feature_texts import FeatureTexts, cut_features
+from app.exchange.spans import SpanNotes, lines_along
 from app.schemas.faults import BadInput, Fault, json_pointer, parse_json
 from app.sheets.columns import Columns, PlacedLine
 from app.sheets.delimited import SheetRow
 
 _BATCH = ("analysis", "defaults", "webhook_url")
-_WGS84 = frozenset({"CRS84", "CRS84H", "4326", "4979"})
-_ALIKE = 0.05
 _HUGE = 10**18
-_NAMED = 5
-
-
-@dataclass(slots=True)
-class FeatureNotes:
-    """What the features show; complete when the last one is taken."""
-
-    unlike: list[str] = field(default_factory=list)
-
-    def sentences(self) -> list[str]:
-        """Return a sentence for everything that deserves a look."""
-        if not self.unlike:
-            return []
-        more = f" and {len(self.unlike) - _NAMED} more" if len(self.unlike) > _NAMED else ""
-        named = ", ".join(self.unlike[:_NAMED])
-        return [f"span.length_m differs from the distance of the coordinates by more than 5 % in {named}{more}."]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +22,7 @@ class FeatureLines:
 
     members: Mapping[str, Any]
     lines: Iterator[PlacedLine]
-    notes: FeatureNotes
+    notes: SpanNotes
 
 
 def read_features(pieces: Iterable[bytes], most_bytes: int) -> FeatureLines:
@@ -71,7 +46,7 @@ def read_features(pieces: Iterable[bytes], most_bytes: int) -> FeatureLines:
     """
     cut = cut_features(pieces, most_bytes)
     head = _parsed(cut.members)
-    notes = FeatureNotes()
+    notes = SpanNotes()
     if cut.whole:
         if head.get("type") != "Feature":
             detail = "must be a FeatureCollection with a list of features, or a Feature"
@@ -83,7 +58,7 @@ def read_features(pieces: Iterable[bytes], most_bytes: int) -> FeatureLines:
     return FeatureLines(head, _all_lines(cut, notes), notes)
 
 
-def _all_lines(cut: FeatureTexts, notes: FeatureNotes) -> Iterator[PlacedLine]:
+def _all_lines(cut: FeatureTexts, notes: SpanNotes) -> Iterator[PlacedLine]:
     before = set(cut.members)
     for number, text in enumerate(cut.texts, 1):
         try:
@@ -112,12 +87,12 @@ def _check(members: Mapping[str, Any]) -> None:
         return
     properties = crs.get("properties") if isinstance(crs, dict) else None
     name = str(properties.get("name") if isinstance(properties, dict) else crs)
-    if name.upper().rpartition(":")[2] not in _WGS84:
+    if not is_wgs84(name):
         detail = f"must be WGS 84 (EPSG:4326 or CRS84), got {name[:80]!r}; convert the coordinates"
         raise BadInput([Fault("/crs", "crs", detail)])
 
 
-def _lines(number: int, feature: object, notes: FeatureNotes) -> Iterator[PlacedLine]:
+def _lines(number: int, feature: object, notes: SpanNotes) -> Iterator[PlacedLine]:
     place = f"feature {number}"
     if not isinstance(feature, dict) or feature.get("type") != "Feature":
         yield PlacedLine(place, BadInput([Fault("/type", "not_geojson", "must be an object of the type Feature")]))
@@ -127,48 +102,7 @@ def _lines(number: int, feature: object, notes: FeatureNotes) -> Iterator[Placed
     if not isinstance(line.document, dict) or faults:
         yield PlacedLine(place, line.document, (*line.faults, *faults))
     else:
-        yield from _spans(line, course, kept_geometry(feature.get("geometry")), notes)
-
-
-def _spans(line: PlacedLine, course: Course | None, geometry: Any, notes: FeatureNotes) -> Iterator[PlacedLine]:
-    """Yield a line for each span between two positions; without two positions, the line as it is."""
-    spans = [] if course is None else list(course.spans())
-    document = dict(line.document) if isinstance(line.document, dict) else {}
-    own = document.get("span")
-    given = own.get("length_m") if isinstance(own, dict) else None
-    if len(spans) < 2:
-        if spans and isinstance(given, int | float) and abs(given) < _HUGE:
-            length, _ = distance(*spans[0])
-            if abs(length - given) > _ALIKE * length:
-                notes.unlike.append(line.place)
-        yield from (_span(line, document, span, geometry, given is None) for span in spans)
-        if not spans:
-            yield PlacedLine(line.place, document, line.faults, geometry=geometry)
-        return
-    for i, (start, end) in enumerate(spans, 1):
-        placed = PlacedLine(f"{line.place}, span {i}", _numbered(document, i), line.faults)
-        if given is not None:
-            detail = f"must be absent, because the LineString has {len(spans)} spans, each of its own length"
-            placed = PlacedLine(placed.place, placed.document, (Fault("/span/length_m", "several_spans", detail),))
-        yield _span(placed, placed.document, (start, end), as_geometry(start, end), True)
-
-
-def _span(line: PlacedLine, document: Any, ends: Sequence[Any], geometry: Any, is_open: bool) -> PlacedLine:
-    """Return a line between two positions; is_open: whether its length is not given, so that their distance counts."""
-    start, end = ends
-    fault = length_fault("/geometry/coordinates", start, end) if is_open else None
-    faults = (*line.faults, *([fault] if fault else ()))
-    return PlacedLine(line.place, document, faults, geometry=geometry, computed=computed_of(start, end))
-
-
-def _numbered(document: Mapping[str, Any], number: int) -> dict[str, Any]:
-    """Return a document with the number of a span in its labels."""
-    named = dict(document)
-    if isinstance(document.get("name"), str):
-        named["name"] = f"{document['name']}, span {number}"
-    if isinstance(document.get("reference"), str):
-        named["reference"] = f"{document['reference']}/{number}"
-    return named
+        yield from lines_along(line, course, kept_geometry(feature.get("geometry")), notes)
 
 
 def _of_properties(place: str, feature: Mapping[str, Any]) -> PlacedLine:

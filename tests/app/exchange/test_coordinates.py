@@ -49,7 +49,8 @@ def test_lengths_and_directions_are_the_published_ones(
 def test_a_span_is_not_that_of_a_sphere() -> None:
     """From south to north at the equator the earth is curved by 6,335 km, not by its mean radius of 6,371 km."""
     length, azimuth = distance((10.0, 0.0), (10.0, 0.0027))
-    assert (length, azimuth) == (pytest.approx(math.radians(0.0027) * 6335439.327, abs=1e-4), 0.0)
+    assert length == pytest.approx(math.radians(0.0027) * 6335439.327, abs=1e-4)
+    assert azimuth == 0.0
     assert math.radians(0.0027) * 6371008.8 - length > 1.6
 
 

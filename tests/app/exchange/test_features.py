@@ -92,7 +92,7 @@ def test_a_given_length_wins_and_a_different_one_is_noted() -> None:
     )
     assert [pointers(line) for line in found.lines] == [[], [], [], []]
     assert found.notes.sentences() == [
-        "span.length_m differs from the distance of the coordinates by more than 5 % in feature 2, feature 3."
+        "A given length differs from that of the coordinates by more than 5 %: feature 2, feature 3."
     ]
 
 
