@@ -44,4 +44,3 @@ class ResolvedLine(Answer):
     assumptions: list[AssumptionRow] = described("Where each value came from", [example_of(AssumptionRow)])
     states: SpanStates = described("Tension and sag", example_of(SpanStates))
     doubts: list[str] = described("Slips that the coefficients show, such as slopes per degree", [])
-    kept: dict[str, Any] = described("Fields that resolving does not touch", {"design_wind_m_per_s": 10.0})

@@ -15,7 +15,7 @@ from app.convert.known import (
 )
 from app.convert.mode_shapes import mode_shapes
 from app.convert.run import Advance, PointResult, run
-from app.convert.stack import STACK, NumberedLine, read_analysis, read_line, run_stack, seconds_a_line
+from app.convert.stack import STACK, NumberedLine, kept_analysis, read_analysis, read_line, run_stack, seconds_a_line
 from app.convert.tables import TABLES_BY_ADDRESS, columns, example_row, example_tables
 from engine import ENGINE_VERSION
 from engine.result import TABLES, Column, DenHartog, StaticState, Table, Tables, columns_of
@@ -46,6 +46,7 @@ __all__ = [
     "fit",
     "is_known_form",
     "is_known_request",
+    "kept_analysis",
     "known_of",
     "mode_shapes",
     "read",

@@ -38,6 +38,7 @@ class _LineParts(TypedDict):
     section: spec.Section | None
     phases: tuple[spec.Phase, ...]
     required_clearance: float | None
+    design_wind: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,7 @@ class SoundParts:
     section: schemas.Section | None = None
     phases: Sequence[schemas.Phase] | None = ()
     required_clearance: float | None = None
+    design_wind: float | None = None
 
     @classmethod
     def of(cls, line: schemas.Line) -> "SoundParts":
@@ -73,6 +75,7 @@ class SoundParts:
             section=line.section,
             phases=line.phases,
             required_clearance=line.required_clearance,
+            design_wind=line.design_wind,
         )
 
 
@@ -140,6 +143,7 @@ def _values(sound: SoundParts, gathered: Gathered) -> _LineParts:
         "section": None if sound.section is None else _section(sound.section, gathered),
         "phases": (),
         "required_clearance": sound.required_clearance,
+        "design_wind": sound.design_wind,
     }
     if sound.phases is None:  # then nothing is said of the phases that spacers name
         gathered.neutral.append("phases")

@@ -10,6 +10,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from app import schemas
 from app.convert.assemble import SoundParts
 from app.schemas.faults import Fault
+from app.schemas.fields import Document
+from app.schemas.known.parts import as_in
 from app.schemas.request import STUDY_POINTS_LIMIT, AxisValue
 
 Part = TypeVar("Part", bound=BaseModel)
@@ -70,6 +72,7 @@ def sound_parts(line: Mapping[str, Any]) -> SoundParts:
         section=_part(schemas.Section, line, "section"),
         phases=_phases(line.get("phases", [])),
         required_clearance=_clearance(line.get("required_clearance_m")),
+        design_wind=_design_wind(line.get("design_wind_m_per_s")),
     )
 
 
@@ -141,6 +144,17 @@ def _phases(value: object) -> list[schemas.Phase] | None:
         return _PHASES.validate_python(value)
     except ValidationError:
         return None
+
+
+class _DesignWind(Document):
+    """The design wind of a line by itself."""
+
+    design_wind: float | None = as_in(schemas.Line, "design_wind")
+
+
+def _design_wind(value: object) -> float | None:
+    sound = _sound(_DesignWind, {"design_wind_m_per_s": value})
+    return None if sound is None else sound.design_wind
 
 
 def _clearance(value: object) -> float | None:

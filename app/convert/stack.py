@@ -78,6 +78,12 @@ def read_analysis(document: object) -> schemas.Analysis:
     return analysis
 
 
+def kept_analysis(analysis: schemas.Analysis) -> dict[str, Any]:
+    """Return an analysis with all defaults but wind speeds, to which each line of a batch may add its design wind."""
+    unnamed = {"wind_speeds"} - analysis.model_fields_set
+    return analysis.model_dump(mode="json", by_alias=True, exclude=unnamed)
+
+
 def read_line(document: object, analysis: schemas.Analysis) -> schemas.Line:
     """Return a line that passes its schema and allows this analysis.
 
@@ -189,7 +195,8 @@ def _stacks(made: Iterable[_Made]) -> Iterator[list[_Made]]:
 
 
 def _specification(line: NumberedLine, options: schemas.Analysis) -> tuple[spec.Line, spec.Analysis]:
-    made, analysis, faults = gather(SoundParts.of(schemas.Line.model_validate(line.document)), options)
+    document = schemas.Line.model_validate(line.document)
+    made, analysis, faults = gather(SoundParts.of(document), options.with_design_wind(document.design_wind))
     if made is None or faults:
         raise InvalidSpec(*faults)
     return made, analysis

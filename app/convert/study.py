@@ -96,7 +96,8 @@ class Ground:
             unsound.add(("phases",))
         else:
             document["phases"] = [_dumped(phase) for phase in parts.phases]
-        document["required_clearance_m"] = line.get("required_clearance_m")
+        for name in ("required_clearance_m", "design_wind_m_per_s"):
+            document[name] = line.get(name)
         if not isinstance(line.get("devices", []), list):
             unsound.add(("devices",))
         known = {fault.pointer for fault in _document_faults(document, options)}

@@ -81,7 +81,8 @@ class Analysis(Document):
     wind_speeds: WindSpeeds = Field(
         default=[4.0, 5.0, 6.0],
         alias="wind_speeds_m_per_s",
-        description="Wind speeds for limit cycles: a list, or start, stop and count [m/s]",
+        description="Wind speeds for limit cycles: a list, or start, stop and count; if absent, the line's design "
+        "wind as well [m/s]",
         examples=[[4.0, 5.0, 6.0], {"start": 4.0, "stop": 6.0, "count": 21}],
         json_schema_extra={"unit": "m/s"},
     )
@@ -203,6 +204,12 @@ class Analysis(Document):
             if len(set(values)) != len(values):
                 raise PydanticCustomError("distinct", "{name} must be distinct", {"name": name})
         return self
+
+    def with_design_wind(self, speed: float | None) -> Self:
+        """Return the analysis with a line's design wind [m/s] among its wind speeds, if it names none itself."""
+        if speed is None or "wind_speeds" in self.model_fields_set:
+            return self
+        return self.model_copy(update={"wind_speeds": sorted({*self.speeds(), speed})})
 
     def speeds(self) -> tuple[float, ...]:
         """Return the wind speeds as a list [m/s]."""

@@ -290,3 +290,6 @@ class Line(Document):
     required_clearance: float | None = quantity(
         "required_clearance_m", "Required clearance between phases that say none", "m", _CLEARANCE, 1.5, None
     )
+    design_wind: float | None = quantity(
+        "design_wind_m_per_s", "Wind speed of design, at which the verdict is put", "m/s", (0.1, 100.0), 10.0, None
+    )

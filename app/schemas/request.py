@@ -131,6 +131,7 @@ class JobRequest(Document):
     def _one_kind(self) -> Self:
         if self.study is not None and self.placement is not None:
             raise PydanticCustomError("exclusive", "must have a study or a placement, not both")
+        object.__setattr__(self, "analysis", self.analysis.with_design_wind(self.line.design_wind))  # before it is used
         return self
 
     def kept(self) -> dict[str, Any]:

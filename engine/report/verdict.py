@@ -1,6 +1,6 @@
 """The verdict on a line: does it gallop, from which wind, how far, and how well is that known?"""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from engine.clearance import EllipseMethod, galloping_ellipse
@@ -19,13 +19,15 @@ class _Evidence:
     """What a result says about galloping.
 
     moving: stable motions, the largest vertical amplitude first; unknown: rows without numbers; onset: lowest critical
-    wind speed of an oscillation; highest: highest wind speed asked for [m/s].
+    wind speed of an oscillation; highest: highest wind speed asked for; design: the design wind, if it was asked for
+    and all motions at it are known [m/s].
     """
 
     moving: tuple[LimitCycleRow, ...]
     unknown: tuple[LimitCycleRow, ...]
     onset: float | None
     highest: float | None
+    design: float | None = None
 
     @property
     def outcomes(self) -> set[Outcome]:
@@ -55,12 +57,12 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
     line : Line
     analysis : Analysis
     """
-    evidence, samples = _evidence(result, analysis), overall(result)
+    evidence, samples = _evidence(result, line, analysis), overall(result)
     worst = evidence.moving[0] if evidence.moving else None
     tension = None if worst is None else _tension(result.tensions, worst)
     trust = _trust(evidence, tension, analysis)
-    distance, kept = _smallest_clearance(result, evidence), _clearances_kept(result, evidence)
-    gallops, sentence = weighed(result, evidence.gallops, _sentences(evidence, tension, _closeness(distance, kept)))
+    clearances = _clearances(result, evidence)
+    gallops, sentence = weighed(result, evidence.gallops, _sentences(evidence, tension, clearances))
     return VerdictRow(
         gallops=gallops,
         onset_m_per_s=evidence.onset,
@@ -69,9 +71,9 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
         vertical_peak_to_peak_m=None if worst is None else _doubled(worst.vertical_m),
         horizontal_peak_to_peak_m=None if worst is None else _doubled(worst.horizontal_m),
         tension_range_n=_range(tension),
-        clearance_m=distance,
-        clearance_margin_m=_smallest_margin(result, evidence),
-        clearance_ok=kept,
+        clearance_m=_smallest(row.distance_m for row in clearances),
+        clearance_margin_m=_smallest(row.margin_m for row in clearances),
+        clearance_ok=_clearances_kept(clearances),
         ellipse_peak_to_peak_m=_ellipse(result, line),
         probability_gallops=None if samples is None else samples.probability,
         trust=trust,
@@ -80,8 +82,11 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
     )
 
 
-def _evidence(result: Result, analysis: Analysis) -> _Evidence:
-    rows = result.limit_cycles
+def _evidence(result: Result, line: Line, analysis: Analysis) -> _Evidence:
+    rows, design = result.limit_cycles, line.design_wind
+    known = {row.wind_speed_m_per_s for row in rows} - {
+        row.wind_speed_m_per_s for row in rows if row.vertical_m is None
+    }
     moving = [row for row in rows if row.stability is Stability.STABLE and row.kind != "equilibrium"]
     onsets = [
         row.wind_speed_m_per_s
@@ -93,6 +98,7 @@ def _evidence(result: Result, analysis: Analysis) -> _Evidence:
         unknown=tuple(row for row in rows if row.vertical_m is None),
         onset=min(onsets, default=None),
         highest=max(analysis.wind_speeds, default=None),
+        design=design if design in known else None,
     )
 
 
@@ -139,19 +145,13 @@ def _clearances(result: Result, evidence: _Evidence) -> list[PhaseClearanceRow]:
     return [row for row in result.clearances if row.method == "computed" and row.stability is Stability.STABLE]
 
 
-def _smallest_clearance(result: Result, evidence: _Evidence) -> float | None:
-    known = [row.distance_m for row in _clearances(result, evidence) if row.distance_m is not None]
-    return min(known, default=None)
+def _smallest(lengths: Iterable[float | None]) -> float | None:
+    return min((length for length in lengths if length is not None), default=None)
 
 
-def _smallest_margin(result: Result, evidence: _Evidence) -> float | None:
-    known = [row.margin_m for row in _clearances(result, evidence) if row.margin_m is not None]
-    return min(known, default=None)
-
-
-def _clearances_kept(result: Result, evidence: _Evidence) -> bool | None:
+def _clearances_kept(rows: Sequence[PhaseClearanceRow]) -> bool | None:
     """Return whether all phases keep their distance; None where one of them is given none, or none moves."""
-    kept = [row.ok for row in _clearances(result, evidence)]
+    kept = [row.ok for row in rows]
     if False in kept:
         return False
     return None if not kept or None in kept else True
@@ -161,8 +161,9 @@ def _doubled(amplitude: float | None) -> float | None:
     return None if amplitude is None else 2.0 * amplitude
 
 
-def _closeness(distance: float | None, kept: bool | None) -> str:
+def _closeness(rows: Sequence[PhaseClearanceRow]) -> str:
     """Return how near the motions come to another phase, as a part of a sentence; empty where that is not known."""
+    distance, kept = _smallest(row.distance_m for row in rows), _clearances_kept(rows)
     if distance is None:
         return ""
     if distance <= 0.0:
@@ -172,12 +173,12 @@ def _closeness(distance: float | None, kept: bool | None) -> str:
     return f"; keeps {distance:.1f} m to the next phase"
 
 
-def _sentences(evidence: _Evidence, tension: TensionRow | None, closeness: str) -> list[str]:
+def _sentences(evidence: _Evidence, tension: TensionRow | None, clearances: Sequence[PhaseClearanceRow]) -> list[str]:
     if evidence.gallops == "no":
         return [_rest(evidence)]
     if evidence.gallops == "undecided":
         return ["Not decided.", *_reasons(evidence)]
-    texts = [_motion(evidence, closeness)]
+    texts = [_motion(evidence, clearances)]
     below = [row.wind_speed_m_per_s for row in evidence.moving if row.wind_speed_m_per_s < (evidence.onset or 0.0)]
     if below and evidence.loses_stability:
         texts.append(f"Once started, it goes on from {min(below):g} m/s.")
@@ -193,8 +194,8 @@ def _rest(evidence: _Evidence) -> str:
     return f"Stays at rest at the wind speeds asked for, up to {evidence.highest:g} m/s{later}."
 
 
-def _motion(evidence: _Evidence, closeness: str) -> str:
-    """Return from which wind the span gallops, the worst motion, and what is left to the next phase."""
+def _motion(evidence: _Evidence, clearances: Sequence[PhaseClearanceRow]) -> str:
+    """Return from which wind it gallops, the motions at the design wind and the worst, and what is left to phases."""
     if evidence.loses_stability:
         text = f"Gallops from {evidence.onset:.1f} m/s"
     elif evidence.moving:
@@ -204,10 +205,23 @@ def _motion(evidence: _Evidence, closeness: str) -> str:
         text = "Gallops"
     if not evidence.moving:
         return f"{text}; how far was not found."
-    worst = evidence.moving[0]
-    size = _doubled(worst.vertical_m) or 0.0
-    how_far = f"{_metres(size)} m peak to peak{closeness}"
-    return f"{text}; at {worst.wind_speed_m_per_s:g} m/s in {_in_words(worst)}, {how_far}."
+    worst, design = evidence.moving[0], evidence.design
+    if design is None or design == worst.wind_speed_m_per_s:
+        return f"{text}; at {_size(worst)}{_closeness(clearances)}."
+    there = next((row for row in evidence.moving if row.wind_speed_m_per_s == design), None)
+    near = _closeness([row for row in clearances if row.wind_speed_m_per_s == design])
+    put = (
+        f"at the design wind of {design:g} m/s no stable motion was found"
+        if there is None
+        else f"at {_size(there)}{near}"
+    )
+    return f"{text}; {put}; most at {_size(worst)}{_closeness(clearances)}."
+
+
+def _size(motion: LimitCycleRow) -> str:
+    """Return wind speed, loops and size of a motion."""
+    size = _metres(_doubled(motion.vertical_m) or 0.0)
+    return f"{motion.wind_speed_m_per_s:g} m/s in {_in_words(motion)}, {size} m peak to peak"
 
 
 def _reasons(evidence: _Evidence) -> list[str]:

@@ -20,7 +20,8 @@ class Line:
 
     phases: other phases and wires of the same span, which clearances are taken to and interphase spacers tie; climate:
     how its winds and its icing are spread over the year, which no motion depends on; required_clearance: the smallest
-    distance that phases must keep which say none themselves [m].
+    distance that phases must keep which say none themselves [m]; design_wind: the wind speed at which the verdict is
+    put [m/s].
 
     Raises
     ------
@@ -41,6 +42,7 @@ class Line:
     phases: tuple[Phase, ...] = ()
     climate: Climate | None = None
     required_clearance: float | None = None
+    design_wind: float | None = None
 
     def __post_init__(self) -> None:
         """Check positions, overlaps of devices, that inertia is positive, that drag is known, and the section."""
@@ -52,6 +54,7 @@ class Line:
             *self._section_faults(),
             *phase_faults(self),
             positive("required_clearance", self.required_clearance),
+            positive("design_wind", self.design_wind),
         )
 
     @property

@@ -85,7 +85,7 @@ def receive(
     analysis = convert.read_analysis(incoming.analysis)
     defaults = checked_defaults(incoming.defaults)
     with sessions.begin() as session:
-        batch_id = batch_records.begin(session, caller, analysis.model_dump(mode="json", by_alias=True))
+        batch_id = batch_records.begin(session, caller, convert.kept_analysis(analysis))
         own = records.own_rows(session, caller.owner)
     draft = _Draft(batch_id, analysis, lines_a_chunk(settings, analysis), atomic, own, defaults)
     try:

@@ -19,7 +19,6 @@ _FORMS: Mapping[str, frozenset[str]] = {
     "ice": frozenset({"accretion"}),
 }
 _OF_AERODYNAMICS = frozenset({"catalogue", "reference_diameter_m"})
-_OF_LINE = frozenset({"design_wind_m_per_s"})
 # What an analysis needs and resolving estimates from what else is said.
 _ESTIMATED: Mapping[str, frozenset[str]] = {
     "conductor": frozenset({"torsional_rigidity_n_m2", "polar_inertia_kg_m"}),
@@ -39,7 +38,7 @@ def is_known_form(line: object) -> bool:
     parts = [(line.get(name), forms) for name, forms in _FORMS.items()]
     return _lacks_estimates(line) or any(
         isinstance(part, dict) and not forms.isdisjoint(part)
-        for part, forms in (*parts, (coefficients, _OF_AERODYNAMICS), (line, _OF_LINE))
+        for part, forms in (*parts, (coefficients, _OF_AERODYNAMICS))
     )
 
 

@@ -24,8 +24,7 @@ from engine.result import AssumptionRow
 Made = TypeVar("Made")
 
 _DIRECTIONS = ("vertical", "horizontal", "torsional")
-_KEPT = ("design_wind",)
-_AS_SAID = {"name", "asset_id", "tags", "devices", "climate", "phases", "required_clearance", "section"}
+_AS_SAID = {"name", "asset_id", "tags", "devices", "climate", "phases", "required_clearance", "section", "design_wind"}
 _DOCUMENT_UNITS: Mapping[str, str] = {"rad": "deg", "": "1"}
 # What the document calls otherwise than the engine, and what only the engine has, with its unit.
 _OTHER_NAMES: Mapping[str, str] = {
@@ -51,7 +50,7 @@ def resolved_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
     dict
         `line`: the explicit document, of which an analysis gives the same results; `assumptions`: a row for each value;
         `states`: the span every day and under ice, null where its iced tension is given; `doubts`: slips that the
-        coefficients show; `kept`: fields that resolving does not touch.
+        coefficients show.
 
     Raises
     ------
@@ -69,7 +68,6 @@ def resolved_document(line: said.KnownLine, own: OwnRows) -> dict[str, Any]:
         "assumptions": [_row(row) for row in (*resolved.assumptions, *ends)],
         "states": _states(resolved),
         "doubts": doubts_of(resolved.line.ice.aerodynamics),
-        "kept": line.model_dump(mode="json", by_alias=True, include=set(_KEPT), exclude_defaults=True),
     }
 
 

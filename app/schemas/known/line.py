@@ -7,7 +7,7 @@ from pydantic import Field
 from app.schemas.climate import CLIMATE, Climate
 from app.schemas.devices import Device
 from app.schemas.environment import Damping, Wind
-from app.schemas.fields import Document, Label, TagKey, quantity
+from app.schemas.fields import Document, Label, TagKey
 from app.schemas.known.ice import ACCRETION, KnownIce
 from app.schemas.known.parts import KnownBundle, KnownConductor, KnownSpan, as_in
 from app.schemas.line import Line, Phase, Supports
@@ -74,9 +74,7 @@ class KnownLine(Document):
         examples=Line.model_fields["phases"].examples,
     )
     required_clearance: float | None = as_in(Line, "required_clearance")
-    design_wind: float | None = quantity(
-        "design_wind_m_per_s", "Wind speed of design; kept as it is", "m/s", (0.1, 100.0), 10.0, None
-    )
+    design_wind: float | None = as_in(Line, "design_wind")
     section: Section | None = Field(
         default=None,
         description=Line.model_fields["section"].description,

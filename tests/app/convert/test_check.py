@@ -340,3 +340,18 @@ def test_whatever_stands_in_a_field_is_taken_or_named(path: str, value: Any) -> 
 @given(JSON)
 def test_whatever_comes_as_a_request_is_refused_with_reasons(document: Any) -> None:
     assert faults(document)
+
+
+def test_the_design_wind_is_asked_for_where_no_wind_speeds_are_named() -> None:
+    line = {**FULL_LINE, "design_wind_m_per_s": 10.0}
+
+    def speeds(analysis: dict[str, Any]) -> Any:
+        return convert.read({"line": line, "analysis": analysis}).kept()["analysis"]["wind_speeds_m_per_s"]
+
+    assert speeds({}) == [4.0, 5.0, 6.0, 10.0]
+    assert speeds({"wind_speeds_m_per_s": [4.0, 5.0, 6.0]}) == [4.0, 5.0, 6.0]
+    kept = convert.read({"line": line}).kept()
+    assert convert.read(kept).kept() == kept
+    with pytest.raises(BadInput) as caught:
+        convert.read({"line": {**line, "design_wind_m_per_s": -3.0}})
+    assert [fault.pointer for fault in caught.value.faults] == ["/line/design_wind_m_per_s"]

@@ -215,3 +215,12 @@ def test_samples_cost_as_many_lines_more() -> None:
     few, many = (seconds_a_line(read_analysis({**SHORT, "uncertainty": {"samples": samples}})) for samples in (0, 128))
     assert few == seconds_a_line(read_analysis(SHORT))
     assert many > 128 * few
+
+
+def test_each_line_of_a_batch_has_its_own_design_wind_where_no_wind_speeds_are_named() -> None:
+    unnamed = {name: value for name, value in SHORT.items() if name != "wind_speeds_m_per_s"}
+    asked = convert.kept_analysis(read_analysis(unnamed))
+    found = results([NumberedLine(1, TWIN), NumberedLine(2, {**TWIN, "design_wind_m_per_s": 8.0})], asked)
+    winds = {n: {row["wind_speed_m_per_s"] for row in point.tables["limit_cycles"]} for n, point in found.items()}
+    assert winds == {1: {4.0, 5.0, 6.0}, 2: {4.0, 5.0, 6.0, 8.0}}
+    assert "; at 8 m/s in one loop" in found[2].tables["verdict"][0]["sentence"]

@@ -142,3 +142,40 @@ def test_phases_that_may_touch_are_said() -> None:
     assert row.clearance_m is not None
     assert row.clearance_m < 0.0
     assert "m peak to peak; may touch the next phase." in row.sentence
+
+
+@pytest.mark.parametrize("speed", [4.0, 10.0, 7.0])
+def test_the_sentence_is_put_at_the_design_wind_if_it_was_asked_for(speed: float) -> None:
+    row = verdict(analysed(), replace(twin(), design_wind=speed), ASKED)
+    assert row == replace(judged(analysed()), sentence=row.sentence)
+    sizes = {
+        cycle.wind_speed_m_per_s: 2.0 * (cycle.vertical_m or 0.0)
+        for cycle in analysed().limit_cycles
+        if cycle.stability is Stability.STABLE and cycle.kind == "periodic"
+    }
+    onset = f"Gallops from {row.onset_m_per_s:.1f} m/s; "
+    most = f"at 10 m/s in one loop, {sizes[10.0]:.2f} m peak to peak."
+    at_design = f"at 4 m/s in one loop, {sizes[4.0]:.2f} m peak to peak; most "
+    assert row.sentence == onset + (at_design if speed == 4.0 else "") + most
+
+
+def test_rest_at_the_design_wind_is_said_beside_the_worst_motion() -> None:
+    asked = replace(ASKED, wind_speeds=(1.0, 10.0))
+    row = verdict(analysed(asked), replace(twin(), design_wind=1.0), asked)
+    assert (
+        "; at the design wind of 1 m/s no stable motion was found; most at 10 m/s in one loop, 1.13 m" in row.sentence
+    )
+
+
+def test_distances_at_the_design_wind_and_at_the_worst_one_stand_behind_their_motions() -> None:
+    phases = (Phase("top", 2.0, 0.0, required_clearance=1.0),)
+    line = replace(twin(), phases=phases, design_wind=4.0)
+    found = run(line, ASKED)
+    near = {wind: [row for row in found.clearances if row.wind_speed_m_per_s == wind] for wind in (4.0, 10.0)}
+    least = {
+        wind: min(row.distance_m or 9.0 for row in rows if row.stability == "stable") for wind, rows in near.items()
+    }
+    before, after = found.verdict[0].sentence.split("; most at 10 m/s")
+    assert least[10.0] < 1.0 < least[4.0]
+    assert before.endswith(f"keeps {least[4.0]:.1f} m to the next phase")
+    assert f"comes within {least[10.0]:.1f} m of the next phase, nearer than required" in after

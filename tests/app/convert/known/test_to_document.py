@@ -32,9 +32,9 @@ def test_the_explicit_document_is_the_line_that_was_resolved(name: str) -> None:
     read, _, faults = gather(SoundParts.of(Line.model_validate(explicit)), None)
     assert faults == []
     assert read is not None
-    # The analysis decides on the section, and resolving hands on the climate as it was said.
+    # The analysis decides on the section, and resolving hands on climate and design wind as they were said.
     bundle = replace(read.bundle, section=made.bundle.section)
-    settled = replace(read, bundle=bundle, climate=None, required_clearance=None)
+    settled = replace(read, bundle=bundle, climate=None, required_clearance=None, design_wind=None)
     expected, found = numbers(asdict(made)), numbers(asdict(settled))
     assert len(expected) == len(found)
     for here, there in zip(expected, found, strict=True):
@@ -82,12 +82,10 @@ def test_twenty_percent_of_the_rated_strength_is_the_everyday_tension() -> None:
     assert convert.resolve_document(LINES["explicit"])["states"] == {"everyday": None, "iced": None}
 
 
-def test_what_resolving_does_not_touch_is_kept() -> None:
+def test_what_resolving_does_not_touch_stays_in_the_line() -> None:
     resolved = convert.resolve_document(CONTRACT)
-    kept = resolved["kept"]
-    assert kept["design_wind_m_per_s"] == 10.0
+    assert resolved["line"]["design_wind_m_per_s"] == 10.0
     assert resolved["line"]["climate"]["icing"][0]["hours_a_year"] == 40.0
-    assert "climate" not in kept
     assert [phase["name"] for phase in resolved["line"]["phases"]] == ["top", "ground wire"]
 
 
