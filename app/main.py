@@ -16,6 +16,7 @@ from app.http import problems
 from app.http.head_as_get import HeadAsGet
 from app.http.request_log import RequestLog
 from app.http.security_headers import SecurityHeaders
+from app.interactive import Previews
 from app.jobs import submissions
 from app.jobs.dispatch import Sender, celery_application
 from app.jobs.job_records import look_up
@@ -38,6 +39,7 @@ from app.routes import (
     lines,
     own_aerodynamics,
     own_conductors,
+    previews,
     reference,
     results,
 )
@@ -113,7 +115,7 @@ def create_app(settings: Settings | None = None) -> Service:
     limits = {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes}
     problems.install(app, limits, frame.shown_problem)
     app.add_middleware(HeadAsGet)
-    for module in (jobs, lines, results, batch_intake, batches, batch_results, batch_ranking, clearance):
+    for module in (jobs, lines, previews, results, batch_intake, batches, batch_results, batch_ranking, clearance):
         app.include_router(module.router)
     for module in (events, deliveries, aerodynamics, own_aerodynamics, own_conductors, reference, health, explorer):
         app.include_router(module.router)
@@ -131,6 +133,7 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
+    app.state.previews = Previews(settings.preview_seconds)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
     app.state.inbox = GroupedCalls(
         "inbox", partial(committed_together, app.state.writers, submissions.accept), _INBOX_PAUSE_SECONDS

@@ -59,7 +59,14 @@ class ProblemKind(Enum):
         "Idempotency-Key reused",
         "The Idempotency-Key was used for another request within the last 24 hours.",
     )
+    TAKES_TOO_LONG = (
+        "takes-too-long",
+        422,
+        "Takes too long",
+        "The line takes longer than a preview may; submit it as a job.",
+    )
     INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is not JSON, or fields of it are wrong.")
+    BUSY = ("busy", 429, "Busy", "Other previews are not done yet; try again a second later.")
     TOO_MANY_REQUESTS = (
         "too-many-requests",
         429,

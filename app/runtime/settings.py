@@ -69,6 +69,7 @@ class Settings(BaseSettings):
 
     longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait granted to `Prefer: wait`")
     watch_seconds: Seconds = Field(default=0.3, description="Longest pause between queries for what clients wait for")
+    preview_seconds: Seconds = Field(default=3.0, description="Longest computation of a line that is not stored")
 
     lease_seconds: Seconds = Field(default=30.0, description="A worker silent for this long loses its job")
     heartbeat_seconds: Seconds = Field(default=1.0, description="Time between a worker's two reports on its job")
