@@ -24,13 +24,13 @@ def recorded_hours(record: IcedRecord, intervals: Sequence[Interval]) -> Range:
     intervals : sequence of pairs
         Wind speeds across the line [m/s], disjoint.
     """
-    return _interval(_hours(record, intervals) / record.years, max(map(len, record.events)) / record.years)
+    return interval_of_sum(_hours(record, intervals) / record.years, max(map(len, record.events)) / record.years)
 
 
 def recorded_probability(record: IcedRecord, intervals: Sequence[Interval]) -> Range:
     """Return the probability of a year with at least one such hour, if such events come as a Poisson process."""
     events = np.minimum(_hours(record, intervals), 1.0) / record.years
-    value, lowest, highest = (-math.expm1(-rate) for rate in _interval(events, 1.0 / record.years))
+    value, lowest, highest = (-math.expm1(-rate) for rate in interval_of_sum(events, 1.0 / record.years))
     return value, lowest, highest
 
 
@@ -40,10 +40,16 @@ def _hours(record: IcedRecord, intervals: Sequence[Interval]) -> FloatArray:
     return np.array([float(sum(hours)) for hours in within])
 
 
-def _interval(weights: FloatArray, largest: float) -> Range:
+def interval_of_sum(weights: FloatArray, largest: float) -> Range:
     """Return a sum of weights of events that come as a Poisson process, with its interval by a gamma distribution.
 
-    Fay and Feuer, Statistics in Medicine 16 (1997) 791-801: exact for equal weights, on the safe side for others.
+    Fay and Feuer, Statistics in Medicine 16 (1997) 791-801; their text was not at hand, so the formula was derived and
+    tried. Weights of mean m and mean square s that come with a rate L add up to L m with the variance L s. The gamma
+    distributions have the sum and the variance that were seen, at the upper end with one event more, the largest. For
+    equal weights they are the exact interval of a Poisson rate. For others, the expected sum lies beyond either end in
+    fewer than 2.5 % of drawn records (`tests/engine/risk/test_recorded.py`) if no event can add more than the largest.
+    Where ten events or fewer were seen, their longest may be too short: then it lay beyond the upper end in a tenth of the
+    records for geometric lengths, and in half of them where one event in ten is 24 times as long as the others.
 
     Parameters
     ----------

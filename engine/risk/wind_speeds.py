@@ -1,14 +1,16 @@
 """Shares of the time for which the wind across a line lies within given wind speeds, from Weibull winds by sector."""
 
+import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from engine.arrays import FloatArray
 from engine.risk.winds import Interval
-from engine.spec import Climate, WindSector
+from engine.spec import Climate, Ranged, WindSector
 
-_NODES = 64  # of the average over a half or a quarter of a sector, where the integrand is smooth
+_NODES = 32  # of the average over a quarter of a sector or less, where the integrand is smooth
 _ENDS = 33  # values of shape and of scale from the lowest to the highest that are tried
 _PARALLEL = 1e-12  # cosine below which no wind blows across
 
@@ -38,18 +40,32 @@ def share_of_time(climate: Climate, intervals: Sequence[Interval]) -> tuple[floa
 
 
 def _of_sector(climate: Climate, sector: WindSector, intervals: Sequence[Interval]) -> tuple[float, float, float]:
-    across, weight = _directions(climate, sector)
-    shape, scale = (np.linspace(*ranged.ends, _ENDS) for ranged in (sector.shape, sector.scale))
-    shapes = np.append(np.repeat(shape, _ENDS), sector.shape.value)
-    scales = np.append(np.tile(scale, _ENDS), sector.scale.value)
-    found = _within(across, shapes, scales, intervals) @ weight
-    return float(found[-1]), float(found.min()), float(found.max())
+    angle, half = sector.direction - climate.azimuth, 0.5 * climate.width(sector)
+    value = float(_within(angle, half, (sector.shape.value,), (sector.scale.value,), intervals)[0, 0])
+    shapes, scales = _tried(sector.shape), _tried(sector.scale)
+    if len(shapes) == len(scales) == 1:
+        return value, value, value
+    found = _within(angle, half, shapes, scales, intervals)
+    return value, min(value, float(found.min())), max(value, float(found.max()))
 
 
-def _directions(climate: Climate, sector: WindSector) -> tuple[FloatArray, FloatArray]:
-    """Return shares of the wind that blow across the line, and weights that sum to one, over a sector: (nodes,)."""
-    angle = sector.direction - climate.azimuth
-    half = 0.5 * climate.width(sector)
+def _tried(ranged: Ranged) -> tuple[float, ...]:
+    """Return the values of a range that are tried: the one value where it is none."""
+    lowest, highest = ranged.ends
+    return (ranged.value,) if lowest == highest else tuple(np.linspace(lowest, highest, _ENDS).tolist())
+
+
+@lru_cache(maxsize=64)
+def _directions(angle: float, half: float) -> tuple[FloatArray, FloatArray]:
+    """Return shares of the wind that blow across the line, and weights that sum to one, over a sector: (nodes,).
+
+    Parameters
+    ----------
+    angle : float
+        From the line to the middle of the sector [rad].
+    half : float
+        Half of its width [rad].
+    """
     if half == 0.0:
         return np.abs(np.sin([angle])), np.ones(1)
     # The wind along the line, where its share across has a corner, divides a sector.
@@ -62,13 +78,35 @@ def _directions(climate: Climate, sector: WindSector) -> tuple[FloatArray, Float
     return np.abs(np.sin(angles)).ravel(), weights.ravel()
 
 
-def _within(across: FloatArray, shapes: FloatArray, scales: FloatArray, intervals: Sequence[Interval]) -> FloatArray:
-    """Return the share of the time within the intervals for each shape, scale [m/s] and direction: (pairs, nodes)."""
-    crossing = across > _PARALLEL
-    scaled = scales[:, None] * np.where(crossing, across, 1.0)
-    total = np.zeros_like(scaled)
+_Values = tuple[float, ...]
+
+
+def _within(angle: float, half: float, shapes: _Values, scales: _Values, intervals: Sequence[Interval]) -> FloatArray:
+    """Return the share of the time within the intervals for each shape and scale [m/s]: (shapes, scales)."""
+    total: FloatArray = np.zeros((len(shapes), len(scales)))
     for first, last in intervals:
-        low, high = (np.exp(-((end / scaled) ** shapes[:, None])) for end in (first, last))
-        still = 1.0 if first <= 0.0 < last else 0.0  # wind along the line leaves it in still air
-        total += np.where(crossing, low - high, still)
+        low, high = (_above(end, angle, half, shapes, scales) for end in (first, last))
+        total += low - high
     return total
+
+
+@lru_cache(maxsize=1024)
+def _above(speed: float, angle: float, half: float, shapes: _Values, scales: _Values) -> FloatArray:
+    """Return the share of the time with a wind across the line above a speed [m/s]: (shapes, scales).
+
+    Intervals share their ends, and so do the motions and the samples of a line.
+    """
+    across, weight = _directions(angle, half)
+    if speed <= 0.0:  # wind along the line leaves it in still air
+        return np.ones((len(shapes), len(scales)))
+    if math.isinf(speed):
+        return np.zeros((len(shapes), len(scales)))
+    crossing = across > _PARALLEL
+    scaled = speed / (np.array(scales)[:, None] * across[crossing])
+    exponent = scaled ** np.array(shapes)[:, None, None] if len(shapes) == 1 else _powers(scaled, shapes)
+    return np.asarray(np.exp(-exponent) @ weight[crossing])
+
+
+def _powers(base: FloatArray, shapes: _Values) -> FloatArray:
+    """Return powers of a base (scales, nodes): (shapes, scales, nodes); exp is several times as fast as a power."""
+    return np.asarray(np.exp(np.array(shapes)[:, None, None] * np.log(base)))

@@ -1,21 +1,24 @@
 """Risk of a record of iced hours: counts, exact intervals, and agreement with the climate it was drawn from."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from engine.arrays import FloatArray
 from engine.outcome import InvalidSpec
 from engine.result import RiskRow
 from engine.risk.expectation import Motion, rows_over_samples
-from engine.risk.recorded import recorded_hours, recorded_probability
+from engine.risk.recorded import TAIL, interval_of_sum, recorded_hours, recorded_probability
 from engine.risk.winds import WindRanges
 from engine.spec import Climate, IcedRecord, Icing, Model, Ranged, WindSector
 
 RANGE = ((3.0, 9.0),)
 RECORD = IcedRecord(years=4.0, events=((1.0, 4.0, 5.0), (2.0,), (10.0, 8.0)))
+DRAWN = 1000
 MOTION: Motion = (Model.HYBRID, 1)
 
 
@@ -69,6 +72,40 @@ def test_records_drawn_from_a_climate_hold_its_risk_in_their_intervals() -> None
         held += row.hours_lowest <= known.hours_a_year <= row.hours_highest
         likely += row.probability_lowest <= known.probability_a_year <= row.probability_highest
     assert min(held, likely) >= 184  # 95 % of 200 are 190, two standard deviations 6
+
+
+def missed(rate: float, draw: Callable[[np.random.Generator, int], FloatArray], largest: float | None) -> FloatArray:
+    """Return the share of drawn sums whose interval lies above, and below, what is to be expected."""
+    generator, beyond = np.random.default_rng(11), np.zeros(2)
+    expected = rate * float(draw(generator, 200_000).mean())
+    for _ in range(DRAWN):
+        weights = draw(generator, int(generator.poisson(rate)))
+        most = float(weights.max(initial=1.0)) if largest is None else largest
+        _, low, high = interval_of_sum(weights, most)
+        beyond += expected < low, expected > high
+    return beyond / DRAWN
+
+
+@pytest.mark.parametrize("rate", [1.0, 3.0, 12.0])
+@pytest.mark.parametrize(
+    ("draw", "largest"),
+    [
+        (lambda generator, n: np.full(n, 3.0), 3.0),
+        (lambda generator, n: generator.integers(1, 25, n).astype(float), 24.0),
+        (lambda generator, n: np.where(generator.random(n) < 0.1, 48.0, 2.0), 48.0),
+    ],
+)
+def test_intervals_of_sums_miss_at_either_end_as_rarely_as_they_say(
+    draw: Callable[[np.random.Generator, int], FloatArray], largest: float, rate: float
+) -> None:
+    deviation = math.sqrt(TAIL * (1.0 - TAIL) / DRAWN)
+    assert (missed(rate, draw, largest) <= TAIL + 3.0 * deviation).all()
+
+
+def test_a_record_of_few_events_does_not_know_its_longest() -> None:
+    above, below = missed(3.0, lambda generator, n: generator.geometric(0.1, n).astype(float), None)
+    assert above <= TAIL
+    assert 2.0 * TAIL < below < 0.2
 
 
 @pytest.mark.parametrize(

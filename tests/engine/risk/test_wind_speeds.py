@@ -66,3 +66,21 @@ def test_the_range_holds_every_wind_within_the_ranges_of_shape_and_scale() -> No
     assert value == pytest.approx(below(7.0, 2.0, 6.0) - below(5.0, 2.0, 6.0), rel=1e-13)
     assert 0.98 * shares.min() < lowest <= shares.min() < value < highest < 1.005 * shares.max()
     assert highest >= 0.999 * shares.max()
+
+
+def test_many_values_are_those_of_each_by_itself() -> None:
+    """Ends that intervals share are computed once, for all shapes and scales together."""
+    wide = replace(NORTH, direction=0.4, shape=Ranged(2.0, 1.5, 3.0), scale=Ranged(6.0, 4.0, 9.0), width=math.pi / 2.0)
+    intervals = ((0.0, 2.0), (5.0, 7.0), (9.0, math.inf))
+    value, lowest, highest = share_of_time(replace(ACROSS, sectors=(wide,)), intervals)
+    alone = [
+        share_of_time(replace(ACROSS, sectors=(replace(wide, shape=Ranged(k), scale=Ranged(c)),)), intervals)
+        for k in (1.5, 2.0, 3.0)
+        for c in (4.0, 6.0, 9.0)
+    ]
+    assert all(one[0] == one[1] == one[2] for one in alone)
+    assert value == alone[4][0]
+    assert lowest * (1.0 - 1e-12) <= min(one[0] for one in alone)
+    assert highest * (1.0 + 1e-12) >= max(one[0] for one in alone)
+    apart = sum(share_of_time(replace(ACROSS, sectors=(wide,)), (part,))[0] for part in intervals)
+    assert value == pytest.approx(apart, rel=1e-13)
