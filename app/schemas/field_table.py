@@ -21,10 +21,16 @@ def input_fields() -> tuple[dict[str, Any], ...]:
     return tuple(_fields("", _inlined(document, document["$defs"])))
 
 
+@cache
+def fields_of(model: type[BaseModel]) -> tuple[dict[str, Any], ...]:
+    """Return a row for every field of a document, as `input_fields` does for a request."""
+    document = model.model_json_schema(by_alias=True)
+    return tuple(_fields("", _inlined(document, document["$defs"])))
+
+
 def field_names(model: type[BaseModel]) -> list[str]:
     """Return the dotted names of all fields of a document, in its order."""
-    document = model.model_json_schema(by_alias=True)
-    return [row["name"] for row in _fields("", _inlined(document, document["$defs"]))]
+    return [row["name"] for row in fields_of(model)]
 
 
 def _inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:

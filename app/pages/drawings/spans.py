@@ -11,7 +11,7 @@ from app.pages.drawings.svg import Point, element, path, picture
 from app.pages.measures import Units
 from app.pages.wording import words
 
-WIDTH = 720.0
+WIDTH = 560.0
 HEIGHT = 190.0
 _SIDE, _TOP = 26.0, 26.0
 _PLAN = 90.0  # height of the view from above
