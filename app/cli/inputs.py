@@ -7,7 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.cli.console import BAD_INPUT, end
+from app.cli.console import BAD_INPUT, end, refuse
+from app.cli.exchanged import SUFFIXES, exchanged_request, with_defaults
 
 if TYPE_CHECKING:
     from sqlalchemy.orm import Session, sessionmaker
@@ -15,10 +16,18 @@ if TYPE_CHECKING:
     from app.runtime.settings import Settings
 
 
-def read_request(line: Path, analysis: Path | None, study: Path | None, placement: Path | None = None) -> Any:
-    """Build the request from its files; a file may add to a whole request, but not repeat a part of it."""
-    given = _read_json(line)
-    document = given if isinstance(given, dict) and "line" in given else {"line": given}
+def read_request(
+    line: Path,
+    analysis: Path | None,
+    study: Path | None,
+    placement: Path | None = None,
+    defaults: Path | None = None,
+) -> Any:
+    """Build the request from its files; a file may add to a whole request, but not repeat a part of it.
+
+    A file of a GIS or CIM program, told by its name, must hold one line.
+    """
+    document = _document(line, None if defaults is None else _read_json(defaults))
     for name, path in (("analysis", analysis), ("study", study), ("placement", placement)):
         if path is None:
             continue
@@ -28,14 +37,36 @@ def read_request(line: Path, analysis: Path | None, study: Path | None, placemen
     return document
 
 
+def _document(path: Path, defaults: Any) -> dict[str, Any]:
+    """Return the request in the file of a line, which may be the line alone."""
+    if path.suffix.lower() in SUFFIXES:
+        return exchanged_request(path, _read(path), defaults)
+    given = _read_json(path)
+    document = given if isinstance(given, dict) and "line" in given else {"line": given}
+    if defaults is None or not isinstance(document["line"], dict):
+        return document
+    from app.schemas.faults import BadInput
+    from app.sheets.columns import PlacedLine
+
+    try:
+        return {**document, "line": with_defaults(PlacedLine("", document["line"]), defaults)}
+    except BadInput as error:
+        refuse(error.faults)
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()
+    except OSError as error:
+        end(f"{path} cannot be read: {error.strerror or error}", BAD_INPUT)
+
+
 def _read_json(path: Path) -> Any:
     from app.schemas.faults import BadInput, parse_json
 
+    raw = _read(path)
     try:
-        raw = sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()
         return parse_json(raw)
-    except OSError as error:
-        end(f"{path} cannot be read: {error.strerror or error}", BAD_INPUT)
     except BadInput as error:
         end("\n".join(f"{path}: {fault.detail if not fault.pointer else fault}" for fault in error.faults), BAD_INPUT)
 

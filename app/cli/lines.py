@@ -12,7 +12,16 @@ import typer
 
 from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, try_output, write
 from app.cli.inputs import read_request
-from app.cli.options import AnalysisFile, AsJson, CsvDirectory, LineFile, OutputFile, PlacementFile, StudyFile
+from app.cli.options import (
+    AnalysisFile,
+    AsJson,
+    CsvDirectory,
+    DefaultsFile,
+    LineFile,
+    OutputFile,
+    PlacementFile,
+    StudyFile,
+)
 from app.cli.report import print_report
 from app.reference.source_lines import EXAMPLE_NAMES
 from app.reference.source_studies import STUDY_NAMES
@@ -26,6 +35,7 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     analysis: AnalysisFile = None,
     study: StudyFile = None,
     placement: PlacementFile = None,
+    defaults: DefaultsFile = None,
     output: OutputFile = None,
     csv: CsvDirectory = None,
     as_json: AsJson = False,
@@ -41,7 +51,7 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     from app.schemas.faults import BadInput
 
     try_output(output)
-    document = read_request(line, analysis, study, placement)
+    document = read_request(line, analysis, study, placement, defaults)
     try:
         request = convert.read(convert.explicit_request(document))
     except BadInput as error:
@@ -80,12 +90,12 @@ def _write_tables(result: Mapping[str, Any], directory: Path) -> None:
         typer.echo(f"{directory} cannot be written: {error.strerror or error}", err=True)
 
 
-def resolve(line: LineFile, output: OutputFile = None) -> None:
+def resolve(line: LineFile, defaults: DefaultsFile = None, output: OutputFile = None) -> None:
     """Print the explicit line of one as an engineer knows it, and where each of its values came from."""
     from app import convert
     from app.schemas.faults import BadInput
 
-    document = read_request(line, None, None)
+    document = read_request(line, None, None, defaults=defaults)
     try:
         write(convert.resolve_document(document["line"]), output)
     except BadInput as error:

@@ -7,7 +7,14 @@ import typer
 
 LineFile = Annotated[
     Path,
-    typer.Argument(metavar="LINE.json", help="A line, or {line, analysis, study, placement}; - for standard input."),
+    typer.Argument(
+        metavar="LINE.json",
+        help="A line, or {line, analysis, study, placement}; - for standard input. Also one line as GeoJSON (.geojson) "
+        "or CIM (.xml, .rdf).",
+    ),
+]
+DefaultsFile = Annotated[
+    Path | None, typer.Option("--defaults", metavar="DEFAULTS.json", help="Fields that the line leaves open.")
 ]
 AnalysisFile = Annotated[
     Path | None, typer.Option("--analysis", metavar="ANALYSIS.json", help="The analysis; defaults if absent.")

@@ -8,7 +8,7 @@ import typer
 
 from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, write
 from app.cli.inputs import ending_on_faults, read_request, read_settings
-from app.cli.options import AnalysisFile, DataDirectory, LineFile, OutputFile, StudyFile
+from app.cli.options import AnalysisFile, DataDirectory, DefaultsFile, LineFile, OutputFile, StudyFile
 
 if TYPE_CHECKING:
     from app.runtime.settings import Settings
@@ -70,10 +70,11 @@ def migrate(data_dir: DataDirectory = None) -> None:
         run(read_settings(data_dir))
 
 
-def submit(
+def submit(  # noqa: PLR0913, PLR0917 - the options of a command are its arguments
     line: LineFile,
     analysis: AnalysisFile = None,
     study: StudyFile = None,
+    defaults: DefaultsFile = None,
     url: Annotated[str, typer.Option(envvar="GALLOPING_URL", help="Address of the service.")] = "http://127.0.0.1:8000",
     wait: Annotated[bool, typer.Option("--wait", help="Wait until the job ends and print the result.")] = False,
     output: OutputFile = None,
@@ -81,7 +82,7 @@ def submit(
     """Send a line to a service and print the job's status, or with --wait its result. GALLOPING_KEY holds the key."""
     from app import client
 
-    document = read_request(line, analysis, study)
+    document = read_request(line, analysis, study, defaults=defaults)
     try:
         with client.Client(url, patience_seconds=_PATIENCE_SECONDS) as service:
             job = service.submit_document(document)

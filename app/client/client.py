@@ -179,6 +179,7 @@ class Client:
         lines: Lines,
         analysis: Analysis | Mapping[str, Any] | None = None,
         *,
+        defaults: Mapping[str, Any] | None = None,
         atomic: bool = False,
         idempotency_key: str | None = None,
     ) -> BatchDocument:
@@ -187,14 +188,17 @@ class Client:
         Parameters
         ----------
         lines : iterable of lines, path, or pandas.DataFrame
-            A path leads to an NDJSON, JSON or CSV file, which may end in .gz. The columns of a frame or a CSV file are
-            dotted field names such as `span.length_m`. NDJSON and JSON files contain their analysis.
+            A path leads to a file of NDJSON, JSON, CSV, XLSX, GeoJSON (.geojson) or CIM (.xml, .rdf), which may end in
+            .gz. The columns of a frame or a sheet are dotted field names such as `span.length_m`. NDJSON and JSON files
+            contain their analysis and defaults.
         analysis : Analysis or mapping, optional
             The analysis of every line.
+        defaults : mapping, optional
+            Fields of a line, for the lines that leave them open.
         atomic : bool
             Whether one wrong line rejects the whole batch.
         """
-        with uploads.opened(lines, as_json(analysis or {})) as upload:
+        with uploads.opened(lines, as_json(analysis or {}), defaults) as upload:
             address = f"/v1/batches?{upload.query(atomic)}"
             answer = self._connection.post(address, lambda: _from_start(upload), upload.headers, idempotency_key)
         return self._connection.read(BatchDocument, answer)

@@ -25,8 +25,11 @@ _TYPES = {
     ".jsonl": "application/x-ndjson",
     ".json": "application/json",
     ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    ".geojson": "application/geo+json",
+    ".rdf": "application/rdf+xml",
+    ".xml": "application/rdf+xml",
 }
-_SHEETS = (".csv", ".xlsx")
+_ADDRESSED = (".csv", ".xlsx", ".geojson", ".rdf", ".xml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,18 +53,18 @@ def as_json(part: BaseModel | Mapping[str, Any]) -> dict[str, Any]:
 
 
 @contextmanager
-def opened(lines: Lines, analysis: Mapping[str, Any]) -> Iterator[Upload]:
+def opened(lines: Lines, analysis: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> Iterator[Upload]:
     """Yield the body of a batch, in a file that moves to disk if it is large.
 
     Raises
     ------
     ValueError
-        If a file's suffix is unknown, or an analysis is given for a file that contains one.
+        If a file's suffix is unknown, or an analysis or defaults are given for a file that contains them.
     OSError
         If the file cannot be read.
     """
     if isinstance(lines, (str, Path)):
-        headers, parameters = _of_file(Path(lines), analysis)
+        headers, parameters = _of_file(Path(lines), analysis, defaults)
         with Path(lines).open("rb") as file:
             yield Upload(file, headers, parameters)
         return
@@ -69,9 +72,9 @@ def opened(lines: Lines, analysis: Mapping[str, Any]) -> Iterator[Upload]:
         frame: Any = lines if hasattr(lines, "to_csv") else None
         if frame is not None:
             _of_cells(frame).to_csv(spool, index=any(name is not None for name in frame.index.names))
-            yield Upload(spool, {"Content-Type": _TYPES[".csv"]}, {"analysis": json.dumps(analysis)})
+            yield Upload(spool, {"Content-Type": _TYPES[".csv"]}, _parameters(analysis, defaults))
             return
-        for document in _documents(lines, analysis):
+        for document in _documents(lines, analysis, defaults):
             spool.write(json.dumps(document).encode() + b"\n")
         yield Upload(spool, {"Content-Type": _TYPES[".ndjson"]})
 
@@ -98,19 +101,30 @@ def frame(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":
     return pd.DataFrame.from_records(list(rows))
 
 
-def _documents(lines: Iterable[Any], analysis: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    yield {"analysis": analysis}
+def _documents(
+    lines: Iterable[Any], analysis: Mapping[str, Any], defaults: Mapping[str, Any] | None
+) -> Iterator[dict[str, Any]]:
+    yield {"analysis": analysis} | ({"defaults": defaults} if defaults else {})
     for line in lines:
         yield as_json(line)
 
 
-def _of_file(path: Path, analysis: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
+def _parameters(analysis: Mapping[str, Any], defaults: Mapping[str, Any] | None) -> dict[str, str]:
+    return {"analysis": json.dumps(analysis)} | ({"defaults": json.dumps(defaults)} if defaults else {})
+
+
+def _of_file(
+    path: Path, analysis: Mapping[str, Any], defaults: Mapping[str, Any] | None
+) -> tuple[dict[str, str], dict[str, str]]:
     """Return the headers and the query parameters for a file."""
-    packed = path.suffix == ".gz"
-    suffix = path.with_suffix("").suffix if packed else path.suffix
+    packed = path.suffix.lower() == ".gz"
+    suffix = (path.with_suffix("").suffix if packed else path.suffix).lower()
     if suffix not in _TYPES:
         raise ValueError(f"{path.name} must end in one of {', '.join(_TYPES)}, followed by .gz if it is compressed")
-    if analysis and suffix not in _SHEETS:
-        raise ValueError(f"{path.name} contains its analysis, so no other can be given")
+    given = [name for name, part in (("analysis", analysis), ("defaults", defaults)) if part]
+    if given and suffix not in _ADDRESSED:
+        raise ValueError(f"{path.name} contains its {given[0]}, so no other can be given")
     headers = {"Content-Type": _TYPES[suffix]} | ({"Content-Encoding": "gzip"} if packed else {})
-    return headers, {"analysis": json.dumps(analysis)} if suffix in _SHEETS else {}
+    if suffix not in _ADDRESSED or (suffix == ".geojson" and not given):  # features may bring their own
+        return headers, {}
+    return headers, _parameters(analysis, defaults)

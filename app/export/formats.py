@@ -13,6 +13,7 @@ Dialect = Literal["plain", "excel", "excel_semicolon"]
 Name = TypeVar("Name", bound=str)
 PARQUET = "application/vnd.apache.parquet"
 GEOJSON = "application/geo+json"
+RDF_XML = "application/rdf+xml"
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 MEDIA_TYPES: Mapping[Format, str] = {
     "json": "application/json",

@@ -5,7 +5,7 @@ from typing import Any
 
 from app import convert
 from app.answers.batches import RankedLine
-from app.export.formats import GEOJSON, PARQUET, XLSX
+from app.export.formats import GEOJSON, PARQUET, RDF_XML, XLSX
 from app.reference.source_lines import example
 from app.routes import documentation
 from app.schemas.batch import BatchRequest
@@ -153,6 +153,18 @@ _FEATURES: dict[str, Any] = {
 }
 
 
+_CIM = """<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns:cim="http://iec.ch/TC57/CIM100#">
+  <cim:OverheadWireInfo rdf:ID="_wire">
+    <cim:IdentifiedObject.name>Drake</cim:IdentifiedObject.name>
+  </cim:OverheadWireInfo>
+  <cim:ACLineSegment rdf:ID="_segment">
+    <cim:Conductor.length>305.5</cim:Conductor.length>
+    <cim:PowerSystemResource.AssetDatasheet rdf:resource="#_wire"/>
+  </cim:ACLineSegment>
+</rdf:RDF>
+"""
+
+
 def request_body() -> dict[str, Any]:
     """Return the OpenAPI entry for the body of a batch; Python reads it as a stream and cannot declare it."""
     ndjson = "".join(json.dumps(item) + "\n" for item in ({"analysis": _ANALYSIS}, *_LINES))
@@ -163,18 +175,20 @@ def request_body() -> dict[str, Any]:
         "requestBody": {
             "required": True,
             "description": "JSON; NDJSON whose first object is the analysis; or CSV, the first sheet of a workbook "
-            "(XLSX) or GeoJSON with the analysis in the query. `defaults`, beside the analysis, are fields of a line "
-            "for all lines that leave them open. Columns, and properties of features, are dotted field names such as "
-            "`span.length_m`; a list is JSON in one cell, or one column for each item (`ice.aerodynamics.vertical.0`). "
-            "Commas, semicolons or tabs separate the cells of a CSV; decimal commas, UTF-16 and Windows-1252 are "
-            "understood, and the status says so. A LineString of GeoJSON is a span, or one for each of its segments; "
-            "length, direction and level difference follow from its coordinates. `Content-Encoding: gzip` is accepted.",
+            "(XLSX), GeoJSON or IEC CIM as RDF/XML with the analysis in the query. `defaults`, beside the analysis, "
+            "are fields of a line for all lines that leave them open. Columns, and properties of features, are dotted "
+            "field names such as `span.length_m`; a list is JSON in one cell, or one column for each item "
+            "(`ice.aerodynamics.vertical.0`). Commas, semicolons or tabs separate the cells of a CSV; decimal commas, "
+            "UTF-16 and Windows-1252 are understood, and the status says so. A LineString of GeoJSON is a span, or one "
+            "for each of its segments; length, direction and level difference follow from its coordinates. Each "
+            "ACLineSegment of CIM is a line. `Content-Encoding: gzip` is accepted.",
             "content": {
                 "application/json": {"schema": schema, "example": {"lines": _LINES, "analysis": _ANALYSIS}},
                 "application/x-ndjson": {"schema": {"type": "string"}, "example": ndjson},
                 "text/csv": {"schema": {"type": "string"}, "example": _CSV},
                 XLSX: {"schema": {"type": "string", "format": "binary"}},
                 GEOJSON: {"schema": _COLLECTION, "example": _FEATURES},
+                RDF_XML: {"schema": {"type": "string"}, "example": _CIM},
             },
         }
     }

@@ -18,7 +18,7 @@ from starlette.requests import ClientDisconnect
 from app.answers.batches import BatchDocument
 from app.batches import intake
 from app.batches.intake import BodyTooLarge, Incoming
-from app.export.formats import GEOJSON, XLSX
+from app.export.formats import GEOJSON, RDF_XML, XLSX
 from app.http.problems import ProblemError, ProblemKind, invalid_document, query_fault
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
@@ -37,7 +37,7 @@ router = APIRouter(prefix=BATCHES, tags=["batches"])
 
 _SILENT_SECONDS = 60.0
 # Bodies that have no room for an analysis and for defaults, or need not have it.
-_ADDRESSED = ("text/csv", XLSX, GEOJSON)
+_ADDRESSED = ("text/csv", XLSX, GEOJSON, RDF_XML)
 _TYPES = ("application/json", "application/x-ndjson", *_ADDRESSED)
 
 
@@ -55,12 +55,12 @@ class IntakeQuery(BaseModel):
 
     atomic: bool = Field(default=False, description="Reject the whole batch if any line is wrong")
     analysis: str | None = Field(
-        default=None, max_length=20_000, description="The analysis of a sheet or of features, as JSON"
+        default=None, max_length=20_000, description="The analysis of a sheet, of features or of CIM, as JSON"
     )
     defaults: str | None = Field(
         default=None,
         max_length=20_000,
-        description="What the lines of a sheet or of features leave open, as a JSON object with fields of a line",
+        description="What the lines of a sheet, of features or of CIM leave open, as a JSON object of their fields",
     )
     webhook_url: str | None = Field(
         default=None,
@@ -185,6 +185,8 @@ def _incoming(posted: _Posted) -> Incoming:
         return intake.read_xlsx(pieces, said, settings.max_batch_bytes, settings.max_body_bytes)
     if media_type == GEOJSON:
         return intake.read_geojson(pieces, said, settings.max_batch_line_bytes)
+    if media_type == RDF_XML:
+        return intake.read_rdf_xml(pieces, said, settings.max_body_bytes, settings.max_batch_line_bytes)
     return intake.read_csv(pieces, said, settings.max_batch_line_bytes)
 
 

@@ -7,6 +7,7 @@ from app.batches.intake.body_formats import (
     read_geojson,
     read_json,
     read_ndjson,
+    read_rdf_xml,
     read_xlsx,
 )
 from app.batches.intake.receive import Receipt, lines_a_chunk, receive
@@ -22,6 +23,7 @@ __all__ = [
     "read_geojson",
     "read_json",
     "read_ndjson",
+    "read_rdf_xml",
     "read_xlsx",
     "receive",
 ]

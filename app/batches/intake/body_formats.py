@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import IO, Any
 
+from app.exchange.cim import read_segments
 from app.exchange.features import read_features
 from app.schemas.faults import BadInput, BodyTooLarge, Fault, parse_json
 from app.sheets.columns import Columns
@@ -186,6 +187,23 @@ def read_geojson(pieces: Iterable[bytes], said: Mapping[str, object], most_line_
         notes=found.notes.sentences,
         defaults=parts.get("defaults"),
     )
+
+
+def read_rdf_xml(pieces: Iterable[bytes], said: Mapping[str, object], most_kept: int, most_line_bytes: int) -> Incoming:
+    """Read the line segments of IEC CIM (`app.exchange.cim`), of which up to `most_kept` characters are held in memory.
+
+    `said` holds the analysis and the defaults.
+
+    Raises
+    ------
+    BodyTooLarge
+        If more would be held, or a tag is too long.
+    BadInput
+        If it is no CIM in RDF/XML, or has no line segment.
+    """
+    found = read_segments(pieces, said.get("defaults"), most_kept, most_line_bytes)
+    notes, defaults = found.notes.sentences, said.get("defaults")
+    return Incoming(said.get("analysis", {}), found.lines, notes=notes, defaults=defaults)
 
 
 def _parsed(text: bytes) -> Any:

@@ -157,7 +157,7 @@ def _item(draft: _Draft, sent: object) -> dict[str, Any]:
 
 def _with_source(fault: Fault, placed: PlacedLine, computed: Iterable[Computed]) -> Fault:
     """Return a fault of a value that the body does not name like the line, with its name or origin there."""
-    sources = {**{json_pointer(value.path): value.source for value in computed}, **placed.sources}
+    sources = {**placed.sources, **{json_pointer(value.path): value.source for value in computed}}
     source = sources.get(fault.pointer)
     return fault if source is None else Fault(fault.pointer, fault.code, f"{fault.detail} ({source})")
 

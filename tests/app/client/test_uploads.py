@@ -43,6 +43,9 @@ def test_a_data_frame_becomes_csv_with_its_analysis_in_the_address() -> None:
         ("a.csv", {"Content-Type": "text/csv"}),
         ("a.b.jsonl", {"Content-Type": "application/x-ndjson"}),
         ("a.json.gz", {"Content-Type": "application/json", "Content-Encoding": "gzip"}),
+        ("a.GeoJSON", {"Content-Type": "application/geo+json"}),
+        ("a.xml", {"Content-Type": "application/rdf+xml"}),
+        ("a.rdf.gz", {"Content-Type": "application/rdf+xml", "Content-Encoding": "gzip"}),
     ],
 )
 def test_a_file_is_sent_as_it_is_under_the_type_of_its_name(tmp_path: Path, name: str, headers: dict[str, str]) -> None:
@@ -61,3 +64,18 @@ def test_rows_become_a_frame_in_their_order() -> None:
     made = frame(row for row in ({"number": 2, "sag_m": 1.5}, {"number": 1, "sag_m": None}))
     assert made["number"].tolist() == [2, 1]
     assert made["sag_m"].isna().tolist() == [False, True]
+
+
+def test_defaults_go_where_the_analysis_goes(tmp_path: Path) -> None:
+    defaults = {"ice": {"x": 1}}
+    with opened([{"name": "a"}], ANALYSIS, defaults) as upload:
+        upload.file.seek(0)
+        assert json.loads(upload.file.readline()) == {"analysis": ANALYSIS, "defaults": defaults}
+    for name in ("a.geojson", "a.csv", "a.xml"):
+        (tmp_path / name).write_bytes(b"")
+        with opened(tmp_path / name, ANALYSIS, defaults) as upload:
+            assert upload.parameters == {"analysis": json.dumps(ANALYSIS), "defaults": json.dumps(defaults)}
+    with opened(tmp_path / "a.geojson", {}) as upload:
+        assert upload.parameters == {}
+    with pytest.raises(ValueError, match="contains its defaults"), opened(tmp_path / "a.json", {}, defaults):
+        pass

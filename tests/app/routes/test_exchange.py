@@ -8,13 +8,14 @@ from typing import Any
 import httpx
 import pytest
 
-from app.export.formats import GEOJSON
+from app.export.formats import GEOJSON, RDF_XML
 from app.runtime.settings import Settings
 from tests.app import service
 from tests.app.service import work_off
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "examples"
 SPANS = json.loads((EXAMPLES / "spans.geojson").read_text())
+ICED = {name: SPANS["defaults"][name] for name in ("span", "ice")}
 SHORT = {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [6.0]}
 
 
@@ -149,3 +150,37 @@ def test_too_many_features_are_refused(tmp_path: Path) -> None:
     with service.running(service.sqlite_settings(tmp_path, max_batch_lines=100)) as client:
         answer = post(client, b'{"type": "FeatureCollection", "features": [' + one * 600 + b"]}")
     assert (answer.status_code, "at most 100 lines" in answer.text) == (422, True)
+
+
+def test_segments_of_cim_run_under_defaults(client: httpx.Client, settings: Settings) -> None:
+    said = {"analysis": json.dumps(SHORT), "defaults": json.dumps(ICED)}
+    answer = post(client, (EXAMPLES / "segments.xml").read_bytes(), RDF_XML, atomic="true", **said)
+    assert answer.status_code == 202, answer.text
+    assert answer.json()["notes"] == ["Conductor.length was read in metres, as CIM declares it."]
+    work_off(client, settings, answer.headers["location"])
+    found = features(client, answer.headers["location"])
+    assert [one["properties"]["reference"] for one in found] == [
+        "7a0e3c52-9a55-4b6b-8d0f-0c6f5d1c0017",
+        "_segment-18/1",
+        "_segment-18/2",
+    ]
+    assert [one["geometry"] is None for one in found] == [True, False, False]
+    assert {one["properties"]["gallops"] for one in found} == {"yes"}
+    assert {one["properties"]["clearance_m"] is None for one in found} == {False}
+
+
+def test_what_cim_does_not_have_is_told_of_by_segment_and_attribute(client: httpx.Client) -> None:
+    body = (EXAMPLES / "segments.xml").read_bytes().replace(b">305.5<", b">30550<")
+    answer = post(client, body, RDF_XML)
+    assert answer.status_code == 422
+    details = {error["pointer"]: error["detail"] for error in answer.json()["errors"]}
+    assert details["/lines/0/ice"].startswith("ACLineSegment _segment-17: ")
+    assert details["/lines/0/ice"].endswith("(CIM has no ice)")
+    assert "from Conductor.length; positions of the towers divide" in details["/lines/0/span/length_m"]
+    hostile = b'<!DOCTYPE r [<!ENTITY a "x">]>' + body.partition(b"?>")[2]
+    refused = post(client, hostile, RDF_XML)
+    assert (refused.status_code, refused.json()["errors"][0]["code"]) == (422, "xml_refused")
+    mixed = post(client, body, RDF_XML, defaults=json.dumps(ICED), analysis=json.dumps(SHORT))
+    assert (mixed.status_code, mixed.json()["lines"]["accepted"]) == (202, 2)
+    (error,) = mixed.json()["errors"]
+    assert (error["place"], error["pointer"]) == ("ACLineSegment _segment-17", "/span/length_m")
