@@ -20,6 +20,7 @@ for command in (
     lines.example,
     lines.ellipse,
     lines.resolve,
+    lines.clearance,
     climate.climate,
     catalogue.conductors,
     catalogue.ice_shapes,

@@ -1,4 +1,4 @@
-"""Commands that need no service: `galloping analyse`, `resolve`, `example` and `ellipse`."""
+"""Commands that need no service: `galloping analyse`, `clearance`, `resolve`, `example` and `ellipse`."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
 import json
@@ -22,7 +22,7 @@ from app.cli.options import (
     PlacementFile,
     StudyFile,
 )
-from app.cli.report import print_report
+from app.cli.report import print_distances, print_report
 from app.reference.source_lines import EXAMPLE_NAMES
 from app.reference.source_studies import STUDY_NAMES
 
@@ -44,14 +44,48 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
 
     On a terminal the verdict and the tables behind it are printed, else the whole result as JSON.
     """
+    try_output(output)
+    result = computed(read_request(line, analysis, study, placement, defaults))
+    if csv is not None:
+        _write_tables(result, csv)
+    if output is not None or as_json or not sys.stdout.isatty():
+        write(result, output)
+    if not as_json and sys.stdout.isatty():
+        print_report(result)
+
+
+def clearance(
+    line: LineFile, analysis: AnalysisFile = None, output: OutputFile = None, as_json: AsJson = False
+) -> None:
+    """Print how near the motions of a line come to the phases and wires that it lists, without service or database.
+
+    On a terminal the smallest distance of each pair is printed, else every distance as JSON.
+    """
+    from app.schemas.faults import Fault
+
+    try_output(output)
+    document = read_request(line, analysis, None)
+    said = document["line"]
+    if not isinstance(said, dict) or not said.get("phases"):
+        refuse([Fault("/line/phases", "missing", "must list the phases and wires to which distances are taken")])
+    asked = document.get("analysis", {})
+    if isinstance(asked, dict):  # samples have no distances
+        document = {**document, "analysis": {"uncertainty": {"samples": 0}, **asked}}
+    result = computed(document)
+    if output is not None or as_json or not sys.stdout.isatty():
+        write({name: result[name] for name in ("verdict", "clearances", "warnings", "failures")}, output)
+    if not as_json and sys.stdout.isatty():
+        print_distances(result)
+
+
+def computed(document: Any) -> Any:
+    """Return the result document of a request, computed in this process; end the command if it is wrong or fails."""
     from app.runtime.processes import ONE_BLAS_THREAD
 
     os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, because BLAS reads it once
     from app import convert
     from app.schemas.faults import BadInput
 
-    try_output(output)
-    document = read_request(line, analysis, study, placement, defaults)
     try:
         request = convert.read(convert.explicit_request(document))
     except BadInput as error:
@@ -67,13 +101,7 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
                     points.append(item)
     except (ArithmeticError, ValueError) as error:
         end(f"the computation failed: {error}", FAILED)
-    result = result_document(complete, points)
-    if csv is not None:
-        _write_tables(result, csv)
-    if output is not None or as_json or not sys.stdout.isatty():
-        write(result, output)
-    if not as_json and sys.stdout.isatty():
-        print_report(result)
+    return result_document(complete, points)
 
 
 def _write_tables(result: Mapping[str, Any], directory: Path) -> None:

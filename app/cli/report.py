@@ -10,6 +10,7 @@ from app.cli.console import print_table
 Row = Mapping[str, Any]
 MOST_WEIGHTS = 6  # assumptions that are printed
 LEAST_WEIGHT = 0.01  # at the lower end of the interval of their share
+DISTANCES = "Smallest distance between phases [m], by the motions and by design ellipses"
 _MODELS = {"hybrid": "hybrid", "finite_element": "elements"}
 
 
@@ -22,13 +23,23 @@ def print_report(result: Mapping[str, Any]) -> None:
     _print("The span at rest loses stability", axes, onsets, _onset)
     moving = [row for row in result["limit_cycles"] if row["stability"] == "stable" and row["kind"] != "equilibrium"]
     _print("Stable motions, peak to peak [m, rad]", axes, moving, _motion)
-    _print("Smallest distance between phases [m], by the motions and by design ellipses", axes, _nearest(result), _gap)
+    _print(DISTANCES, axes, _nearest(result), _gap)
     _print(
         "What the assumed values weigh: share of the scatter of the onset, onset at both ends",
         axes,
         _heaviest(result),
         _weight,
     )
+    for text in _notes(result):
+        typer.echo(text)
+
+
+def print_distances(result: Mapping[str, Any]) -> None:
+    """Print the verdicts of a result document, its smallest distances between phases and its warnings."""
+    axes = [axis["parameter"] for axis in (result["input"].get("study") or {}).get("axes", [])]
+    for row in result["verdict"]:
+        typer.echo(_place(row, axes) + row["sentence"])
+    _print(DISTANCES, axes, _nearest(result), _gap)
     for text in _notes(result):
         typer.echo(text)
 

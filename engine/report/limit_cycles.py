@@ -36,6 +36,7 @@ _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
 _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
 _REACH = ("largest_angle_of_attack_rad", "largest_velocity_ratio")
+_MIDDLES = ("vertical_middle_m", "horizontal_middle_m", "torsional_middle_rad")
 _FREQUENCIES = ("frequency_hz", "second_frequency_hz")
 _VERDICTS = (Stability.UNKNOWN, Stability.UNSTABLE, Stability.STABLE)
 _NAMES = tuple(field.name for field in fields(LimitCycleRow))
@@ -191,14 +192,17 @@ def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     observed = observer.moving(findings, member, torus_coordinates(findings), state)
     slack = seen.tensions.tori[..., 0].min(axis=-1) <= 0.0
     motion = observer.local_motion(findings, seen.model)
-    ranges, reach = np.empty((2, 3, member.size)), np.empty((2, member.size))
+    ranges, reach, middle = np.empty((2, 3, member.size)), np.empty((2, member.size)), np.empty((3, member.size))
     for i in range(member.size):
         one = tori.select(np.array([i]))
         series = observed.shapes[i].T @ one.coefficients[0]
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
+        path = state[i, :, : model.mass.shape[-1]] @ observed.shapes[i]
+        middle[:, i] = 0.5 * (path.max(axis=0) + path.min(axis=0))
         reach[:, [i]] = largest_reach(motion, member[[i]], state[[i]])
     measures = {
         **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
+        **dict(zip(_MIDDLES, middle, strict=True)),
         **dict(zip(_SHARES, divide_by_direction(energy, model.direction).T, strict=True)),
         **dict(zip(_FREQUENCIES, frequency.T / (2.0 * np.pi), strict=True)),
         **dict(zip(_REACH, reach, strict=True)),

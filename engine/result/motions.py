@@ -111,6 +111,11 @@ class LimitCycleRow:
     span: SpanColumn = None
     span_shares: SpanSharesColumn = None
     phase: PhaseColumn = None
+    vertical_middle_m: Annotated[
+        float | None, Column("Middle of a quasi-periodic motion's range; null for others", None, unit="m")
+    ] = None
+    horizontal_middle_m: Annotated[float | None, Column("The same, horizontally", None, unit="m")] = None
+    torsional_middle_rad: Annotated[float | None, Column("The same, in rotation", None, unit="rad")] = None
     phase_shares: PhaseSharesColumn = None
 
 

@@ -70,3 +70,25 @@ class PhaseClearanceRow:
     required_m: Annotated[float | None, Column("Required distance; null if none is given", 1.5, unit="m")]
     margin_m: Annotated[float | None, Column("Distance less the required one", 4.9, unit="m")]
     ok: Annotated[bool | None, Column("Whether the distance is the required one or more; null if not known", True)]
+    overlap_m: Annotated[
+        float | None, Column("By how much the envelopes overlap; 0 if they do not, null without them", 0.0, unit="m")
+    ] = None
+    ahead_span_length_m: Annotated[
+        float | None, Column("Length of the span; null for phases that spacers tie", 125.88, unit="m")
+    ] = None
+    mid_span_sag_m: Annotated[
+        float | None, Column("Sag of the one phase at mid-span, in its plane; null for tied phases", 1.54, unit="m")
+    ] = None
+    span_swing_angle_deg: Annotated[
+        float | None,
+        Column(
+            "Angle by which the wind swings the one phase, positive downwind; null for tied phases", 0.0, unit="deg"
+        ),
+    ] = None
+    major_axis_m: Annotated[
+        float | None, Column("Major axis of the one phase's ellipse; null for a motion", None, unit="m")
+    ] = None
+    minor_axis_m: Annotated[float | None, Column("Minor axis of that ellipse", None, unit="m")] = None
+    b_distance_m: Annotated[
+        float | None, Column("Distance of that ellipse's lowest point below the resting wire", None, unit="m")
+    ] = None

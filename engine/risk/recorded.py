@@ -48,8 +48,8 @@ def interval_of_sum(weights: FloatArray, largest: float) -> Range:
     distributions have the sum and the variance that were seen, at the upper end with one event more, the largest. For
     equal weights they are the exact interval of a Poisson rate. For others, the expected sum lies beyond either end in
     fewer than 2.5 % of drawn records (`tests/engine/risk/test_recorded.py`) if no event can add more than the largest.
-    Where ten events or fewer were seen, their longest may be too short: then it lay beyond the upper end in a tenth of the
-    records for geometric lengths, and in half of them where one event in ten is 24 times as long as the others.
+    Where ten events or fewer were seen, their longest may be too short: then it lay beyond the upper end in a tenth of
+    the records for geometric lengths, and in half of them where one event in ten is 24 times as long as the others.
 
     Parameters
     ----------

@@ -6,12 +6,13 @@ from engine.spec import Line
 
 
 class Judged(TypedDict):
-    """The last columns of a row of clearances."""
+    """The columns of a row of clearances that judge it."""
 
     distance_m: float | None
     required_m: float | None
     margin_m: float | None
     ok: bool | None
+    overlap_m: float | None
 
 
 def required_between(line: Line, one: str, other: str) -> float | None:
@@ -21,11 +22,12 @@ def required_between(line: Line, one: str, other: str) -> float | None:
 
 
 def judged(distance: float | None, required: float | None) -> Judged:
-    """Return distance, required distance, margin and whether it is kept."""
+    """Return distance, required distance, margin, whether it is kept, and the overlap of envelopes."""
     margin = None if distance is None or required is None else distance - required
     return {
         "distance_m": distance,
         "required_m": required,
         "margin_m": margin,
         "ok": None if margin is None else margin >= 0.0,
+        "overlap_m": None if distance is None else max(0.0, -distance),
     }

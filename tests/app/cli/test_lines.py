@@ -297,3 +297,22 @@ def test_an_analysis_takes_a_line_as_an_engineer_knows_it(tmp_path: Path) -> Non
     assert results[1].pop("assumptions") == []
     assert results[0]["input"].pop("known")["line"] == CONTRACT
     assert results[0] == results[1]
+
+
+def test_distances_to_phases_are_those_of_an_analysis(tmp_path: Path) -> None:
+    line = {**example("c11-twin"), "phases": [{"name": "top", "y_m": 2.0}], "required_clearance_m": 1.0}
+    path = written(tmp_path, "line", line)
+    asked = written(tmp_path, "analysis", SHORT)
+    found = json.loads(galloping("clearance", path, "--analysis", asked).stdout)
+    whole = json.loads(galloping("analyse", path, "--analysis", asked).stdout)
+    assert found == {name: whole[name] for name in ("verdict", "clearances", "warnings", "failures")}
+    (verdict,) = found["verdict"]
+    stable = [row for row in found["clearances"] if row["method"] == "computed" and row["stability"] == "stable"]
+    assert verdict["clearance_m"] == min(row["distance_m"] for row in stable) < 2.0
+    assert verdict["clearance_margin_m"] == pytest.approx(verdict["clearance_m"] - 1.0)
+    assert {row["method"] for row in found["clearances"]} == {"computed", "davison", "toye", "cigre", "aeso"}
+
+
+def test_distances_need_phases(tmp_path: Path) -> None:
+    path = written(tmp_path, "line", example("c11-twin"))
+    assert "/line/phases: must list the phases" in refused("clearance", path)
