@@ -116,7 +116,8 @@ def test_ellipses_have_the_columns_of_reports() -> None:
     rows = {str(row.method): row for row in result.clearances if row.method != "computed"}
     sag = result.static.sag_m
     davison = rows["davison"]
-    assert (davison.ahead_span_length_m, davison.mid_span_sag_m) == (125.88, pytest.approx(sag))
+    assert davison.ahead_span_length_m == 125.88
+    assert davison.mid_span_sag_m == pytest.approx(sag)
     assert davison.major_axis_m == pytest.approx(1.25 * sag + 0.3048)
     assert davison.minor_axis_m == pytest.approx(0.4 * (1.25 * sag + 0.3048))
     assert davison.b_distance_m == pytest.approx(0.25 * sag)
@@ -124,7 +125,8 @@ def test_ellipses_have_the_columns_of_reports() -> None:
     assert davison.distance_m < 0.0
     assert davison.overlap_m == -davison.distance_m
     computed = next(row for row in result.clearances if row.method == "computed")
-    assert (computed.major_axis_m, computed.mid_span_sag_m) == (None, pytest.approx(sag))
+    assert computed.major_axis_m is None
+    assert computed.mid_span_sag_m == pytest.approx(sag)
 
 
 def test_a_quasi_periodic_motion_is_within_the_box_of_its_ranges() -> None:
