@@ -1,6 +1,6 @@
 """The order of the steps of an analysis, and nothing else: lines and an analysis in, progress and results out."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -20,7 +20,7 @@ from engine.models.discretization import Discretization, discretize, fields_in_s
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_published_load
 from engine.models.reduced_model import ReducedModel, take
-from engine.models.scanned_wind_speeds import Scan, crossings_in_wind, scan_of
+from engine.models.scanned_wind_speeds import ModelOf, Scan, crossings_in_wind, scan_of
 from engine.outcome import Fault, InvalidSpec
 from engine.phases_analysis import analyse_phases
 from engine.progress import Progress
@@ -163,8 +163,10 @@ def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
     twisted = analysis.static_twist is not StaticTwist.NEGLECTED and any(line.has_table for line in lines)
     if twisted or analysis.follows_twist:
         discretization = with_wind_twist(discretization, _winds(analysis))
-    scan = scan_of(discretization, analysis.critical_wind_limit) if analysis.follows_twist else None
-    return replace(_with_modes(discretization, analysis), scan=scan)
+    prepared = _with_modes(discretization, analysis)
+    if not analysis.follows_twist:
+        return prepared
+    return replace(prepared, scan=scan_of(discretization, analysis.critical_wind_limit, prepared.shapes.loops))
 
 
 def _with_modes(discretization: Discretization, analysis: Analysis) -> _Discretized:
@@ -173,8 +175,12 @@ def _with_modes(discretization: Discretization, analysis: Analysis) -> _Discreti
     loops = set(analysis.loops) | {1, 2}
     extra = set(analysis.finite_element_loops) if finite_element else set()
     shapes = directional_shapes(system, arc_length, tuple(sorted(loops | extra)))
-    modes = full_modes(system, tuple(sorted(set(analysis.loops) | extra))) if finite_element else None
+    modes = full_modes(system, _loops_of_modes(analysis)) if finite_element else None
     return _Discretized(discretization, shapes, modes)
+
+
+def _loops_of_modes(analysis: Analysis) -> tuple[int, ...]:
+    return tuple(sorted({*analysis.loops, *analysis.finite_element_loops}))
 
 
 def _winds(analysis: Analysis) -> FloatArray:
@@ -191,9 +197,9 @@ def _analyse_hybrid(prepared: _Discretized, loops: tuple[int, ...], analysis: An
     winds = _winds(analysis)
     starts = explicit_starts(published, model, winds, analysis.harmonics)
 
-    def model_of(discretization: Discretization) -> ReducedModel:
-        own = directional_shapes(discretization.matrices, discretization.profile.arc_length, prepared.shapes.loops)
-        return take(hybrid_model(discretization, own, loops, analysis), (line, column))
+    def model_of(states: Discretization, shapes: DirectionalShapes, lines: IntArray) -> ReducedModel:
+        own = hybrid_model(states, shapes, loops, analysis, whole=False)
+        return take(own, (lines, np.resize(column, lines.size)))
 
     crossings = _crossings(prepared, model, line, analysis, model_of)
     loops_of = np.array(loops)[column][:, None] * np.ones(model.mass.shape[-1], dtype=np.intp)
@@ -207,10 +213,9 @@ def _analyse_finite_element(
     yield Progress(0.4, "critical wind speeds of the finite element model")
     model = finite_element_model(prepared.discretization, modes, prepared.shapes, analysis)
 
-    def model_of(discretization: Discretization) -> ReducedModel:
-        own = _with_modes(discretization, analysis)
-        assert own.modes is not None, "the finite element model was asked for"
-        return finite_element_model(discretization, own.modes, own.shapes, analysis)
+    def model_of(states: Discretization, shapes: DirectionalShapes, lines: IntArray) -> ReducedModel:
+        own = full_modes(states.matrices, modes.loops)
+        return take(finite_element_model(states, own, shapes, analysis, whole=False), lines)
 
     crossings = _crossings(prepared, model, np.arange(len(prepared.discretization.lines)), analysis, model_of)
     yield Progress(0.5, "limit cycles of the finite element model")
@@ -229,7 +234,7 @@ def _crossings(
     model: ReducedModel,
     line: IntArray,
     analysis: Analysis,
-    model_of: Callable[[Discretization], ReducedModel],
+    model_of: ModelOf,
 ) -> Crossings:
     """Return the critical wind speeds of a stack of models: by a scan in still air where the twist follows the wind."""
     if prepared.scan is not None:

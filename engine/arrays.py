@@ -1,6 +1,7 @@
 """Array types of the engine, and the few array operations that several packages share."""
 
 import math
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,11 @@ def merge_axes(array: AnyArray, first: int, last: int = -1) -> AnyArray:
     stop = array.ndim + last + 1
     start = array.ndim + first
     return array.reshape(*shape[:start], math.prod(shape[start:stop]), *shape[stop:])
+
+
+def take_rows(stack: Any, index: AnyArray) -> Any:
+    """Select or repeat entries of a dataclass whose fields are all arrays with the same first axis."""
+    return replace(stack, **{field.name: getattr(stack, field.name)[index] for field in fields(stack)})
 
 
 def filled(count: int, value: object) -> ObjectArray:

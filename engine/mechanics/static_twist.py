@@ -13,12 +13,11 @@ sections add what `free_sections` says to Pi.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled, take_rows
 from engine.mechanics.cross_sections import Sections, turned, turned_moments
 from engine.mechanics.finite_elements import (
     FIELDS,
@@ -89,7 +88,7 @@ def twisted_state(lines: Sequence[Line], profile: StaticProfile, section_points:
 
     def system(x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
         few = [lines[i] for i in active]
-        gradient, tangent = energy_derivatives(few, _select(profile, active), _select(section_points, active), x)
+        gradient, tangent = energy_derivatives(few, take_rows(profile, active), take_rows(section_points, active), x)
         return np.where(held[active], 0.0, gradient), downhill(_held(tangent, held[active]))
 
     solution = newton(system, np.where(held, 0.0, start), np.ones_like(start), OPTIONS)
@@ -156,7 +155,9 @@ def twisted_where_large(
     large = np.flatnonzero(linear_twist(lines, profile, section_points, matrices) > LARGE_TWIST)
     if not large.size:
         return None
-    found = twisted_state([lines[i] for i in large.tolist()], _select(profile, large), _select(section_points, large))
+    found = twisted_state(
+        [lines[i] for i in large.tolist()], take_rows(profile, large), take_rows(section_points, large)
+    )
     displacement, outcome = np.zeros(matrices.stiffness.shape[:2]), filled(len(lines), None)
     displacement[large], outcome[large] = found.displacement, found.outcome
     return TwistedState(displacement, outcome)
@@ -282,8 +283,3 @@ def downhill(tangent: FloatArray) -> FloatArray:
     values, vectors = np.linalg.eigh(tangent)
     absolute = (vectors * np.abs(values)[:, None, :]) @ vectors.swapaxes(-1, -2)
     return np.where(values[:, :1, None] > 0.0, tangent, absolute)
-
-
-def _select(stack: Any, index: IntArray) -> Any:
-    """Pick lines of a stack of profiles or sections."""
-    return replace(stack, **{field.name: getattr(stack, field.name)[index] for field in fields(stack)})

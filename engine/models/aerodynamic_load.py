@@ -47,6 +47,13 @@ def polynomial_load(forms: FloatArray, table: FloatArray, angle: FloatArray) -> 
     return PolynomialLoad(forms, table, polynomial.slopes(table), angle)
 
 
+def no_load(shape: tuple[int, ...]) -> PolynomialLoad:
+    """Return the load without any point of models whose matrices have a shape (..., m, m)."""
+    leading, m = shape[:-2], shape[-1]
+    none = (np.zeros((*leading, 0, *own)) for own in ((0, 2 * m), (m, 0), (m, 0, 0), (2 * m,)))
+    return PolynomialLoad(*none)
+
+
 def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
     """Evaluate the load divided by U^2.
 

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
-from engine.models.reduced_model import ReducedModel, force_gradient
+from engine.models.reduced_model import ReducedModel, gradient_at_rest
 
 NEARLY_IMAGINARY = (
     1e-6  # largest ratio of real to imaginary part of a pair that the eigenproblem in U finds on the axis
@@ -63,7 +63,7 @@ def state_matrices(model: ReducedModel) -> StateMatrices:
     """
     m = model.mass.shape[-1]
     members = model.mass.shape[0]
-    gradient = force_gradient(model, np.zeros((members, 1, 2 * m)))[:, 0]
+    gradient = gradient_at_rest(model)
     scale = np.sqrt(model.modal_masses)
     unit = scale[:, :, None] * np.linalg.inv(model.mass)
 
@@ -223,7 +223,7 @@ def _nearest_pair(matrices: StateMatrices, speed: FloatArray) -> tuple[ComplexAr
 def _divergences(model: ReducedModel, usable: IntArray, limit: float) -> tuple[IntArray, FloatArray]:
     """Return members and wind speeds where K - U^2 K_1 is singular."""
     m = model.mass.shape[-1]
-    gradient = force_gradient(model, np.zeros((model.mass.shape[0], 1, 2 * m)))[usable, 0, :, :m]
+    gradient = gradient_at_rest(model)[usable, :, :m]
     if usable.size == 0:
         return usable, np.zeros(0)
     inverse = eigenvalues(np.asarray(np.linalg.solve(model.stiffness[usable], gradient), dtype=np.float64))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import FloatArray, IntArray, merge_axes, take_rows
 from engine.mechanics.along_span import wind_factor
 from engine.mechanics.coefficient_curves import cubics_about, local_curves, reach
 from engine.mechanics.cross_sections import Sections, sections
@@ -117,17 +117,29 @@ def in_wind(discretization: Discretization, wind: int) -> Discretization:
 
     Coefficients fixed to the section are cubics fitted to the curves there.
     """
-    lines, profile, found = discretization.lines, discretization.profile, discretization.wind_twist
-    assert found is not None, "the twist in the wind was followed before"
-    displacement = np.zeros(discretization.matrices.stiffness.shape[:2])
-    if discretization.twist is not None:
-        displacement += np.nan_to_num(discretization.twist.displacement)
-    displacement[:, THETA::FIELDS] += np.nan_to_num(found.angle[:, wind])
-    state = TwistedState(displacement, found.outcome[:, wind])
-    here, system = twisted_matrices(lines, profile, sections(lines, profile), state, fit=False)
-    local = local_curves(lines, profile, here)
+    state = states_in_wind(discretization, np.array([wind]))
+    here, local = state.sections, local_curves(state.lines, state.profile, state.sections)
     cubics = cubics_about(local.curves, local.which, local.angle, FIT_RANGE)
-    here = replace(here, aerodynamics=cubics, fitted_range=reach(local, here.local_weight > 0.0))
+    fitted = replace(here, aerodynamics=cubics, fitted_range=reach(local, here.local_weight > 0.0))
+    return replace(state, sections=fitted)
+
+
+def states_in_wind(discretization: Discretization, winds: IntArray) -> Discretization:
+    """Return all lines about their static states at wind speeds (winds,), given by index, as one stack, wind-major.
+
+    Coefficients fixed to the section stay those of the untwisted one: only curves hold here.
+    """
+    found = discretization.wind_twist
+    assert found is not None, "the twist in the wind was followed before"
+    line = np.tile(np.arange(len(discretization.lines)), winds.size)
+    displacement = np.zeros(discretization.matrices.stiffness.shape[:2])[line]
+    if discretization.twist is not None:
+        displacement += np.nan_to_num(discretization.twist.displacement)[line]
+    displacement[:, THETA::FIELDS] += merge_axes(np.nan_to_num(found.angle[:, winds]).swapaxes(0, 1), -3, -2)
+    lines, profile = discretization.lines * winds.size, take_rows(discretization.profile, line)
+    untwisted = take_rows(sections(discretization.lines, discretization.profile), line)
+    state = TwistedState(displacement, found.outcome[:, winds].T.ravel())
+    here, system = twisted_matrices(lines, profile, untwisted, state, fit=False)
     return Discretization(lines, profile, here, _in_plane(profile, system), state)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W, device_damping
 from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
-from engine.models.aerodynamic_load import cheapest_load, span_load, take_load
+from engine.models.aerodynamic_load import PolynomialLoad, cheapest_load, no_load, span_load, take_load
 from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
 from engine.models.relief import DAMPING_RATIO, relief_displacement
@@ -17,7 +17,12 @@ TRANSVERSE = (V, W, THETA)
 
 
 def finite_element_model(
-    discretization: Discretization, modes: FullModes, shapes: DirectionalShapes, analysis: Analysis
+    discretization: Discretization,
+    modes: FullModes,
+    shapes: DirectionalShapes,
+    analysis: Analysis,
+    *,
+    whole: bool = True,
 ) -> ReducedModel:
     """Return the model reduced to the full modes of several loops per direction, with the exact load: (lines,).
 
@@ -26,6 +31,8 @@ def finite_element_model(
 
     Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
     2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi, and that of devices. Section 7.4.
+
+    whole: False leaves out stretching and the expanded load of a model whose unexpanded load stands.
     """
     modal = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
     values = modes.eigenvalues.reshape(modal.shape[:2])
@@ -38,15 +45,7 @@ def finite_element_model(
     fields[:, values.shape[1] :] = 0.0  # the wind does not act on the relief coordinate, and nobody sees it
     nodal = fields[:, :, list(TRANSVERSE)]
     at = at_points(discretization.matrices, nodal)
-    load = span_load(
-        discretization.lines,
-        discretization.sections,
-        discretization.matrices.weight,
-        at[:, None],
-        analysis.aerodynamic_model,
-    )
-    load = load if analysis.load_stands else cheapest_load(load)
-    stretching = stretching_of(discretization, moving[:, None]) if included else None
+    stretching = stretching_of(discretization, moving[:, None]) if included and whole else None
     mass, stiffness = _projected(discretization, vectors) if relieves else _diagonal(values)
     damping = _modal_damping(discretization, modal, shapes, modes.loops)
     return ReducedModel(
@@ -54,13 +53,24 @@ def finite_element_model(
         damping=(_with_damped_relief(damping, mass, stiffness) if relieves else damping)
         + device_damping(discretization.lines, discretization.profile, fields),
         stiffness=stiffness,
-        load=take_load(load, (slice(None), 0)),
+        load=_load(discretization, at, analysis) if whole else no_load(mass.shape),
         shapes=nodal,
         direction=np.resize(np.repeat(np.arange(3), len(modes.loops)), fields.shape[1]),  # relief: vertical
         statically_unstable=_unstable(values, shapes),
         stretching=take_stretching(stretching, (slice(None), 0)),
         unexpanded=take_unexpanded(load_as_it_stands(discretization, at[:, None], analysis), (slice(None), 0)),
     )
+
+
+def _load(discretization: Discretization, at: FloatArray, analysis: Analysis) -> PolynomialLoad:
+    load = span_load(
+        discretization.lines,
+        discretization.sections,
+        discretization.matrices.weight,
+        at[:, None],
+        analysis.aerodynamic_model,
+    )
+    return take_load(load if analysis.load_stands else cheapest_load(load), (slice(None), 0))
 
 
 def _unstable(values: FloatArray, shapes: DirectionalShapes) -> BoolArray:

@@ -15,6 +15,7 @@ from engine.models.aerodynamic_load import (
     cheapest_load,
     integrate_along_span,
     integrate_each,
+    no_load,
     published_load,
     span_load,
     take_load,
@@ -40,7 +41,12 @@ def loop_groups(loops: tuple[int, ...], analysis: Analysis) -> list[tuple[int, .
 
 
 def hybrid_model(
-    discretization: Discretization, shapes: DirectionalShapes, loops: tuple[int, ...], analysis: Analysis
+    discretization: Discretization,
+    shapes: DirectionalShapes,
+    loops: tuple[int, ...],
+    analysis: Analysis,
+    *,
+    whole: bool = True,
 ) -> ReducedModel:
     """Return the model reduced to one mode per direction, with leading axes (lines, loops).
 
@@ -55,6 +61,8 @@ def hybrid_model(
         One of the groups of `loop_groups`.
     analysis : Analysis
         Its closure, aerodynamic model, longitudinal inertia and stretching are used.
+    whole : bool
+        False leaves out stretching and the expanded load of a model whose unexpanded load stands.
 
     Returns
     -------
@@ -78,9 +86,10 @@ def hybrid_model(
     fields = _with_relief(discretization, nodal, None if relief is None else np.zeros_like(relief))
     damping = diagonal_matrices(rate * diagonals(mass))  # (11)
     damping += device_damping(discretization.lines, discretization.profile, fields)
-    load = _hybrid_load(discretization, fields, analysis)
+    load = _hybrid_load(discretization, fields, analysis) if whole else no_load(mass.shape)
     unexpanded = load_as_it_stands(discretization, at_points(discretization.matrices, fields), analysis)
-    stretching = _stretching(discretization, _with_relief(discretization, nodal, relief), analysis)
+    moving = _with_relief(discretization, nodal, relief)
+    stretching = _stretching(discretization, moving, analysis) if whole else None
     direction = np.arange(fields.shape[2]) % 3
     return ReducedModel(mass, damping, stiffness, load, fields, direction, unstable, stretching, unexpanded)
 

@@ -87,6 +87,14 @@ def force_gradient(model: ReducedModel, state: FloatArray) -> FloatArray:
     return aerodynamic_load.force_gradient(model.load, state)
 
 
+def gradient_at_rest(model: ReducedModel) -> FloatArray:
+    """Differentiate the load divided by U^2 by (q, q'/U) at the static state: (..., m, 2 m)."""
+    if model.unexpanded is not None:
+        return model.unexpanded.at_rest_gradient
+    still = np.zeros((*model.mass.shape[:-2], 1, 2 * model.mass.shape[-1]))
+    return aerodynamic_load.force_gradient(model.load, still)[..., 0, :, :]
+
+
 def resultant(model: ReducedModel, state: FloatArray, wind_speed: FloatArray) -> FloatArray:
     """Return f - g / U^2, the forces of wind and stretching over U^2.
 

@@ -4,18 +4,20 @@ Theory sections 6 and 14. A(U) = A_0 + U A_1 + U^2 A_2 at each wind speed of a g
 there; between them the three matrices are interpolated linearly, so a state that does not move leaves no error.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray, eigenvalues
+from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
+from engine.mechanics.modes import DirectionalShapes, directional_shapes
 from engine.mechanics.wind_twist import WindTwist
 from engine.models.critical_wind_speeds import Crossings, StateMatrices, at_wind, state_matrices, unstable_pairs
-from engine.models.discretization import Discretization, in_wind, with_wind_twist
+from engine.models.discretization import Discretization, states_in_wind, with_wind_twist
 from engine.models.reduced_model import ReducedModel
 
 STEPS = 30  # of the grid up to the limit
+BLOCK_LINES = 256  # largest number of lines and wind speeds whose matrices stand side by side
 TORSIONAL = 2
 CELLS = 8  # parts of a step of the grid that are searched for changes of stability
 HALVINGS = 40
@@ -26,23 +28,34 @@ STATIC = 1e-9  # imaginary part over the largest eigenvalue, below which a growi
 class Scan:
     """Static states of lines at the wind speeds of a grid.
 
-    wind_speeds: (winds,), in rising order [m/s]; states: the discretization about each; twist: as they were followed.
+    wind_speeds: (winds,), in rising order [m/s]; states: the discretizations about each, of several wind speeds in one
+    stack, wind-major, with the shapes of their directions; twist: as they were followed.
     """
 
     wind_speeds: FloatArray
-    states: tuple[Discretization, ...]
+    states: tuple[tuple[Discretization, DirectionalShapes], ...]
     twist: WindTwist
 
 
-def scan_of(discretization: Discretization, limit: float) -> Scan:
-    """Follow the static state from still air to a wind speed [m/s], in steps of a thirtieth of it."""
+ModelOf = Callable[[Discretization, DirectionalShapes, IntArray], ReducedModel]
+"""Makes the models about static states; lines (members,) are the indices of the lines of its members there."""
+
+
+def scan_of(discretization: Discretization, limit: float, loops: tuple[int, ...]) -> Scan:
+    """Follow the static state from still air to a wind speed [m/s], in steps of a thirtieth of it.
+
+    loops: numbers of loops whose shapes the models need.
+    """
     winds = np.linspace(0.0, limit, STEPS + 1)[1:]
     followed = with_wind_twist(discretization, winds, further=False)
     assert followed.wind_twist is not None, "it was followed above"
-    return Scan(winds, tuple(in_wind(followed, i) for i in range(winds.size)), followed.wind_twist)
+    size = max(1, BLOCK_LINES // len(discretization.lines))
+    blocks = (states_in_wind(followed, np.arange(i, min(i + size, winds.size))) for i in range(0, winds.size, size))
+    states = tuple((block, directional_shapes(block.matrices, block.profile.arc_length, loops)) for block in blocks)
+    return Scan(winds, states, followed.wind_twist)
 
 
-def crossings_in_wind(scan: Scan, line: IntArray, model_of: Callable[[Discretization], ReducedModel]) -> Crossings:
+def crossings_in_wind(scan: Scan, line: IntArray, model_of: ModelOf) -> Crossings:
     """Return the critical wind speeds of models whose static state follows the wind, folds of that state among them.
 
     Parameters
@@ -51,18 +64,17 @@ def crossings_in_wind(scan: Scan, line: IntArray, model_of: Callable[[Discretiza
     line : (members,)
         Index of the line of each model.
     model_of : callable
-        Makes the models of all lines about a static state.
+        Makes the models of members, one wind speed after another.
 
     Returns
     -------
     Crossings
         Sorted by member and wind speed.
     """
-    members = [model_of(state) for state in scan.states]
-    found = scanned_crossings(scan.wind_speeds, [state_matrices(model) for model in members])
-    known = ~np.any([model.statically_unstable for model in members], axis=0)
+    matrices, unstable, torsional = _scanned_models(scan, line, model_of)
+    found = scanned_crossings(scan.wind_speeds, matrices)
+    known = np.asarray(~unstable.any(axis=0))
     member, fold = np.nonzero(line[:, None] == scan.twist.fold_line)
-    torsional = int(np.flatnonzero(members[0].direction == TORSIONAL)[0])
     folds = Crossings(
         member=member,
         wind_speed=scan.twist.fold_wind_speed[fold],
@@ -78,15 +90,30 @@ def crossings_in_wind(scan: Scan, line: IntArray, model_of: Callable[[Discretiza
     return Crossings(**{name: values[order] for name, values in parts.items()})
 
 
-def scanned_crossings(wind_speeds: FloatArray, states: Sequence[StateMatrices]) -> Crossings:
+def _scanned_models(scan: Scan, line: IntArray, model_of: ModelOf) -> tuple[StateMatrices, BoolArray, int]:
+    """Return state matrices (winds, members, 2 m, 2 m), which are statically unstable, and the torsional coordinate."""
+    lines = int(scan.twist.angle.shape[0])
+    matrices, unstable, torsional = [], [], 0
+    for block, shapes in scan.states:
+        winds = len(block.lines) // lines
+        model = model_of(block, shapes, (lines * np.arange(winds)[:, None] + line).ravel())
+        own, shape = state_matrices(model), (winds, line.size)
+        matrices.append([part.reshape(*shape, *part.shape[1:]) for part in (own.constant, own.linear, own.quadratic)])
+        unstable.append(model.statically_unstable.reshape(shape))
+        torsional = int(np.flatnonzero(model.direction == TORSIONAL)[0])
+    joined = (np.concatenate(parts) for parts in zip(*matrices, strict=True))
+    return StateMatrices(*joined), np.concatenate(unstable), torsional
+
+
+def scanned_crossings(wind_speeds: FloatArray, states: StateMatrices) -> Crossings:
     """Return the crossings of the imaginary axis between the wind speeds of a grid.
 
     Parameters
     ----------
     wind_speeds : (winds,)
         In rising order [m/s].
-    states : sequence of StateMatrices
-        About the static state at each wind speed.
+    states : StateMatrices
+        About the static state at each wind speed, (winds, members, 2 m, 2 m).
 
     Returns
     -------
@@ -97,7 +124,7 @@ def scanned_crossings(wind_speeds: FloatArray, states: Sequence[StateMatrices]) 
         np.arange(wind_speeds.size),
         wind_speeds,
     )
-    members = states[0].constant.shape[0]
+    members = states.constant.shape[1]
     every = np.repeat(np.arange(members), speeds.size)
     counts = unstable_pairs(eigenvalues(_at(wind_speeds, states, every, np.tile(speeds, members))))
     counts = counts.reshape(members, speeds.size)
@@ -112,16 +139,16 @@ def scanned_crossings(wind_speeds: FloatArray, states: Sequence[StateMatrices]) 
     return replace(found, onset=after > before, unstable_after=after)
 
 
-def _at(wind_speeds: FloatArray, states: Sequence[StateMatrices], member: IntArray, speed: FloatArray) -> FloatArray:
+def _at(wind_speeds: FloatArray, states: StateMatrices, member: IntArray, speed: FloatArray) -> FloatArray:
     """Return A(U) of members (k,) at wind speeds (k,) within the grid: (k, 2 m, 2 m)."""
     left = np.clip(np.searchsorted(wind_speeds, speed, side="right") - 1, 0, wind_speeds.size - 2)
     share = ((speed - wind_speeds[left]) / (wind_speeds[left + 1] - wind_speeds[left]))[:, None, None]
 
-    def between(name: str) -> FloatArray:
-        stack = np.stack([getattr(state, name) for state in states])
+    def between(stack: FloatArray) -> FloatArray:
         return np.asarray((1.0 - share) * stack[left, member] + share * stack[left + 1, member])
 
-    return at_wind(StateMatrices(between("constant"), between("linear"), between("quadratic")), speed)
+    parts = (states.constant, states.linear, states.quadratic)
+    return at_wind(StateMatrices(*(between(stack) for stack in parts)), speed)
 
 
 def _described(matrices: FloatArray, member: IntArray, wind_speed: FloatArray) -> Crossings:

@@ -31,8 +31,8 @@ class UnexpandedLoad:
     (..., points), 1/2 rho d phi^2 ds [kg/m]; factor: (..., points), phi; diameter: (...) [m]; positions:
     (..., points, n, 2), y_i and z_i of the resting section [m]; present: (..., n), 1, or 0 on padding; which,
     rest_angle: (..., points), curve of each point and its angle at rest [rad]; at_rest: (..., m), the load at rest over
-    U^2; curves: those of all members; samples: of a period, from which the harmonic balance takes the load's
-    harmonics, an even number.
+    U^2; at_rest_gradient: (..., m, 2 m), its derivatives there by (q, q'/U); curves: those of all members; samples: of
+    a period, from which the harmonic balance takes the load's harmonics, an even number.
     """
 
     fields: FloatArray
@@ -44,6 +44,7 @@ class UnexpandedLoad:
     which: IntArray
     rest_angle: FloatArray
     at_rest: FloatArray
+    at_rest_gradient: FloatArray
     curves: CoefficientCurves
     samples: int = FEWEST_SAMPLES
 
@@ -68,7 +69,8 @@ def of_all_members(load: UnexpandedLoad | None) -> UnexpandedLoad | None:
     by_point = ("fields", "strength", "factor", "positions", "which", "rest_angle")
     parts: dict[str, Any] = {name: np.concatenate(list(getattr(load, name)), axis=1)[None] for name in by_point}
     parts |= {"diameter": load.diameter[:1], "present": load.present[:1]}
-    return replace(load, **parts, at_rest=load.at_rest.sum(axis=0, keepdims=True))
+    sums = {name: getattr(load, name).sum(axis=0, keepdims=True) for name in ("at_rest", "at_rest_gradient")}
+    return replace(load, **parts, **sums)
 
 
 def load_as_it_stands(discretization: Discretization, shapes: FloatArray, analysis: Analysis) -> UnexpandedLoad | None:
@@ -114,15 +116,25 @@ def unexpanded_load(discretization: Discretization, shapes: FloatArray) -> Unexp
         which=grouped(_flat(local.which)),
         rest_angle=grouped(_flat(local.angle)),
         at_rest=np.zeros((*groups, values.shape[-1])),
+        at_rest_gradient=np.zeros((*groups, values.shape[-1], 2 * values.shape[-1])),
         curves=local.curves,
     )
-    still = np.zeros((*groups, 1, 2 * values.shape[-1]))
-    return replace(load, at_rest=force(load, still)[..., 0, :])
+    wind = _relative_wind(load, np.zeros((*groups, 1, 2 * values.shape[-1])))
+    at_rest, gradient = _generalized(load, wind), _generalized_gradient(load, wind)
+    return replace(load, at_rest=at_rest[..., 0, :], at_rest_gradient=gradient[..., 0, :, :])
 
 
 def force(load: UnexpandedLoad, state: FloatArray) -> FloatArray:
     """Evaluate the load divided by U^2 at states (..., samples, 2 m) of q and q'/U: (..., samples, m)."""
-    wind = _relative_wind(load, state)
+    return _generalized(load, _relative_wind(load, state))
+
+
+def force_gradient(load: UnexpandedLoad, state: FloatArray) -> FloatArray:
+    """Differentiate the load divided by U^2 by (q, q'/U) at states (..., samples, 2 m): (..., samples, m, 2 m)."""
+    return _generalized_gradient(load, _relative_wind(load, state))
+
+
+def _generalized(load: UnexpandedLoad, wind: "_RelativeWind") -> FloatArray:
     along, across, moment = _forces(load, wind)
     total = np.stack([along.sum(-2), across.sum(-2), _about_reference(load, along, across, moment).sum(-2)], axis=-2)
     weighted = merge_axes(load.strength[..., None, None] * total, -3, -2)
@@ -130,10 +142,7 @@ def force(load: UnexpandedLoad, state: FloatArray) -> FloatArray:
     return np.asarray(generalized.swapaxes(-1, -2) - load.at_rest[..., None, :])
 
 
-def force_gradient(load: UnexpandedLoad, state: FloatArray) -> FloatArray:
-    """Differentiate the load divided by U^2 by (q, q'/U) at states (..., samples, 2 m): (..., samples, m, 2 m)."""
-    wind = _relative_wind(load, state)
-    m = load.fields.shape[-1]
+def _generalized_gradient(load: UnexpandedLoad, wind: "_RelativeWind") -> FloatArray:
     rows = np.stack([_section_row(load, wind, variable) for variable in range(3)], axis=-1)
     z, y = load.positions[..., 1, None], load.positions[..., 0, None]
     lever = 0.5 * load.diameter[..., None, None, None] - z
@@ -156,9 +165,7 @@ def force_gradient(load: UnexpandedLoad, state: FloatArray) -> FloatArray:
         [np.stack([theta, none, none, none], axis=-2), np.stack([none, v, w, theta], axis=-2)], axis=-1
     )
     left = load.fields.swapaxes(-1, -2)[..., None, :, :, :]
-    return np.asarray((left @ (matrices @ reader[..., None, :, :, :])).sum(axis=-3)).reshape(
-        *state.shape[:-1], m, 2 * m
-    )
+    return np.asarray((left @ (matrices @ reader[..., None, :, :, :])).sum(axis=-3))
 
 
 @dataclass(frozen=True, slots=True)

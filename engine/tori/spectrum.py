@@ -90,6 +90,8 @@ def mean_square_velocity(tori: Tori) -> FloatArray:
 def sampled_states(tori: Tori) -> FloatArray:
     """Return q and q'/U of tori on a grid over both phases: (tori, samples, 2 m)."""
     phase = 2.0 * np.pi * np.arange(GRID // 2) / (GRID // 2)
+    if not tori.wind_speed.size:
+        return np.zeros((0, phase.size**2, 2 * tori.coefficients.shape[1]))
     return states(tori, _grid(phase, phase))
 
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from engine.mechanics.modes import directional_shapes
-from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds, state_matrices
+from engine.arrays import IntArray
+from engine.mechanics.modes import DirectionalShapes, directional_shapes
+from engine.models.critical_wind_speeds import Crossings, StateMatrices, critical_wind_speeds, state_matrices
 from engine.models.discretization import Discretization, discretize, in_wind, with_wind_twist
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import ReducedModel, take
@@ -23,14 +24,19 @@ def one_loop(discretization: Discretization) -> ReducedModel:
 
 
 def scanned(*lines: Line) -> Crossings:
-    return crossings_in_wind(scan_of(discretize(lines), LIMIT), np.arange(len(lines)), one_loop)
+    def model_of(states: Discretization, shapes: DirectionalShapes, lines: IntArray) -> ReducedModel:
+        return take(hybrid_model(states, shapes, (1,), TABLE, whole=False), (lines, 0))
+
+    return crossings_in_wind(scan_of(discretize(lines), LIMIT, (1,)), np.arange(len(lines)), model_of)
 
 
 @pytest.mark.parametrize("subconductors", [1, 2, 3])
 def test_a_state_that_does_not_move_has_the_crossings_of_the_polynomial(subconductors: int) -> None:
     model = take(hybrid(source_line(subconductors), 2), [0, 0])
     winds = np.linspace(1.0, LIMIT, 30)
-    found = scanned_crossings(winds, [state_matrices(model)] * winds.size)
+    still = state_matrices(model)
+    parts = (np.stack([part] * winds.size) for part in (still.constant, still.linear, still.quadratic))
+    found = scanned_crossings(winds, StateMatrices(*parts))
     expected = critical_wind_speeds(model, LIMIT)
     order = np.lexsort((found.wind_speed, found.member))
     assert found.member[order].tolist() == expected.member.tolist()
