@@ -9,7 +9,7 @@ import pytest
 from engine.arrays import FloatArray
 from engine.mechanics.modes import at_points
 from engine.models.discretization import Discretization, in_wind, with_wind_twist
-from engine.models.reduced_model import ReducedModel, force, force_gradient, take
+from engine.models.reduced_model import ReducedModel, force, force_gradient, gradient_at_rest, take
 from engine.models.unexpanded_load import UnexpandedLoad, unexpanded_load
 from engine.spec import AerodynamicLoad, AerodynamicModel, Aerodynamics, Analysis, Bundle, IceSegment, Line
 from tests.builders import ICE_AT_40, discretized, finite_element, hybrid, source_line
@@ -76,6 +76,14 @@ def test_gradient_is_that_of_finite_differences(line: Line, asked: Analysis) -> 
             step = 1e-6 * np.abs(state).max() * np.eye(state.shape[-1])[k]
             numerical = (force(model, state + step) - force(model, state - step)) / (2.0 * step[k])
             assert exact[..., k] == pytest.approx(numerical, rel=1e-5, abs=1e-7 * np.abs(exact[..., k]).max())
+
+
+def test_the_gradient_at_rest_is_kept() -> None:
+    model = hybrid(off_centre(with_table(source_line(3), 25.0)), 2, TABLE)
+    still = force_gradient(model, np.zeros((1, 1, 6)))[:, 0]
+    assert gradient_at_rest(model) == pytest.approx(still, rel=1e-12)
+    plain = hybrid(source_line(2), 1)
+    assert gradient_at_rest(plain) == pytest.approx(force_gradient(plain, np.zeros((1, 1, 6)))[:, 0], rel=1e-12)
 
 
 def test_difference_from_the_expanded_load_falls_as_the_fourth_power_of_the_motion() -> None:
