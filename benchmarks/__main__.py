@@ -7,11 +7,11 @@ import platform
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks import cores, engine_speed, first_answer, known_fleet, samples, scaling, service_speed
+from benchmarks import cores, engine_speed, first_answer, known_fleet, samples, scaling, service_speed, table_fleet
 
 ROOT = Path(__file__).parents[1]
 LATEST = ROOT / "benchmarks" / "latest.json"
-SECTIONS = ("cycle", "branch", "fleet", "known", "samples", "machine", "answer", "service")
+SECTIONS = ("cycle", "branch", "fleet", "tables", "known", "samples", "machine", "answer", "service")
 
 MEANING = {
     "cycle_ratio": "one limit cycle of the source's lines: time of direct integration over the engine's, in one stack",
@@ -35,6 +35,8 @@ MEANING = {
     "branch_compiled_gain": "the same for a branch in a separate call",
     "fleet_full_lines_per_s_core": "the same job under full physics: lines per second and core",
     "fleet_full_ratio": "that rate over the source's, both taken in turn",
+    "fleet_table_lines_per_s_core": "lines with a table, hybrid model: per second of processor time, a third gallop",
+    "fleet_table_galloping_lines_per_s_core": "the same where all gallop",
     "fleet_exponent": "exponent of the time as a power of the number of lines",
     "known_fleet_ratio": "lines in engineers' forms, taken in and analysed, over the same lines spelled out, in turn",
     "known_fleet_lines_per_s_core": "the former per second and core",
@@ -119,6 +121,8 @@ def _section(name: str, fleet: int, lines: int) -> Iterator[tuple[str, float]]:
             yield from engine_speed.fleet(fleet)
             yield from engine_speed.full_fleet()
             yield from engine_speed.hybrid_against_finite_element()
+        case "tables":
+            yield from table_fleet.table_fleet()
         case "known":
             yield from known_fleet.known_fleet()
         case "samples":

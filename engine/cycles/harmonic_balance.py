@@ -17,6 +17,7 @@ from engine.numerics.newton import NewtonOptions, Solution, newton
 
 SETTLED = 1e-2  # m, rad times the tolerance: largest change of a coefficient from twice an unexpanded load's samples
 MOST_SAMPLES = 1024
+EXACT = 1e-5  # largest tolerance of solutions that count
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +151,8 @@ def balance(
     options = options or NewtonOptions()
     orbits, solution = _balanced(model, member, start, options)
     moving = np.flatnonzero(solution.converged)
-    while model.unexpanded is not None and moving.size and model.unexpanded.samples < MOST_SAMPLES:
+    most = MOST_SAMPLES if options.tolerance <= EXACT else 0  # rough solutions only serve as starts
+    while model.unexpanded is not None and moving.size and model.unexpanded.samples < most:
         model = replace(model, unexpanded=replace(model.unexpanded, samples=2 * model.unexpanded.samples))
         finer, again = _balanced(model, member[moving], select(orbits, moving), options)
         change = np.abs(finer.coefficients - orbits.coefficients[moving]).max(axis=(1, 2))

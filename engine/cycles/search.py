@@ -19,13 +19,14 @@ from engine.cycles.known_cycles import KnownCycles, Starts, solve_starts
 from engine.cycles.resolution import MOST_HARMONICS, harmonics_needed, resolved_in_groups, unresolved_members
 from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.reduced_model import ReducedModel, take, with_samples
 from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.result import FoundBy
 
 ROUGH = 2  # harmonics of a first solution: with the mean and the second harmonic, which stretching needs
 ROUGHLY = NewtonOptions(tolerance=1e-3, iterations=14)
+ROUGH_SAMPLES = 16  # of an unexpanded load; ten would do for a cubic one
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +171,7 @@ def _roughly_balanced(known: KnownCycles, starts: Starts) -> Starts:
     """
     harmonics = max(starts.orbits.coefficients.shape[-1] // 2, 1)
     rough = Starts(starts.member, starts.wind, resized(starts.orbits, min(ROUGH, harmonics)))
-    solved, good = solve_starts(known.model, rough, ROUGHLY)
+    solved, good = solve_starts(with_samples(known.model, ROUGH_SAMPLES), rough, ROUGHLY)
     index = np.flatnonzero(good)
     orbits = resized(select(solved.orbits, index), harmonics)
     return known.new_starts(Starts(starts.member[index], starts.wind[index], orbits))

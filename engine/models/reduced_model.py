@@ -1,7 +1,7 @@
 """The reduced model, hybrid or finite element: M q'' + C q' + K q = U^2 f(q, q'/U) - g(q). Theory section 4, 12.1."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,13 @@ def take(model: ReducedModel, index: Any) -> ReducedModel:
         stretching=take_stretching(model.stretching, index),
         unexpanded=take_unexpanded(model.unexpanded, index),
     )
+
+
+def with_samples(model: ReducedModel, samples: int) -> ReducedModel:
+    """Return models whose unexpanded load, if there is one, has so many samples in a period of the harmonic balance."""
+    if model.unexpanded is None:
+        return model
+    return replace(model, unexpanded=replace(model.unexpanded, samples=samples))
 
 
 def samples_in_period(model: ReducedModel, harmonics: int) -> int:
