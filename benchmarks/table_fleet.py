@@ -1,4 +1,4 @@
-"""The rate of lines whose load is a measured table over the whole angle: two numbers of loops, 11 winds, hybrid model."""
+"""The rate of lines whose load is a measured table over the whole angle: two numbers of loops, 11 winds, hybrid."""
 
 import time
 from collections.abc import Iterator, Sequence
