@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from engine.known.description import KnownAerodynamics, Reference
+from engine.known.description import KnownAerodynamics, Reference, UnknownShape
 from engine.known.estimate import Estimate
 from engine.known.provenance import Assumption, Origin, Provenance, assumed, computed, from_catalogue, given
 from engine.spec import Aerodynamics, Coefficients
@@ -17,7 +17,7 @@ AT_REST = (
 
 
 def coefficients(
-    known: KnownAerodynamics, bare: float, outer: float | None, chosen: Mapping[str, float]
+    known: KnownAerodynamics | UnknownShape, bare: float, outer: float | None, chosen: Mapping[str, float]
 ) -> tuple[Aerodynamics, Provenance]:
     """Return the coefficients over the bare diameter.
 
@@ -27,7 +27,8 @@ def coefficients(
 
     Parameters
     ----------
-    known : KnownAerodynamics
+    known : KnownAerodynamics or UnknownShape
+        Of several shapes the one whose number is chosen, else the first. What any of them leaves open has its rows.
     bare : float
         Diameter of the bare conductor [m].
     outer : float or None
@@ -35,18 +36,37 @@ def coefficients(
     chosen : mapping
         Values that replace assumed ones, by path.
     """
-    rows = Provenance().extended(_reference(known, bare, outer, chosen))
+    if isinstance(known, UnknownShape):
+        shape = _assumed_shape(known, chosen)
+        rows = Provenance((shape,))
+        open_at_rest = any(map(_lacks_rest, known.shapes))
+        known = known.shapes[round(shape.value)]
+    else:
+        rows, open_at_rest = Provenance(), _lacks_rest(known)
+    rows = rows.extended(_reference(known, bare, outer, chosen))
     rows = rows.extended(_spread(known, chosen))
     aerodynamics = known.aerodynamics
-    if known.origin is Origin.CATALOGUE and aerodynamics.at_rest is None:
+    if open_at_rest:
         rest = [assumed(f"{_PATH}_at_rest.{name}", estimate, chosen) for name, estimate in AT_REST]
         rows = rows.extended(rest)
         lift, drag, moment = (row.value for row in rest)
-        aerodynamics = replace(aerodynamics, at_rest=(lift, drag, moment))
+        if _lacks_rest(known):
+            aerodynamics = replace(aerodynamics, at_rest=(lift, drag, moment))
     path = f"{_PATH}.reference_diameter"
     ratio = rows[path] / bare if path in rows else 1.0
     factors = [rows[f"{_PATH}.{name}_factor"] if known.spread else 1.0 for name, _ in AT_REST]
     return _scaled(aerodynamics, ratio, factors), rows
+
+
+def _assumed_shape(known: UnknownShape, chosen: Mapping[str, float]) -> Assumption:
+    listed = ", ".join(f"{number} {name}" for number, name in enumerate(known.names))
+    source = f"assumed: the shape of the ice is not known; one of {listed}, none likelier than another"
+    estimate = Estimate(0.0, "", 0.0, len(known.names) - 1.0, source)
+    return replace(assumed(f"{_PATH}.catalogue", estimate, chosen), choices=known.names)
+
+
+def _lacks_rest(known: KnownAerodynamics) -> bool:
+    return known.origin is Origin.CATALOGUE and known.aerodynamics.at_rest is None
 
 
 def _reference(

@@ -180,6 +180,23 @@ class KnownAerodynamics:
 
 
 @dataclass(frozen=True, slots=True)
+class UnknownShape:
+    """Ice of a shape that nobody knows: any of several, none likelier than another, each with its name.
+
+    The first one stands for the line with its values as assumed.
+    """
+
+    shapes: tuple[KnownAerodynamics, ...]
+    names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Check that there is a shape, and a name for each."""
+        counts = len(self.shapes), len(self.names)
+        rule = "must hold one shape or more, each with a name"
+        require(None if counts[0] == counts[1] > 0 else Fault("ice.aerodynamics", counts, rule))
+
+
+@dataclass(frozen=True, slots=True)
 class KnownIce:
     """Ice by its accretion, or by what it makes of the sub-conductor: mass, inertia and eccentricity with ice.
 
@@ -187,7 +204,7 @@ class KnownIce:
     sub-conductor; None with an accretion. Without both there is no ice.
     """
 
-    aerodynamics: KnownAerodynamics
+    aerodynamics: KnownAerodynamics | UnknownShape
     accretion: Accretion | None = None
     mass: float | None = None
     polar_inertia: float | None = None

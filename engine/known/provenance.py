@@ -22,7 +22,8 @@ class Origin(StrEnum):
 class Assumption:
     """One value of a line: dotted path of its field, value, unit, origin, the sentence that says whence.
 
-    lowest, highest: the range of an assumed value, None for others.
+    lowest, highest: the range of an assumed value, None for others; choices: the names of the possibilities of which it
+    is the number, from 0, none where every value of the range is one.
     """
 
     path: str
@@ -32,9 +33,10 @@ class Assumption:
     source: str
     lowest: float | None = None
     highest: float | None = None
+    choices: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check that the value is finite and lies in its range, and that only assumed values have one."""
+        """Check that the value is finite, in its range and one of its choices; only assumed ones have a range."""
         ranged = self.lowest is not None and self.highest is not None
         require(
             None if math.isfinite(self.value) else Fault(self.path, self.value, "must be a finite number"),
@@ -42,6 +44,9 @@ class Assumption:
             if ranged == (self.origin is Origin.ASSUMED)
             else Fault(self.path, self.origin.value, "must have a range if and only if it is assumed"),
             self._range_fault(),
+            Fault(self.path, self.value, f"must be a whole number, of {', '.join(self.choices)}")
+            if self.choices and self.value != round(self.value)
+            else None,
         )
 
     def _range_fault(self) -> Fault | None:

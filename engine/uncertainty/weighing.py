@@ -10,7 +10,7 @@ from engine.progress import Progress, translated
 from engine.report.verdict import verdict
 from engine.result import Result
 from engine.spec import Analysis, Line, Uncertainty
-from engine.uncertainty.inputs import Interval, Uncertain
+from engine.uncertainty.inputs import Choice, Interval, Uncertain
 from engine.uncertainty.risk import risk_over_samples
 from engine.uncertainty.runs import LineOf, outcomes
 from engine.uncertainty.sampling import sobol_samples
@@ -31,10 +31,12 @@ class Unknowns:
     line_of: LineOf
 
 
-def intervals(assumptions: Iterable[Assumption]) -> tuple[Interval, ...]:
-    """Return the assumed values whose range is not a point."""
+def intervals(assumptions: Iterable[Assumption]) -> tuple[Uncertain, ...]:
+    """Return the assumed values whose range is not a point, and choices among several, all as likely."""
     return tuple(
-        Interval(row.path, row.value, row.lowest, row.highest, row.unit not in FREE_ZERO)
+        Choice(row.path, row.value, (1.0,) * len(row.choices))
+        if row.choices
+        else Interval(row.path, row.value, row.lowest, row.highest, row.unit not in FREE_ZERO)
         for row in assumptions
         if row.origin is Origin.ASSUMED
         and row.lowest is not None

@@ -1,4 +1,4 @@
-"""Twelve lines of different make, as engineers know them."""
+"""Thirteen lines of different make, as engineers know them."""
 
 from copy import deepcopy
 from typing import Any
@@ -104,6 +104,7 @@ LINES: dict[str, dict[str, Any]] = {
             },
         },
     ),
+    "of unknown shape": changed(ice={"accretion": {"shape": "crescent", "thickness_m": 0.012}}),
     "in a section on a slope": {
         **changed(
             span={

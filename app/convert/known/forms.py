@@ -22,6 +22,7 @@ _OF_AERODYNAMICS = frozenset({"catalogue", "reference_diameter_m"})
 # What an analysis needs and resolving estimates from what else is said.
 _ESTIMATED: Mapping[str, frozenset[str]] = {
     "conductor": frozenset({"torsional_rigidity_n_m2", "polar_inertia_kg_m"}),
+    "ice": frozenset({"aerodynamics"}),
     "damping": frozenset({"vertical_ratio", "horizontal_ratio", "torsional_ratio"}),
 }
 _RIGIDITY = "axial_rigidity_n"

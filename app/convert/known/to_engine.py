@@ -217,8 +217,13 @@ def _accretion(part: said.Accretion) -> Accretion:
     )
 
 
-def _aerodynamics(part: said.KnownIce, own: OwnRows) -> known.KnownAerodynamics:
+def _aerodynamics(part: said.KnownIce, own: OwnRows) -> known.KnownAerodynamics | known.UnknownShape:
     form = part.aerodynamics
+    if form is None:
+        shapes = ice_shapes.ICE_SHAPES
+        return known.UnknownShape(
+            tuple(_listed_shape(shape, part) for shape in shapes), tuple(shape.name for shape in shapes)
+        )
     if isinstance(form, said.CatalogueShape):
         return _named_shape(form, part, own)
     try:
@@ -248,14 +253,20 @@ def _named_shape(form: said.CatalogueShape, part: said.KnownIce, own: OwnRows) -
     if form.angle is not None and form.angle != shape.static_angle_deg:
         rule = f"must be absent or {shape.static_angle_deg:g}, at which the coefficients of {shape.name} hold"
         raise InvalidSpec(EngineFault("ice.aerodynamics.angle", form.angle, rule))
+    return _listed_shape(shape, part, form.reference_diameter)
+
+
+def _listed_shape(
+    shape: ice_shapes.IceShape, part: said.KnownIce, reference_diameter: float | None = None
+) -> known.KnownAerodynamics:
     rest, coefficients = part.at_rest, [_three(shape.aerodynamics[name]) for name in _DIRECTIONS]
     vertical, horizontal, torsional = coefficients
     at_rest = None if rest is None else (rest.vertical, rest.horizontal, rest.torsional)
     made = spec.Aerodynamics(vertical, horizontal, torsional, at_rest)
     return known.KnownAerodynamics(
         made,
-        form.reference_diameter,
-        reference=known.Reference(shape.reference) if form.reference_diameter is None else None,
+        reference_diameter,
+        reference=known.Reference(shape.reference) if reference_diameter is None else None,
         origin=Origin.CATALOGUE,
         source=shape.source,
         spread=SHAPE_SPREAD,

@@ -97,8 +97,11 @@ class KnownIce(Document):
     eccentricity_y: float | None = as_in(Ice, "eccentricity_y")
     eccentricity_z: float | None = as_in(Ice, "eccentricity_z")
     accretion: Accretion | None = Field(default=None, description="Shape and amount of the ice", examples=[ACCRETION])
-    aerodynamics: KnownAerodynamics = Field(
-        description="Coefficients, a measured table, or the name of a shape", examples=[{"catalogue": "c11-40"}]
+    aerodynamics: KnownAerodynamics | None = Field(
+        default=None,
+        description="Coefficients, a measured table, or the name of a shape; if null, the shape is not known: any of "
+        "`GET /v1/ice-shapes` is assumed, and samples draw among them",
+        examples=[{"catalogue": "c11-40"}],
     )
     at_rest: AerodynamicsAtRest | None = Field(
         default=None,

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from engine.known.borrowed_coefficients import coefficients
-from engine.known.description import KnownAerodynamics, Reference
+from engine.known.description import KnownAerodynamics, Reference, UnknownShape
 from engine.known.provenance import Origin
+from engine.outcome import InvalidSpec
 from engine.spec import Aerodynamics, MeasuredCoefficients
 from tests.engine.known.known_lines import C11
 
@@ -77,3 +78,21 @@ def test_a_catalogue_s_shape_without_coefficients_at_rest_gets_assumed_ones() ->
 def test_given_coefficients_without_those_at_rest_stay_without() -> None:
     found, _ = coefficients(KnownAerodynamics(C11, reference_diameter=BARE), BARE, OUTER, {})
     assert found == Aerodynamics(C11.vertical, C11.horizontal, C11.torsional)
+
+
+def test_an_unknown_shape_is_one_of_several_and_has_the_rows_of_all() -> None:
+    open_ = KnownAerodynamics(C11, reference=Reference.BARE, origin=Origin.CATALOGUE, source="C11")
+    whole = replace(open_, aerodynamics=replace(FULL, measured=None), source="full")
+    unknown = UnknownShape((open_, whole), ("c11", "full"))
+    first, rows = coefficients(unknown, BARE, OUTER, {})
+    assert first == coefficients(open_, BARE, OUTER, {})[0]
+    row = rows.rows[0]
+    assert (row.path, row.value, row.lowest, row.highest) == ("ice.aerodynamics.catalogue", 0.0, 0.0, 1.0)
+    assert row.choices == ("c11", "full")
+    second, others = coefficients(unknown, BARE, OUTER, {row.path: 1.0, "ice.aerodynamics_at_rest.vertical": 0.2})
+    assert second == whole.aerodynamics
+    assert [one.path for one in others.rows] == [one.path for one in rows.rows]
+    with pytest.raises(InvalidSpec, match="must be a whole number, of c11, full"):
+        coefficients(unknown, BARE, OUTER, {row.path: 0.5})
+    with pytest.raises(InvalidSpec, match="each with a name"):
+        UnknownShape((open_,), ())

@@ -22,6 +22,7 @@ def test_forms_beyond_the_explicit_line_are_told(name: str) -> None:
         ("conductor", "axial_rigidity_n", True),
         ("span", "horizontal_tension_n", True),
         ("conductor", "mass_kg_per_m", False),
+        ("ice", "aerodynamics", True),
         ("span", "length_m", False),
         ("ice", "eccentricity_y_m", False),
     ],

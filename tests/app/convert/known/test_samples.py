@@ -7,6 +7,7 @@ import pytest
 
 from app import convert
 from app.convert.known.samples import TIED, Analysed, with_what_is_known
+from app.reference.ice_shapes import ICE_SHAPES
 from app.schemas.faults import BadInput
 from engine import spec
 from engine.analysis import analyse
@@ -95,3 +96,22 @@ def test_what_is_assumed_of_tied_phases_is_listed_and_said_not_to_be_sampled() -
     assert told.warnings == (*result.warnings, TIED)
     assert (told.uncertainty, told.sensitivities) == ((), ())
     assert {row.path for row in told.assumptions} >= {"damping.vertical_ratio", "conductor.torsional_rigidity_n_m2"}
+
+
+def test_a_shape_that_nobody_knows_is_drawn_among_those_of_the_catalogue_and_decides() -> None:
+    line = {**LINES["of unknown shape"], "phases": []}
+    del line["climate"]
+    asked = {"samples": 32, "seed": 1}
+    found = tables({"line": line, "analysis": {**ANALYSIS, "wind_speeds_m_per_s": [10.0], "uncertainty": asked}})
+    (row,) = (row for row in found["sensitivities"] if row["distribution"] == "choice")
+    assert row["path"] == "ice.aerodynamics.catalogue"
+    (assumed,) = (one for one in found["assumptions"] if one["path"] == row["path"])
+    assert (assumed["value"], assumed["lowest"], assumed["highest"]) == (0.0, 0.0, len(ICE_SHAPES) - 1.0)
+    assert all(shape.name in assumed["source"] for shape in ICE_SHAPES)
+    (verdict,) = found["verdict"]
+    assert verdict["what_decides"] == "ice.aerodynamics.catalogue"
+    # One of both shapes is stable by Den Hartog's criterion, and a Sobol sequence draws each for half of the samples.
+    assert verdict["probability_gallops"] == pytest.approx(0.5, abs=0.1)
+    assert f"the ice shape decides: probability {verdict['probability_gallops']:.2g}" in verdict["sentence"]
+    named = {**line, "ice": {**line["ice"], "aerodynamics": {"catalogue": ICE_SHAPES[0].name}}}
+    assert convert.resolve_document(named)["line"] == convert.resolve_document(line)["line"]
