@@ -39,6 +39,7 @@ from app.routes import (
     lines,
     own_aerodynamics,
     own_conductors,
+    own_documentation,
     previews,
     reference,
     results,
@@ -63,9 +64,8 @@ class Service(FastAPI):
     def openapi(self) -> dict[str, Any]:
         """Return the OpenAPI document, built once."""
         if not self.openapi_schema:
-            self.openapi_schema = documentation.guarded(
-                documentation.as_sent(documentation.with_nulls(super().openapi()))
-            )
+            made = documentation.as_sent(documentation.with_nulls(super().openapi()))
+            self.openapi_schema = documentation.guarded(own_documentation.with_both_forms(made))
         return self.openapi_schema
 
     def build_middleware_stack(self) -> ASGIApp:

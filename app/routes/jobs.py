@@ -20,7 +20,7 @@ from app.jobs import idempotency, job_records
 from app.jobs.idempotency import Key, KeyTaken
 from app.jobs.job_records import CancelOutcome, JobFilters, Submission
 from app.jobs.submissions import Keyed, Order
-from app.routes import documentation
+from app.routes import documentation, own_documentation
 from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers, vet_webhook
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, replayed_answer, stored_answer
 from app.routes.job_status import find_job, find_status, job_address, job_document
@@ -34,6 +34,7 @@ from app.tables import ENDED, Job, JobStatus
 router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=KnownLineRoute)
 
 _MOST_ON_PAGE = 500
+_REQUESTS = documentation.REQUESTS | own_documentation.KNOWN_REQUESTS
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
 
 
@@ -113,14 +114,14 @@ async def _check(request: Request, document: schemas.JobRequest) -> None:
 )
 async def submit_job(
     request: Request,
-    document: Annotated[schemas.JobRequest, Body(openapi_examples=documentation.REQUESTS)],
+    document: Annotated[schemas.JobRequest, Body(openapi_examples=_REQUESTS)],
     key: KeyOf,
     may_reuse: MayReuse,
 ) -> Response:
     """Accept a line for analysis. The service stores the job before it answers, whether or not a worker is running.
 
     The line may be one as an engineer knows it, as `POST /v1/lines/resolve` takes it; the job then holds the explicit
-    line. Its design wind does not act on an analysis.
+    line. The design wind of a line is one of the wind speeds where the analysis names none.
 
     If the owner has stored results of the same input by this engine version, from a job or a line of a batch, the job
     ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new

@@ -67,7 +67,7 @@ def test_every_example_is_valid_by_its_own_schema(document: dict[str, Any]) -> N
         model = INLINED.get(place) or model_of(content)
         if media_type in {"application/json", "application/problem+json"} and model is not None:
             for value in examples(content):
-                model.model_validate(value)
+                model.model_validate(convert.explicit_request(value) if model is schemas.JobRequest else value)
                 checked += 1
         elif media_type in {"application/json", "application/problem+json"} and "{table}" not in place:
             # An address of tables has an example for each, which tests/app/test_result_tables.py holds.
@@ -79,7 +79,22 @@ def test_every_request_example_can_be_run(document: dict[str, Any]) -> None:
     (content,) = document["paths"]["/v1/jobs"]["post"]["requestBody"]["content"].values()
     assert len(examples(content)) >= 6
     for value in examples(content):
-        assert faults(value) == []
+        assert faults(convert.explicit_request(value)) == []
+
+
+def test_jobs_and_batches_take_a_line_in_either_form(document: dict[str, Any]) -> None:
+    components = document["components"]["schemas"]
+    forms = components["JobRequest"]["properties"]["line"]["anyOf"]
+    assert [form["$ref"].rpartition("/")[2] for form in forms] == ["Line", "KnownLine"]
+    spelled, engineers = components["JobRequest"]["properties"]["line"]["examples"]
+    assert schemas.Line.model_validate(spelled)
+    assert known.KnownLine.model_validate(engineers)
+    posted = document["paths"]["/v1/batches"]["post"]["requestBody"]["content"]["application/json"]["schema"]
+    spelled, engineers = posted["properties"]["lines"]["items"]["anyOf"]
+    assert spelled["title"] != engineers["title"]
+    assert all("reference" in form["properties"] for form in (spelled, engineers))
+    assert "everyday" in components["KnownSpan"]["properties"]
+    assert {"section", "design_wind_m_per_s"} <= engineers["properties"].keys()
 
 
 def test_every_problem_that_an_operation_can_answer_is_named(document: dict[str, Any]) -> None:

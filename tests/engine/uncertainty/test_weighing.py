@@ -9,6 +9,7 @@ from engine.known.provenance import Assumption, Origin
 from engine.progress import Progress, driven, finished
 from engine.result import Result
 from engine.spec import Uncertainty
+from engine.uncertainty.inputs import Choice, Interval
 from engine.uncertainty.weighing import Unknowns, analyse_with_samples, intervals
 from tests.builders import run
 from tests.engine.uncertainty.den_hartog_line import ASKED, INPUTS, RATIO, UNKNOWNS, WINDS, constant, line_of, onset
@@ -128,4 +129,12 @@ def test_only_assumed_values_with_a_range_are_uncertain() -> None:
         Assumption("d", 2.0, "", Origin.ASSUMED, "assumed", 1.0, 3.0),
     )
     found = intervals(rows)
-    assert [(one.path, one.logarithmic) for one in found] == [("c", False), ("d", True)]
+    assert [(one.path, isinstance(one, Interval) and one.logarithmic) for one in found] == [("c", False), ("d", True)]
+
+
+def test_a_choice_among_several_is_one_uncertain_input() -> None:
+    rows = (
+        Assumption("shape", 0.0, "", Origin.ASSUMED, "assumed", 0.0, 2.0, ("a", "b", "c")),
+        Assumption("only", 0.0, "", Origin.ASSUMED, "assumed", 0.0, 0.0, ("a",)),
+    )
+    assert intervals(rows) == (Choice("shape", 0.0, (1.0, 1.0, 1.0)),)
