@@ -42,6 +42,7 @@ from app.routes import (
     own_documentation,
     previews,
     reference,
+    remedies,
     results,
 )
 from app.runtime import telemetry
@@ -115,9 +116,11 @@ def create_app(settings: Settings | None = None) -> Service:
     limits = {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes}
     problems.install(app, limits, frame.shown_problem)
     app.add_middleware(HeadAsGet)
-    for module in (jobs, lines, previews, results, batch_intake, batches, batch_results, batch_ranking, clearance):
+    for module in (jobs, remedies, lines, previews, results, batch_intake, batches, batch_results):
         app.include_router(module.router)
-    for module in (events, deliveries, aerodynamics, own_aerodynamics, own_conductors, reference, health, explorer):
+    for module in (batch_ranking, clearance, events, deliveries, aerodynamics, own_aerodynamics, own_conductors):
+        app.include_router(module.router)
+    for module in (reference, health, explorer):
         app.include_router(module.router)
     for router in views.routers():
         app.include_router(router)

@@ -2,7 +2,7 @@
 
 import typer
 
-from app.cli import catalogue, climate, keys, lines, operate, service
+from app.cli import catalogue, climate, keys, lines, operate, remedies, service
 
 app = typer.Typer(
     help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
@@ -12,6 +12,7 @@ app = typer.Typer(
 )
 for command in (
     lines.analyse,
+    remedies.remedies,
     service.serve,
     service.api,
     service.worker,

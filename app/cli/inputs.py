@@ -22,13 +22,16 @@ def read_request(
     study: Path | None,
     placement: Path | None = None,
     defaults: Path | None = None,
+    *,
+    remedies: Path | None = None,
 ) -> Any:
     """Build the request from its files; a file may add to a whole request, but not repeat a part of it.
 
     A file of a GIS or CIM program, told by its name, must hold one line.
     """
     document = _document(line, None if defaults is None else _read_json(defaults))
-    for name, path in (("analysis", analysis), ("study", study), ("placement", placement)):
+    parts = {"analysis": analysis, "study": study, "placement": placement, "remedies": remedies}
+    for name, path in parts.items():
         if path is None:
             continue
         if name in document:

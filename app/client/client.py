@@ -16,7 +16,7 @@ from app.answers.results import ResultDocument, TableName
 from app.client import uploads
 from app.client.connection import Connection, ServiceError, Show
 from app.client.uploads import Lines, Upload, as_json
-from app.schemas import Analysis, Line, Study
+from app.schemas import Analysis, Line, Remedies, Study
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,10 +102,27 @@ class Client:
 
     def submit_document(self, document: Mapping[str, Any], *, idempotency_key: str | None = None) -> JobDocument:
         """Submit a whole request; with the idempotency key of an earlier request, return that request's job."""
-        # Send NaN as it is: the service names the field in its answer.
-        text = json.dumps(document).encode()
-        answer = self._connection.post("/v1/jobs", lambda: text, {"Content-Type": "application/json"}, idempotency_key)
-        return self._connection.read(JobDocument, answer)
+        return self._posted("/v1/jobs", document, idempotency_key)
+
+    def compare_remedies(
+        self,
+        line: Line | Mapping[str, Any],
+        analysis: Analysis | Mapping[str, Any] | None = None,
+        remedies: Remedies | Mapping[str, Any] | None = None,
+    ) -> list[Json]:
+        """Compare a line with remedies, the usual ones if none are named, and return the rows of the table `remedies`.
+
+        Raises
+        ------
+        JobFailed
+            If the job failed.
+        """
+        given = {"line": line, "analysis": analysis, "remedies": remedies}
+        document = {name: as_json(part) for name, part in given.items() if part is not None}
+        job = self.wait(self._posted("/v1/remedies", document, None))
+        if job.status != "successful":
+            raise JobFailed(job)
+        return self.rows(job, "remedies")
 
     def job(self, job_id: UUID | str) -> JobDocument:
         """Return the status of a job."""
@@ -220,6 +237,12 @@ class Client:
     def resubmit(self, batch: BatchDocument) -> BatchDocument:
         """Run the failed lines of a batch again."""
         return self._connection.read(BatchDocument, self._connection.post(f"{_address(batch)}/resubmit"))
+
+    def _posted(self, address: str, document: Mapping[str, Any], idempotency_key: str | None) -> JobDocument:
+        # Send NaN as it is: the service names the field in its answer.
+        text = json.dumps(document).encode()
+        answer = self._connection.post(address, lambda: text, {"Content-Type": "application/json"}, idempotency_key)
+        return self._connection.read(JobDocument, answer)
 
     def _get(self, model: type[Model], address: str) -> Model:
         return self._connection.read(model, self._connection.get(address))

@@ -14,6 +14,7 @@ from app.convert.known import (
     resolve_line,
 )
 from app.convert.mode_shapes import mode_shapes
+from app.convert.remedies import remedies
 from app.convert.run import Advance, PointResult, run
 from app.convert.stack import STACK, NumberedLine, kept_analysis, read_analysis, read_line, run_stack, seconds_a_line
 from app.convert.tables import TABLES_BY_ADDRESS, columns, example_row, example_tables
@@ -52,6 +53,7 @@ __all__ = [
     "read",
     "read_analysis",
     "read_line",
+    "remedies",
     "request_faults",
     "resolve_document",
     "resolve_line",

@@ -9,8 +9,10 @@ from pydantic import ValidationError
 from app import schemas
 from app.convert import study
 from app.convert.assemble import SoundParts, gather
+from app.convert.known import known_of
 from app.convert.parts import placement
 from app.convert.pointers import json_names, to_pointer
+from app.convert.remedies import remedies_faults
 from app.convert.sound_parts import SoundAxis, pruned, sound_analysis, sound_axes, sound_parts
 from app.convert.study import Ground
 from app.schemas.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer
@@ -43,7 +45,7 @@ def request_faults(request: schemas.JobRequest) -> list[Fault]:
     sound = [SoundAxis(i, axis.parameters, list(enumerate(axis.values))) for i, axis in enumerate(axes)]
     parts = SoundParts.of(request.line)
     faults = _combined({}, parts, request.analysis, sound)
-    return faults or _placement_faults(request)
+    return faults or _placement_faults(request) or _remedies_faults(request)
 
 
 def _placement_faults(request: schemas.JobRequest) -> list[Fault]:
@@ -60,6 +62,15 @@ def _placement_faults(request: schemas.JobRequest) -> list[Fault]:
         placed = zip(pointers, error.faults, strict=True)
         return [Fault(pointer, "inconsistent", fault.rule) for pointer, fault in placed]
     return []
+
+
+def _remedies_faults(request: schemas.JobRequest) -> list[Fault]:
+    """Return the faults of the remedies of a request that is valid without them."""
+    if request.remedies is None:
+        return []
+    line, analysis, _ = gather(SoundParts.of(request.line), request.analysis)
+    assert line is not None, "a line without faults was gathered"
+    return remedies_faults(request.remedies, line, analysis, known_of(request))
 
 
 def with_further_faults(document: object, faults: Sequence[Fault]) -> list[Fault]:

@@ -208,6 +208,7 @@ def placement(part: schemas.Placement) -> spec.Placement:
         generations=part.generations,
         population=part.population,
         seed=part.seed,
+        separation=part.separation,
     )
 
 

@@ -15,6 +15,7 @@ from app.convert.assemble import SoundParts, gather
 from app.convert.fit import doubts_of
 from app.convert.known import known_of
 from app.convert.ranking_figures import ranking_figures
+from app.convert.remedies import compared
 from engine import ENGINE_VERSION, spec
 from engine.outcome import InvalidSpec
 from engine.progress import Progress, translated
@@ -175,6 +176,8 @@ def _assumptions(request: schemas.JobRequest) -> tuple[AssumptionRow, ...]:
 def _steps(request: schemas.JobRequest, line: spec.Line, analysis: spec.Analysis) -> Generator[Progress, None, Result]:
     """Return the computation of one point, not yet started; samples belong to a line by itself."""
     # The API and `galloping --help` need no solver, and an analysis needs no optimizer.
+    if request.remedies is not None:
+        return compared(request, line, analysis, known_of(request))
     asked = parts.uncertainty(request.analysis.uncertainty)
     known = None if request.study or request.placement or asked.samples == 0 else known_of(request)
     if known is not None:

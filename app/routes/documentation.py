@@ -11,6 +11,7 @@ from app.answers.results import ResultDocument
 from app.export.formats import PARQUET, XLSX, csv_text
 from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document
 from app.reference.source_lines import EXAMPLE_NAMES, example
+from app.schemas.devices.remedies import EXAMPLE as REMEDIES
 from app.schemas.faults import Fault
 from app.schemas.fields import example_of
 from app.schemas.placement import EXAMPLE as PLACEMENT
@@ -136,6 +137,20 @@ REQUESTS: dict[str, Any] = {
             "line": example("c11-twin"),
             "analysis": {"models": ["hybrid"], "wind_speeds_m_per_s": [4.0]},
             "placement": PLACEMENT,
+        },
+    },
+}
+REMEDIES_REQUESTS: dict[str, Any] = {
+    "usual": {
+        "summary": "The usual remedies",
+        "value": {"line": example("c11-twin"), "analysis": {"wind_speeds_m_per_s": [6.0]}},
+    },
+    "named": {
+        "summary": "Three remedies, one of them placed by search",
+        "value": {
+            "line": example("c11-twin"),
+            "analysis": {"models": ["hybrid"], "wind_speeds_m_per_s": [6.0]},
+            "remedies": REMEDIES,
         },
     },
 }

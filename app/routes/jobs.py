@@ -86,9 +86,10 @@ class ListQuery(BaseModel):
 
 
 async def _check(request: Request, document: schemas.JobRequest) -> None:
-    # Checking every point of a study takes time; checking a single line takes less than a switch to a thread.
+    # Checking all points of a study, or remedies, takes time; a single line takes less than a switch to a thread.
     check = partial(convert.request_faults, document)
-    faults = check() if document.study is None else await to_thread.run_sync(check)
+    quick = document.study is None and document.remedies is None
+    faults = check() if quick else await to_thread.run_sync(check)
     if faults:
         raise invalid_document(faults)
     if document.webhook_url is not None:
@@ -126,6 +127,17 @@ async def submit_job(
     If the owner has stored results of the same input by this engine version, from a job or a line of a batch, the job
     ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new
     computation.
+    """
+    return await accepted_job(request, document, key, may_reuse=may_reuse)
+
+
+async def accepted_job(request: Request, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Response:
+    """Check a request, store it as a job and send it; or answer as before, if its key was used.
+
+    Raises
+    ------
+    ProblemError
+        422 with every fault of the document.
     """
     await _check(request, document)
     order = _order(request.state.caller, document, key, may_reuse=may_reuse)

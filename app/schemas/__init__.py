@@ -2,7 +2,15 @@
 
 from app.schemas.analysis import Analysis, Uncertainty, WindSpeedRange
 from app.schemas.climate import Climate, Icing, WindSector
-from app.schemas.devices import AirflowSpoiler, DetuningPendulum, Device, InterphaseSpacer, Spacer, TorsionalDamper
+from app.schemas.devices import (
+    AirflowSpoiler,
+    DetuningPendulum,
+    Device,
+    InterphaseSpacer,
+    Remedies,
+    Spacer,
+    TorsionalDamper,
+)
 from app.schemas.environment import (
     Aerodynamics,
     AerodynamicsAtRest,
@@ -47,6 +55,7 @@ __all__ = [
     "PhaseLine",
     "Placement",
     "ProfilePoint",
+    "Remedies",
     "Section",
     "SectionSpan",
     "Spacer",

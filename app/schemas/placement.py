@@ -129,6 +129,15 @@ class Placement(Document):
         examples=[0],
         json_schema_extra={"unit": "1"},
     )
+    separation: float | None = quantity(
+        "separation_m",
+        "Smallest distance of placed devices from one another and from those of the line, spacers apart; a twentieth "
+        "of the span if null",
+        "m",
+        ON_SPAN,
+        6.0,
+        None,
+    )
 
 
 EXAMPLE = {"device": _PENDULUMS, "objective": "highest_critical_wind_speed"}

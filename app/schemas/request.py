@@ -9,6 +9,8 @@ from pydantic_core import PydanticCustomError
 
 from app.reference.source_lines import example
 from app.schemas.analysis import Analysis
+from app.schemas.devices.remedies import EXAMPLE as REMEDIES
+from app.schemas.devices.remedies import Remedies
 from app.schemas.fields import Document
 from app.schemas.line import Line
 from app.schemas.placement import EXAMPLE as PLACEMENT
@@ -102,7 +104,7 @@ def _distinct_numbers(values: list[Any]) -> bool:
 
 
 class JobRequest(Document):
-    """A line with its analysis and, optionally, a study over its fields or a search for the placement of devices."""
+    """A line with its analysis and, optionally, a study over its fields, a placement, or remedies to compare."""
 
     line: Line = Field(description="The line", examples=[example("c11-twin")])
     analysis: Analysis = Field(default=Analysis(), description="What to compute", examples=[{"loops": [1, 2]}])
@@ -111,6 +113,12 @@ class JobRequest(Document):
     )
     placement: Placement | None = Field(
         default=None, description="Devices to place, if any; not together with a study", examples=[PLACEMENT]
+    )
+    remedies: Remedies | None = Field(
+        default=None,
+        description="Remedies to compare with the line as it is, if any; not together with a study or a placement. "
+        "Unless analysis.models says otherwise, the hybrid model is the only one",
+        examples=[REMEDIES],
     )
 
     webhook_url: str | None = Field(
@@ -131,10 +139,31 @@ class JobRequest(Document):
     def _one_kind(self) -> Self:
         if self.study is not None and self.placement is not None:
             raise PydanticCustomError("exclusive", "must have a study or a placement, not both")
+        if self.remedies is not None and (self.study is not None or self.placement is not None):
+            raise PydanticCustomError("exclusive", "must have no study or placement beside remedies")
         object.__setattr__(self, "analysis", self.analysis.with_design_wind(self.line.design_wind))  # before it is used
         return self
 
+    @model_validator(mode="before")
+    @classmethod
+    def _hybrid_for_remedies(cls, given: Any) -> Any:
+        """Compare remedies by the hybrid model alone where no models are named: the other one takes minutes."""
+        if not isinstance(given, dict) or given.get("remedies", cls.model_fields["remedies"].default) is None:
+            return given
+        analysis = given.get("analysis", {})
+        if not isinstance(analysis, dict) or "models" in analysis:
+            return given
+        return {**given, "analysis": {**analysis, "models": ["hybrid"]}}
+
     def kept(self) -> dict[str, Any]:
         """Return the request with all defaults, as it is stored and returned, without parts that are absent."""
-        absent = {name for name in ("study", "placement", "known") if getattr(self, name) is None}
+        absent = {name for name in ("study", "placement", "remedies", "known") if getattr(self, name) is None}
         return self.model_dump(mode="json", by_alias=True, exclude={*absent, "webhook_url"})
+
+
+class RemediesRequest(JobRequest):
+    """A line with the remedies to compare with it: those named, or the usual ones."""
+
+    remedies: Remedies = Field(
+        default=Remedies(), description="Remedies to compare with the line as it is", examples=[REMEDIES]
+    )

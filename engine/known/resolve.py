@@ -7,7 +7,7 @@ from engine.known import estimators
 from engine.known.bare_conductor import bare_conductor
 from engine.known.borrowed_coefficients import coefficients
 from engine.known.change_of_state import HungState
-from engine.known.description import KnownLine, KnownSpan
+from engine.known.description import EverydayState, KnownLine, KnownSpan
 from engine.known.estimate import Estimate
 from engine.known.everyday import iced_span
 from engine.known.ice_sections import IceSection
@@ -15,7 +15,7 @@ from engine.known.iced_conductor import iced_conductor
 from engine.known.provenance import Assumption, Origin, Provenance, assumed, computed, given
 from engine.mechanics.static_profile import static_profile
 from engine.outcome import Fault, require
-from engine.spec import Aerodynamics, Conductor, Damping, Ice, Line, Span, Supports, Wind
+from engine.spec import Aerodynamics, ChangedTension, Conductor, Damping, Ice, Line, Span, Supports, Wind
 
 DIRECTIONS = ("vertical", "horizontal", "torsional")
 AIR = Estimate(
@@ -74,6 +74,40 @@ def resolve(known: KnownLine, chosen: Mapping[str, float] | None = None) -> Reso
     line = _line(known, rows, hung.span if hung else known.span, aerodynamics)
     states = (hung.everyday, hung.iced) if hung else (None, None)
     return Resolved(line, rows.rows, iced.section, *states)
+
+
+def resolve_with_tension(
+    known: KnownLine, tension: ChangedTension, chosen: Mapping[str, float] | None = None
+) -> Resolved:
+    """Return the explicit line of a line strung to another tension, everything else as known or chosen.
+
+    A known everyday tension is changed, and the iced one follows from it by the change of state. A tension that is
+    known under ice is changed there.
+
+    Raises
+    ------
+    InvalidSpec
+        As `resolve`, also if the other tension is above the rated strength.
+    """
+    values = dict(chosen or {})
+    before = resolve(known, values)
+    if before.everyday is None or not isinstance(known.span, KnownSpan):
+        return replace(before, line=with_tension(before.line, tension))
+    usual = known.span.everyday
+    everyday = EverydayState(
+        horizontal_tension=tension.of(before.everyday.horizontal_tension),
+        temperature=None if usual is None else usual.temperature,
+        wind_pressure=0.0 if usual is None else usual.wind_pressure,
+    )
+    values.pop("span.everyday.share_of_rated_strength", None)  # which was assumed
+    return resolve(replace(known, span=replace(known.span, everyday=everyday)), values)
+
+
+def with_tension(line: Line, tension: ChangedTension) -> Line:
+    """Return an explicit line with another horizontal tension under ice, whatever measure of tightness it says."""
+    before = float(static_profile((line,)).horizontal_tension[0])
+    span = replace(line.span, horizontal_tension=tension.of(before), catenary_parameter=None, sag=None)
+    return replace(line, span=span)
 
 
 def _line(known: KnownLine, rows: Provenance, span: KnownSpan | Span, aerodynamics: Aerodynamics) -> Line:

@@ -30,6 +30,7 @@ from engine.result.motions import (
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 from engine.result.phases import ClearanceMethod, PhaseClearanceRow, PhaseModeRow
+from engine.result.remedies import Change, RemedyRow
 from engine.result.risk import RiskRow
 from engine.result.tables import TABLES, Result, Tables
 from engine.result.uncertainty import SensitivityRow, UncertaintyRow
@@ -39,6 +40,7 @@ __all__ = [
     "TABLES",
     "AssumptionRow",
     "BifurcationRow",
+    "Change",
     "ClearanceMethod",
     "Column",
     "CriticalWindSpeedRow",
@@ -59,6 +61,7 @@ __all__ = [
     "PhaseModeRow",
     "PhysicsRow",
     "PlacedDeviceRow",
+    "RemedyRow",
     "Result",
     "RiskRow",
     "SectionModeRow",

@@ -28,6 +28,7 @@ from engine.result.motions import (
 )
 from engine.result.over_field import FollowedBifurcationRow, FollowedCycleRow
 from engine.result.phases import PhaseClearanceRow, PhaseModeRow
+from engine.result.remedies import RemedyRow
 from engine.result.risk import RiskRow
 from engine.result.uncertainty import SensitivityRow, UncertaintyRow
 from engine.result.verdict import VerdictRow
@@ -94,6 +95,10 @@ class Tables:
         Title("Effects of devices; empty unless device_effect is reported or devices were placed"),
     ] = ()
     placements: Annotated[tuple[PlacedDeviceRow, ...], Title("Devices that a search has placed")] = ()
+    remedies: Annotated[
+        tuple[RemedyRow, ...],
+        Title("The line without and with each remedy tried; empty unless remedies were asked for"),
+    ] = ()
     followed_cycles: Annotated[
         tuple[FollowedCycleRow, ...],
         Title("Cycles on branches over the field of a study; empty without follow"),

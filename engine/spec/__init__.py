@@ -51,7 +51,16 @@ from engine.spec.environment import (
 from engine.spec.line import Line, ice_properties
 from engine.spec.phases import Phase, own_line
 from engine.spec.physics import PhysicsRequest, with_physics, with_section
-from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement
+from engine.spec.placement import Objective, PendulumChoice, Placement, SpoilerChoice, check_placement, separation_on
+from engine.spec.remedies import (
+    AddedDevices,
+    AddedSpoiler,
+    ChangedTension,
+    MovedDevices,
+    Remedies,
+    Remedy,
+    check_remedies,
+)
 from engine.spec.section import Section, SectionSpan, SuspensionString
 from engine.spec.span import Bundle, Conductor, CrossSection, Span, Support, Supports, Yoke
 from engine.spec.uncertainty import Uncertainty
@@ -62,6 +71,8 @@ __all__ = [
     "THIS",
     "TURN",
     "YEAR_HOURS",
+    "AddedDevices",
+    "AddedSpoiler",
     "AerodynamicLoad",
     "AerodynamicModel",
     "Aerodynamics",
@@ -70,6 +81,7 @@ __all__ = [
     "Analysis",
     "BlowOut",
     "Bundle",
+    "ChangedTension",
     "Check",
     "Climate",
     "Closure",
@@ -91,6 +103,7 @@ __all__ = [
     "LoopCompetition",
     "MeasuredCoefficients",
     "Model",
+    "MovedDevices",
     "Objective",
     "PendulumChoice",
     "Phase",
@@ -99,6 +112,8 @@ __all__ = [
     "Placement",
     "PointDevice",
     "Ranged",
+    "Remedies",
+    "Remedy",
     "Section",
     "SectionSpan",
     "Spacer",
@@ -118,8 +133,10 @@ __all__ = [
     "Yoke",
     "check_compatible",
     "check_placement",
+    "check_remedies",
     "ice_properties",
     "own_line",
+    "separation_on",
     "with_physics",
     "with_section",
 ]

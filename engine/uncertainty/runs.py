@@ -73,7 +73,7 @@ def outcomes(
 
 def _outcomes(chosen: Sequence[Mapping[str, float]], line_of: LineOf, asked: Analysis) -> list[SampleOutcome]:
     lines = [_line(values, line_of) for values in chosen]
-    results = iter(_results([line for line in lines if isinstance(line, Line)], asked))
+    results = iter(analysed([line for line in lines if isinstance(line, Line)], asked))
     answers: list[SampleOutcome] = []
     for line in lines:
         answer = next(results) if isinstance(line, Line) else line
@@ -94,7 +94,7 @@ def _line(values: Mapping[str, float], line_of: LineOf) -> Line | State:
         return State.UNKNOWN
 
 
-def _results(lines: Sequence[Line], asked: Analysis) -> list[Result | State]:
+def analysed(lines: Sequence[Line], asked: Analysis) -> list[Result | State]:
     """Analyse a stack; if it fails, its halves, so that only the sample that fails has no answer."""
     if not lines:
         return []
@@ -104,4 +104,4 @@ def _results(lines: Sequence[Line], asked: Analysis) -> list[Result | State]:
         if len(lines) == 1:
             return [State.IMPOSSIBLE if isinstance(error, InvalidSpec) else State.UNKNOWN]
     middle = len(lines) // 2
-    return [*_results(lines[:middle], asked), *_results(lines[middle:], asked)]
+    return [*analysed(lines[:middle], asked), *analysed(lines[middle:], asked)]

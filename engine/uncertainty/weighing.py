@@ -1,6 +1,6 @@
 """Analyse a line together with samples of what is assumed of it."""
 
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -11,6 +11,7 @@ from engine.report.verdict import verdict
 from engine.result import Result
 from engine.spec import Analysis, Line, Uncertainty
 from engine.uncertainty.inputs import Choice, Interval, Uncertain
+from engine.uncertainty.outcomes import SampleOutcome
 from engine.uncertainty.risk import risk_over_samples
 from engine.uncertainty.runs import LineOf, outcomes
 from engine.uncertainty.sampling import sobol_samples
@@ -29,6 +30,15 @@ class Unknowns:
 
     inputs: tuple[Uncertain, ...]
     line_of: LineOf
+
+
+@dataclass(frozen=True, slots=True)
+class Weighed:
+    """The result of a line, and what became of its samples: chosen values by path, and outcomes."""
+
+    result: Result
+    chosen: tuple[Mapping[str, float], ...] = ()
+    outcomes: tuple[SampleOutcome, ...] = ()
 
 
 def intervals(assumptions: Iterable[Assumption]) -> tuple[Uncertain, ...]:
@@ -75,8 +85,15 @@ def analyse_with_samples(
     InvalidSpec
         If the line itself cannot answer the analysis.
     """
+    return (yield from weighed_with_samples(line, analysis, unknowns, asked)).result
+
+
+def weighed_with_samples(
+    line: Line, analysis: Analysis, unknowns: Unknowns, asked: Uncertainty
+) -> Generator[Progress, None, Weighed]:
+    """Do as `analyse_with_samples`, and return the samples with their outcomes as well."""
     if not unknowns.inputs or asked.samples == 0:
-        return (yield from analyse(line, analysis))
+        return Weighed((yield from analyse(line, analysis)))
     result = yield from translated(analyse(line, analysis), _before)
     return (yield from translated(with_samples(result, line, analysis, unknowns, asked), _after))
 
@@ -101,7 +118,8 @@ def with_samples(
     if of_line.risk and line.climate is not None:
         weighed = replace(weighed, risk=risk_over_samples(weighed.risk, of_samples, line.climate))
     yield Progress(1.0, "done")
-    return replace(weighed, verdict=(verdict(weighed, line, analysis),))
+    weighed = replace(weighed, verdict=(verdict(weighed, line, analysis),))
+    return Weighed(weighed, tuple(chosen[: asked.samples]), tuple(of_samples))
 
 
 def _before(step: Progress) -> Progress:

@@ -41,7 +41,7 @@ def analyse_known(
         return _unsampled((yield from analyse(line, analysis)))
     assumptions = resolve(known).assumptions
     steps = analyse_with_samples(line, analysis, _unknowns(known, assumptions, analysis), asked)
-    return _in_document_names((yield from steps), assumptions)
+    return in_document_names((yield from steps), assumptions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ def with_what_is_known(
     if line.interphase_spacers:
         return _unsampled(listed)
     steps = with_samples(listed, line, analysis, _unknowns(known, assumptions, analysis), asked)
-    return _in_document_names((yield from steps), assumptions)
+    return in_document_names((yield from steps), assumptions)
 
 
 def _unsampled(result: Result) -> Result:
@@ -79,7 +79,8 @@ def _unknowns(known: KnownLine, assumptions: Sequence[Assumption], analysis: spe
     return Unknowns(intervals(assumptions), line_of)
 
 
-def _in_document_names(result: Result, assumptions: Sequence[Assumption]) -> Result:
+def in_document_names(result: Result, assumptions: Sequence[Assumption]) -> Result:
+    """Return a result with the document's names and units of the assumed values."""
     units = {row.path: row.unit for row in assumptions}
     verdicts = tuple(
         row if row.what_decides is None else replace(row, what_decides=document_path(row.what_decides))

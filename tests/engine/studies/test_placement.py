@@ -24,6 +24,7 @@ from engine.spec import (
     Spacer,
     SpoilerChoice,
 )
+from engine.studies.both_ends import mirrored
 from engine.studies.placement import place
 from tests.builders import ICE_AT_40, only, run, source_line, stable_cycles
 
@@ -83,12 +84,16 @@ def test_the_lowest_amplitude_is_sought_at_the_wind_speeds_asked_for() -> None:
     choice = PendulumChoice(1, (20.0, 50.0), (5.0, 20.0), (0.2, 0.5))
     result, _ = placed(source_line(2), asked, Placement(choice, Objective.LOWEST_AMPLITUDE, 4, 8))
     (row,) = result.placements
+    pendulum = DetuningPendulum(row.position_m or 0.0, row.mass_kg or 0.0, row.arm_m or 0.0)
+    seen_from_right = run(mirrored(replace(source_line(2), devices=(pendulum,))), asked)
     sizes = [
-        math.hypot(r.vertical_m or 0.0, r.horizontal_m or 0.0) for r in stable_cycles(result, loops=2, wind_speed=4.0)
+        math.hypot(r.vertical_m or 0.0, r.horizontal_m or 0.0)
+        for seen in (result, seen_from_right)
+        for r in stable_cycles(seen, loops=2, wind_speed=4.0)
     ]
     assert row.objective_value == pytest.approx(max(sizes), rel=1e-6)
     (effect,) = result.device_effects
-    assert effect.amplitude_with_m == pytest.approx(row.objective_value)
+    assert effect.amplitude_with_m == pytest.approx(sizes[0])
     assert effect.amplitude_without_m is not None
     assert row.objective_value is not None
     assert row.objective_value < 0.5 * effect.amplitude_without_m
@@ -115,12 +120,13 @@ def test_progress_rises_and_the_same_seed_finds_the_same() -> None:
     assert placed(source_line(1), ONSET, search)[0].placements == first.placements
 
 
-def test_where_no_candidate_is_statically_stable_there_is_no_value() -> None:
+def test_where_no_candidate_is_statically_stable_no_device_is_placed() -> None:
     line = source_line(1)
     line = replace(line, span=replace(line.span, length=400.0), ice=Ice(ICE_AT_40, 4e-3, 0.0))
     choice = PendulumChoice(1, (1.0, 2.0), (0.1, 0.2), (0.1, 0.1))
     result, _ = placed(line, ONSET, Placement(choice, generations=2, population=5))
-    assert result.placements[0].objective_value is None
+    assert result.placements == ()
+    assert any("No improvement found" in warning for warning in result.warnings)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,31 @@
+"""`galloping remedies` prints a table for people, and JSON where it is asked for."""
+
+import json
+from pathlib import Path
+
+from app.reference.source_lines import example
+from tests.app.command_line import galloping, refused
+
+
+def test_the_table_and_the_result(tmp_path: Path) -> None:
+    line, tried = tmp_path / "line.json", tmp_path / "remedies.json"
+    analysis = {"loops": [2], "wind_speeds_m_per_s": [6.0]}
+    line.write_text(json.dumps({"line": example("c11-twin"), "analysis": analysis}))
+    remedy = {"type": "detuning_pendulum", "positions_m": [31.47, 94.41], "mass_kg": 15.0, "arm_m": 0.3}
+    tried.write_text(json.dumps({"tried": [remedy]}))
+    output = tmp_path / "result.json"
+    ended = galloping("remedies", str(line), "--remedies", str(tried), "--output", str(output))
+    assert ended.returncode == 0, ended.stderr
+    assert "detuning pendulum" in ended.stdout
+    assert "Better: the onset rises from 2.25 to" in ended.stdout
+    result = json.loads(output.read_text())
+    assert [row["rank"] for row in result["remedies"]] == [None, 1]
+    assert result["input"]["remedies"]["tried"][0]["positions_m"] == [31.47, 94.41]
+
+
+def test_a_fault_names_its_field(tmp_path: Path) -> None:
+    tried = tmp_path / "remedies.json"
+    tried.write_text(json.dumps({"tried": [{"type": "tension", "factor": 99}]}))
+    line = tmp_path / "line.json"
+    line.write_text(json.dumps(example("c11-twin")))
+    assert "/remedies/tried/0" in refused("remedies", str(line), "--remedies", str(tried))
