@@ -45,6 +45,7 @@ WITHOUT_A_TEST_FILE = {
     "app.routes.batch_status": "tests/app/routes/test_batches.py holds the documents of batches that it makes.",
     "app.routes.dependencies": "It hands settings, caller and sessions to routes; all tests of routes use it.",
     "app.routes.finished_jobs": "tests/app/routes/test_results.py holds its answers.",
+    "app.routes.job_intake": "tests/app/routes/test_jobs.py and test_remedies.py post jobs through it.",
     "app.routes.job_status": "tests/app/routes/test_jobs.py holds the documents of jobs that it makes.",
     "app.routes.streaming": "tests/app/batches/test_line_results.py reads its streams.",
     "app.routes.batch_documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",

@@ -79,7 +79,7 @@ def _shown(row: Row) -> dict[str, str]:
     return {
         "no": _number(row),
         "remedy": "as it is" if row["kind"] == "none" else row["kind"].replace("_", " "),
-        "places m": row["places_m"] or "",
+        "places m": row["places"] or "",
         "compared": "" if row["change"] is None else row["change"].replace("_", " "),
         "rank": "" if row["rank"] is None else str(row["rank"]),
         "onset m/s": _figure(row["onset_m_per_s"], 2),

@@ -11,7 +11,7 @@ from app.answers.results import ResultDocument
 from app.export.formats import PARQUET, XLSX, csv_text
 from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document
 from app.reference.source_lines import EXAMPLE_NAMES, example
-from app.schemas.devices.remedies import EXAMPLE as REMEDIES
+from app.schemas.devices.tried_remedies import EXAMPLE as REMEDIES
 from app.schemas.faults import Fault
 from app.schemas.fields import example_of
 from app.schemas.placement import EXAMPLE as PLACEMENT

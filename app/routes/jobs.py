@@ -1,37 +1,34 @@
 """Submit, read, list and cancel jobs."""
 
 from datetime import UTC, datetime
-from functools import partial
 from typing import Annotated
 from urllib.parse import urlencode
 from uuid import UUID
 
-from anyio import to_thread
 from fastapi import APIRouter, Body, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
-from app import convert, schemas
+from app import schemas
 from app.answers.jobs import JobDocument, JobPage
 from app.http import paging
-from app.http.problems import ProblemKind, invalid_document, query_fault
-from app.jobs import idempotency, job_records
-from app.jobs.idempotency import Key, KeyTaken
-from app.jobs.job_records import CancelOutcome, JobFilters, Submission
-from app.jobs.submissions import Keyed, Order
+from app.http.problems import ProblemKind, query_fault
+from app.jobs import job_records
+from app.jobs.job_records import CancelOutcome, JobFilters
 from app.routes import documentation, own_documentation
-from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers, vet_webhook
-from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, replayed_answer, stored_answer
-from app.routes.job_status import find_job, find_status, job_address, job_document
+from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers
+from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf
+from app.routes.job_intake import JOBS, accepted_job
+from app.routes.job_status import find_job, find_status, job_document
 from app.routes.known_lines import KnownLineRoute
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import signing_key
 from app.schemas.fields import Label
-from app.security.caller import Caller, Owned
-from app.tables import ENDED, Job, JobStatus
+from app.security.caller import Owned
+from app.tables import ENDED, JobStatus
 
-router = APIRouter(prefix=f"{PREFIX}/jobs", tags=["jobs"], route_class=KnownLineRoute)
+router = APIRouter(prefix=JOBS, tags=["jobs"], route_class=KnownLineRoute)
 
 _MOST_ON_PAGE = 500
 _REQUESTS = documentation.REQUESTS | own_documentation.KNOWN_REQUESTS
@@ -85,17 +82,6 @@ class ListQuery(BaseModel):
         return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after)
 
 
-async def _check(request: Request, document: schemas.JobRequest) -> None:
-    # Checking all points of a study, or remedies, takes time; a single line takes less than a switch to a thread.
-    check = partial(convert.request_faults, document)
-    quick = document.study is None and document.remedies is None
-    faults = check() if quick else await to_thread.run_sync(check)
-    if faults:
-        raise invalid_document(faults)
-    if document.webhook_url is not None:
-        await vet_webhook(request.app.state.settings, document.webhook_url)
-
-
 @router.post(
     "",
     summary="Submit a job",
@@ -129,43 +115,6 @@ async def submit_job(
     computation.
     """
     return await accepted_job(request, document, key, may_reuse=may_reuse)
-
-
-async def accepted_job(request: Request, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Response:
-    """Check a request, store it as a job and send it; or answer as before, if its key was used.
-
-    Raises
-    ------
-    ProblemError
-        422 with every fault of the document.
-    """
-    await _check(request, document)
-    order = _order(request.state.caller, document, key, may_reuse=may_reuse)
-    shared = request.app.state  # read directly, since a FastAPI dependency costs as much as checking the line
-    try:
-        job: Job = await shared.inbox.call(order)
-    except KeyTaken:
-        keyed = order.keyed
-        assert keyed is not None
-        return await to_thread.run_sync(replayed_answer, shared.readers, keyed.key, lambda: keyed.fingerprint)
-    if job.status is JobStatus.ACCEPTED:
-        shared.messages.submit(job.id)
-    return _accepted(job)
-
-
-def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Order:
-    line, kept = document.line, document.kept()
-    submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
-    keyed = None
-    if key is not None:
-        fingerprint = idempotency.fingerprint(router.prefix, job_records.canonical(kept), document.webhook_url or "")
-        keyed = Keyed(key, fingerprint, lambda job: stored_answer(_accepted(job)))
-    return Order(submission, document.webhook_url, may_reuse, keyed)
-
-
-def _accepted(job: Job) -> JSONResponse:
-    headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
-    return JSONResponse(job_document(job), 202, headers)
 
 
 @router.get(

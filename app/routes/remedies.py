@@ -9,7 +9,7 @@ from app.http.problems import ProblemKind
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, MayReuse
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf
-from app.routes.jobs import accepted_job
+from app.routes.job_intake import accepted_job
 from app.routes.known_lines import KnownLineRoute
 from app.schemas.request import RemediesRequest
 

@@ -25,7 +25,7 @@ from app.schemas.fields import Document
 from app.schemas.line import Bundle, Conductor, Line, Phase, PhaseLine, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
 from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
-from app.schemas.request import Axis, JobRequest, Study
+from app.schemas.request import Axis, JobRequest, RemediesRequest, Study
 from app.schemas.section import Section, SectionSpan, SuspensionString
 
 __all__ = [
@@ -56,6 +56,7 @@ __all__ = [
     "Placement",
     "ProfilePoint",
     "Remedies",
+    "RemediesRequest",
     "Section",
     "SectionSpan",
     "Spacer",

@@ -17,7 +17,8 @@ _MOST_CHARACTERS = 200
 _MOST_SHOWN = 80
 
 # pydantic adds the name of a tagged union's branch to the location, after the field or the list item.
-_SPEEDS, _DEVICES, _DEVICE, _AERODYNAMICS = "wind_speeds_m_per_s", "devices", "device", "aerodynamics"
+_SPEEDS, _DEVICE, _AERODYNAMICS = "wind_speeds_m_per_s", "device", "aerodynamics"
+_LISTS = ("devices", "tried")
 _FORMS = frozenset({"list", "range", "coefficients", "measured"})
 
 
@@ -140,7 +141,7 @@ def _is_branch(location: Sequence[int | str], place: int) -> bool:
     *before, owner = (None, None, *location[:place])[-2:]
     if owner in {_SPEEDS, _AERODYNAMICS}:
         return location[place] in _FORMS
-    return owner == _DEVICE or (before == [_DEVICES] and isinstance(owner, int))
+    return owner == _DEVICE or (before in [[name] for name in _LISTS] and isinstance(owner, int))
 
 
 def _found(error: Mapping[str, Any]) -> str:

@@ -9,8 +9,8 @@ from pydantic_core import PydanticCustomError
 
 from app.reference.source_lines import example
 from app.schemas.analysis import Analysis
-from app.schemas.devices.remedies import EXAMPLE as REMEDIES
-from app.schemas.devices.remedies import Remedies
+from app.schemas.devices.tried_remedies import EXAMPLE as REMEDIES
+from app.schemas.devices.tried_remedies import Remedies
 from app.schemas.fields import Document
 from app.schemas.line import Line
 from app.schemas.placement import EXAMPLE as PLACEMENT

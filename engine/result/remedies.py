@@ -47,7 +47,7 @@ class RemedyRow:
     what: Annotated[
         str, Column("What is done, in words", "4 detuning pendulums of 20 kg, arm 0.4 m, at 60, 120, 180 and 240 m")
     ]
-    places_m: Annotated[
+    places: Annotated[
         str | None,
         Column("Places of its devices from left to right [m], a spoiler's middle; null without any", "60 120 180 240"),
     ]

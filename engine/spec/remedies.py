@@ -31,6 +31,7 @@ RemedyKind = Literal[
 ]
 MOST_DEVICES = 20
 MOST_REMEDIES = 20
+_OWN_FIELDS = {"between": "between", "position": "positions", "stop": "position"}  # of a device -> of its remedy
 NAMES: dict[type[PointDevice], RemedyKind] = {
     DetuningPendulum: "detuning_pendulum",
     Spacer: "spacer",
@@ -184,7 +185,7 @@ def check_remedies(line: Line, analysis: Analysis, remedies: Remedies) -> None:
     """
     check_compatible(line, analysis)
     faults = [
-        replace(fault, field=f"tried.{i}.{fault.field}")
+        fault if fault.field == "separation" else replace(fault, field=f"tried.{i}.{fault.field}")
         for i, remedy in enumerate(remedies.tried or ())
         if not isinstance(remedy, ChangedTension)
         for fault in _faults_of(remedy, line, analysis, remedies.separation)
@@ -239,8 +240,7 @@ def _changed_faults(remedy: Placed, places: Sequence[float], line: Line, analysi
         check_compatible(remedy.on(line, places), analysis)
     except InvalidSpec as error:
         for fault in error.faults:
-            field = fault.field.rsplit(".", 1)[-1]
-            yield replace(fault, field=field if field in {"between", "position", "stop"} else "")
+            yield replace(fault, field=_OWN_FIELDS.get(fault.field.rsplit(".", 1)[-1], ""))
 
 
 def _count_faults(count: int, positions: tuple[float, ...] | None) -> Iterator[Fault | None]:

@@ -121,7 +121,8 @@ def _overall(result: Result, winds: Sequence[AtWind]) -> AtWind:
     states = {wind.state for wind in winds}
     (verdict,) = result.verdict
     beyond = any(wind.beyond_data for wind in winds)
-    largest: FloatArray = np.max([wind.amplitudes for wind in winds], axis=0, initial=0.0)
+    every = np.array([wind.amplitudes for wind in winds]).reshape(-1, len(DIRECTIONS))
+    largest: FloatArray = np.max(every, axis=0, initial=0.0)
     vertical, horizontal, torsional = largest.tolist()
     if verdict.gallops == "yes" or states & {State.GALLOPS, State.SIZE_UNKNOWN}:
         if np.isfinite(largest).all() and winds:

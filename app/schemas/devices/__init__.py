@@ -8,7 +8,7 @@ from app.schemas.devices.mounted import (
     Spacer,
     TorsionalDamper,
 )
-from app.schemas.devices.remedies import Remedies
+from app.schemas.devices.tried_remedies import Remedies
 
 __all__ = [
     "AirflowSpoiler",

@@ -2,9 +2,11 @@ import csv
 import gzip
 import io
 import json
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from uuid import UUID
 
 import httpx
 import pandas as pd
@@ -18,6 +20,8 @@ from app.schemas import Analysis, Line
 from tests.app import service
 from tests.app.lines import changed
 from tests.documents import short_request
+from tests.in_process import run_job
+from tests.servers import wait_until
 
 ANALYSIS = short_request()["analysis"]
 
@@ -138,3 +142,16 @@ def test_the_environment_holds_what_is_not_given(own_client: httpx.Client, monke
     monkeypatch.setenv("GALLOPING_URL", str(own_client.base_url))
     with Client() as made:
         assert list(made.jobs()) == []
+
+
+def test_remedies_are_compared(client: Client, own_client: httpx.Client, own_settings: Settings) -> None:
+    def work() -> None:
+        wait_until(lambda: bool(own_client.get("/v1/jobs").json()["jobs"]), what="a job")
+        run_job(own_settings, UUID(own_client.get("/v1/jobs").json()["jobs"][0]["id"]))
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    tried = {"tried": [{"type": "tension", "factor": 1.2}]}
+    rows = client.compare_remedies(example("c11-twin"), {"loops": [1], "wind_speeds_m_per_s": []}, tried)
+    worker.join()
+    assert [row["kind"] for row in rows] == ["none", "tension"]

@@ -27,7 +27,7 @@ def test_a_comparison_is_a_job(shared_client: httpx.Client, shared_settings: Set
     rows = shared_client.get(f"{address}/results/remedies").json()["remedies"]
     assert [row["kind"] for row in rows] == ["none", "tension"]
     text = shared_client.get(f"{address}/results/remedies?format=csv").text
-    assert text.startswith("remedy,kind,what,places_m,change,rank,")
+    assert text.startswith("remedy,kind,what,places,change,rank,")
     assert shared_client.get(address).json()["status"] == "successful"
 
 

@@ -96,10 +96,10 @@ def test_a_row_is_the_analysis_of_the_changed_line(number: int) -> None:
     if isinstance(remedy, ChangedTension):
         changed = replace(line, span=replace(line.span, horizontal_tension=30_000.0 * (remedy.factor or 0.0)))
     elif isinstance(remedy, AddedDevices):
-        places = [float(place) for place in (row.places_m or "").split()]
+        places = [float(place) for place in (row.places or "").split()]
         changed = replace(line, devices=tuple(DetuningPendulum(place, 15.0, 0.3) for place in places))
     else:
-        middle = float(row.places_m or "nan")
+        middle = float(row.places or "nan")
         changed = replace(line, devices=(replace(SPOILER, start=middle - 30.0, stop=middle + 30.0),))
     seen = tuple(run(one, ASKED) for one in (changed, mirrored(changed)))
     own = figures(seen, Model.HYBRID, ASKED)
@@ -126,16 +126,16 @@ def test_what_is_searched_keeps_the_separation_and_is_never_worse_than_nothing()
     assert [row.remedy for row in searched] == [1, 2]
     for row in searched:
         assert row.change in {"better", "no_improvement"}
-        if row.places_m is None:
+        if row.places is None:
             assert "No improvement found" in row.sentence
             assert figures_of(row) == figures_of(first)
             continue
-        places = [float(place) for place in row.places_m.split()]
+        places = [float(place) for place in row.places.split()]
         assert all(right - left >= 125.88 / 20 - 1e-3 for left, right in pairwise(places))
         assert row.onset_m_per_s is not None
         assert row.onset_m_per_s >= 0.99 * (first.onset_m_per_s or 0.0)
         assert (row.motion_peak_to_peak_m or 0.0) <= 1.01 * (first.motion_peak_to_peak_m or 0.0)
-    assert searched[0].places_m is not None
+    assert searched[0].places is not None
 
 
 def test_ranks_follow_the_motion_whatever_the_order() -> None:
@@ -154,7 +154,7 @@ def test_four_pendulums_at_one_tower_are_judged_as_what_they_are() -> None:
     bunched, mild = rows(
         source_line(2), AddedDevices(PENDULUM, 4, (3.0, 6.0, 10.0, 13.0)), AddedDevices(PENDULUM, 1, (62.94,))
     )[1:]
-    assert bunched.places_m == "3 6 10 13"
+    assert bunched.places == "3 6 10 13"
     assert bunched.arrangements is None
     assert bunched.change != "better" or (bunched.motion_change or 0.0) <= 0.01
     assert mild.what == "1 detuning pendulum of 15 kg, arm 0.3 m, at 62.94 m"
@@ -215,10 +215,10 @@ def test_another_everyday_tension_is_followed_by_the_change_of_state() -> None:
 
 def test_a_remedy_that_does_not_fit_is_refused() -> None:
     for remedy, field in (
-        (AddedDevices(PENDULUM, 1, (130.0,)), "tried.0.position"),
+        (AddedDevices(PENDULUM, 1, (130.0,)), "tried.0.positions"),
         (MovedDevices(Spacer), "tried.0.device"),
         (AddedDevices(PENDULUM, 2, (10.0, 12.0)), "tried.0.positions"),
-        (AddedDevices(PENDULUM, 20), "tried.0.separation"),
+        (AddedDevices(PENDULUM, 20), "separation"),
         (AddedDevices(InterphaseSpacer(0.0, 20.0, ("this", "top")), 1, (60.0,)), "tried.0.between"),
         (AddedSpoiler(AirflowSpoiler(0.0, 130.0, CALM)), "tried.0.length"),
     ):

@@ -10,8 +10,9 @@ import pytest
 from engine.outcome import Outcome, Stability
 from engine.report.verdict import verdict
 from engine.result import LimitCycleRow, Result
+from engine.spec import Model
 from engine.uncertainty.outcomes import SampleOutcome, State, sample_outcome
-from tests.builders import run
+from tests.builders import only, run
 from tests.engine.uncertainty.den_hartog_line import ASKED, WINDS, line_of, onset
 
 
@@ -98,3 +99,8 @@ def test_motions_beyond_the_data_are_marked() -> None:
     assert found.winds[2].state is State.GALLOPS
     assert found.winds[2].beyond_data
     assert found.overall.beyond_data
+
+
+def test_without_wind_speeds_the_onset_alone_decides() -> None:
+    found = sample_outcome(run(line_of({}), only(Model.HYBRID, loops=(1,), wind_speeds=())), ())
+    assert (found.winds, found.overall.state) == ((), State.SIZE_UNKNOWN)

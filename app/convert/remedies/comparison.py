@@ -7,7 +7,7 @@ from dataclasses import replace
 from app import schemas
 from app.convert import parts
 from app.convert.pointers import json_names
-from app.schemas.devices import remedies as said
+from app.schemas.devices import tried_remedies as said
 from app.schemas.faults import Fault, json_pointer
 from engine import spec
 from engine.known.description import KnownLine

@@ -1,0 +1,69 @@
+"""Check requests that become jobs, store them, and answer with their status."""
+
+from functools import partial
+
+from anyio import to_thread
+from fastapi import Request, Response
+from fastapi.responses import JSONResponse
+
+from app import convert, schemas
+from app.http.problems import invalid_document
+from app.jobs import idempotency, job_records
+from app.jobs.idempotency import Key, KeyTaken
+from app.jobs.job_records import Submission
+from app.jobs.submissions import Keyed, Order
+from app.routes.dependencies import PREFIX, RETRY_SECONDS, vet_webhook
+from app.routes.idempotent_posts import replayed_answer, stored_answer
+from app.routes.job_status import job_address, job_document
+from app.security.caller import Caller
+from app.tables import Job, JobStatus
+
+JOBS = f"{PREFIX}/jobs"
+
+
+async def accepted_job(request: Request, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Response:
+    """Check a request, store it as a job and send it; or answer as before, if its key was used.
+
+    Raises
+    ------
+    ProblemError
+        422 with every fault of the document.
+    """
+    await _check(request, document)
+    order = _order(request.state.caller, document, key, may_reuse=may_reuse)
+    shared = request.app.state  # read directly, since a FastAPI dependency costs as much as checking the line
+    try:
+        job: Job = await shared.inbox.call(order)
+    except KeyTaken:
+        keyed = order.keyed
+        assert keyed is not None
+        return await to_thread.run_sync(replayed_answer, shared.readers, keyed.key, lambda: keyed.fingerprint)
+    if job.status is JobStatus.ACCEPTED:
+        shared.messages.submit(job.id)
+    return _accepted(job)
+
+
+def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Order:
+    line, kept = document.line, document.kept()
+    submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
+    keyed = None
+    if key is not None:
+        fingerprint = idempotency.fingerprint(JOBS, job_records.canonical(kept), document.webhook_url or "")
+        keyed = Keyed(key, fingerprint, lambda job: stored_answer(_accepted(job)))
+    return Order(submission, document.webhook_url, may_reuse, keyed)
+
+
+def _accepted(job: Job) -> JSONResponse:
+    headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
+    return JSONResponse(job_document(job), 202, headers)
+
+
+async def _check(request: Request, document: schemas.JobRequest) -> None:
+    # Checking all points of a study, or remedies, takes time; a single line takes less than a switch to a thread.
+    check = partial(convert.request_faults, document)
+    quick = document.study is None and document.remedies is None
+    faults = check() if quick else await to_thread.run_sync(check)
+    if faults:
+        raise invalid_document(faults)
+    if document.webhook_url is not None:
+        await vet_webhook(request.app.state.settings, document.webhook_url)

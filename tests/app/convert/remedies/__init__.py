@@ -1,0 +1,1 @@
+"""Tests of remedies through the border."""
