@@ -95,15 +95,21 @@ def weighed_with_samples(
     if not unknowns.inputs or asked.samples == 0:
         return Weighed((yield from analyse(line, analysis)))
     result = yield from translated(analyse(line, analysis), _before)
-    return (yield from translated(with_samples(result, line, analysis, unknowns, asked), _after))
+    return (yield from translated(_sampled(result, line, analysis, unknowns, asked), _after))
 
 
 def with_samples(
     result: Result, line: Line, analysis: Analysis, unknowns: Unknowns, asked: Uncertainty
 ) -> Generator[Progress, None, Result]:
     """Analyse the samples of what is assumed of a line whose own result is known, and return it with their tables."""
+    return (yield from _sampled(result, line, analysis, unknowns, asked)).result
+
+
+def _sampled(
+    result: Result, line: Line, analysis: Analysis, unknowns: Unknowns, asked: Uncertainty
+) -> Generator[Progress, None, Weighed]:
     if not unknowns.inputs or asked.samples == 0:
-        return result
+        return Weighed(result)
     samples = sobol_samples(unknowns.inputs, asked.samples, asked.seed)
     chosen = [*samples.chosen(), *chain.from_iterable(ends(samples.inputs))]
     of_line = replace(analysis, risk=analysis.risk and line.climate is not None)

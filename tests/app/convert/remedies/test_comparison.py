@@ -13,7 +13,7 @@ from app.schemas.request import RemediesRequest
 from tests.app.known_documents import CONTRACT
 from tests.app.lines import COEFFICIENTS, faults
 
-PENDULUM = {"type": "detuning_pendulum", "positions_m": [31.47, 94.41], "mass_kg": 15.0, "arm_m": 0.3}
+PENDULUM: dict[str, Any] = {"type": "detuning_pendulum", "positions_m": [31.47, 94.41], "mass_kg": 15.0, "arm_m": 0.3}
 TENSION = {"type": "tension", "factor": 1.2}
 ANALYSIS = {"loops": [2], "wind_speeds_m_per_s": [6.0]}
 
