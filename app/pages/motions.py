@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import cos, pi, sin
 from typing import Any
 
@@ -49,13 +50,18 @@ def worst(made: Sequence[Motion]) -> Motion | None:
 
 def course(coefficients: Sequence[float], samples: int = SAMPLES) -> list[float]:
     """Return a Fourier series (mean, cos 1, sin 1, cos 2, ...) at evenly spaced times of one period."""
-    mean, rest = coefficients[0], coefficients[1:]
-    waves = list(zip(rest[::2], rest[1::2], strict=True))
-    angles = [2.0 * pi * number / samples for number in range(samples)]
-    return [
-        mean + sum(a * cos(k * angle) + b * sin(k * angle) for k, (a, b) in enumerate(waves, start=1))
-        for angle in angles
-    ]
+    values = [coefficients[0]] * samples
+    waves = zip(coefficients[1::2], coefficients[2::2], strict=True)
+    for number, (a, b) in enumerate(waves, start=1):
+        values = [value + a * c + b * s for value, (c, s) in zip(values, _wave(number, samples), strict=True)]
+    return values
+
+
+@cache
+def _wave(number: int, samples: int) -> tuple[tuple[float, float], ...]:
+    """Return cosine and sine of a harmonic at the times of a course; a page has hundreds of courses."""
+    angles = (2.0 * pi * number * sample / samples for sample in range(samples))
+    return tuple((cos(angle), sin(angle)) for angle in angles)
 
 
 def _motion(orbit: Mapping[str, Any], row: Row) -> Motion:

@@ -42,7 +42,7 @@ def bars(rows: Sequence[Row], units: Units) -> tuple[str, str, list[Bar]] | None
             high=units.number(row["highest"]),
             share=row["amplitude_total"],
             onset=(
-                units.shown(row["onset_at_lowest_m_per_s"], "m/s"),
+                units.number(row["onset_at_lowest_m_per_s"], "m/s"),
                 units.shown(row["onset_at_highest_m_per_s"], "m/s"),
             ),
             start=WIDTH * (min(low, high) - first) / reach,

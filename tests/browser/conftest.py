@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 
 from app.runtime.settings import Settings
 from tests import embedded
 from tests.servers import free_port
 
 CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+expect.set_options(timeout=30_000)  # the first line that is resolved loads the numerics; a busy machine takes its time
 QUIET = (
     "--no-sandbox",
     "--disable-gpu",
@@ -81,7 +82,7 @@ def finished_job(browser: Browser, service: str) -> str:
     page = context.new_page()
     page.goto("/")
     page.locator("form[action$='/pages/examples/drake'] button").click()
-    page.wait_for_selector(".verdict", timeout=120_000)
+    page.wait_for_selector(".verdict", timeout=180_000)
     path = page.url.removeprefix(service)
     context.close()
     return path

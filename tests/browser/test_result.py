@@ -13,7 +13,7 @@ Open = Callable[..., Page]
 def test_one_click_leads_to_a_verdict(open_page: Open) -> None:
     page = open_page("/")
     page.locator("form[action$='/pages/examples/c11-twin'] button").click()
-    page.wait_for_selector(".verdict", timeout=60_000)
+    page.wait_for_selector(".verdict", timeout=180_000)
     expect(page.locator(".verdict .answer")).to_have_text("It gallops")
     sentence = page.locator(".verdict .lead").inner_text()
     assert "Gallops from 2." in sentence

@@ -74,7 +74,9 @@ def _frame(length: float, across: Sequence[float], rest: Sequence[float], units:
     for tick in ticks(0.0, length * unit.factor, 7):
         x = across[0] + (across[-1] - across[0]) * tick / (length * unit.factor)
         yield element("line", x1=x, x2=x, y1=20.0, y2=HEIGHT - 14.0, class_="grid")
-        yield element("text", f"{tick:.4g} {unit.name}", x=x + 2.0, y=HEIGHT - 4.0, class_="figures")
+        last = x > WIDTH - 3.0 * _SIDE
+        kind = "figures note" if last else "figures"
+        yield element("text", f"{tick:.4g} {unit.name}", x=x + 2.0 * (1 - last), y=HEIGHT - 4.0, class_=kind)
     for x, y in ((across[0], rest[0]), (across[-1], rest[-1])):
         yield element("path", d=f"M{x} {y - 8.0}V{HEIGHT - 14.0}", class_="support")
 

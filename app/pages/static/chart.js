@@ -41,7 +41,7 @@
     look(piece) {
       const loops = [...new Set(this.families.map((name) => name.split(" ")[1]))];
       const hue = COLOURS[loops.indexOf(String(piece.loops)) % COLOURS.length];
-      return { stroke: resolved(hue), width: piece.model === "hybrid" ? 1.5 : 3 };
+      return { stroke: resolved(hue), width: (piece.model === "hybrid" ? 1.5 : 3) * (this.letter() / 16) };
     }
     button(text, action) {
       const made = document.createElement("button");
@@ -143,6 +143,7 @@
       const ink = resolved("--soft");
       const axis = { stroke: ink, grid: { stroke: resolved("--rule"), width: 1 }, ticks: { stroke: ink, width: 1 }, font: this.font(), labelFont: this.font() };
       const unit = this.quantity.unit;
+      const narrow = this.canvas.clientWidth < 560;
       this.plot = new uPlot({
         ...this.size(),
         scales: { x: { time: false, range: (_, low, high) => (low === null ? this.range : [low, high]) }, y: { range: (_, low, high) => [Math.min(0, low), high * 1.06 || 1] } },
@@ -152,19 +153,22 @@
         cursor: { drag: { x: true, y: false }, points: { show: false }, bind: { dblclick: () => () => this.whole() } },
         axes: [
           { ...axis, label: `${this.words.wind} [${this.data.wind_unit}]` },
-          { ...axis, label: `${this.quantity.label} [${unit}]`, size: 70 },
+          { ...axis, label: `${narrow ? this.words.amplitude : this.quantity.label} [${unit}]`, size: narrow ? 48 : 4.4 * this.letter() },
         ],
         hooks: { setCursor: [() => this.read()], draw: [() => this.markOnset()] },
       }, joined, this.canvas);
       this.whole();
       this.legend();
     }
+    letter() {
+      return parseFloat(getComputedStyle(document.documentElement).fontSize);
+    }
     font() {
-      return `${Math.round(parseFloat(getComputedStyle(document.documentElement).fontSize) * 0.85)}px system-ui, sans-serif`;
+      return `${Math.round(this.letter() * 0.85)}px system-ui, sans-serif`;
     }
     size() {
       const width = Math.max(280, this.canvas.clientWidth);
-      return { width, height: Math.round(Math.min(0.62 * width + 60, 0.75 * window.innerHeight + 40, 900)) };
+      return { width, height: Math.round(Math.min(Math.max(0.55 * width, 320), 0.75 * window.innerHeight + 40, 1300)) };
     }
     resize() {
       if (this.plot && Math.abs(this.plot.width - this.size().width) > 1) this.plot.setSize(this.size());
