@@ -10,8 +10,10 @@ import numpy as np
 
 from engine.arrays import AnyArray, FloatArray, IntArray
 from engine.models.reduced_model import ReducedModel
+from engine.models.relative_wind import NodalMotion
 from engine.models.unexpanded_load import UnexpandedLoad
 from engine.numerics.newton import NewtonOptions, Solution, solution_from_steps
+from engine.spec import AerodynamicModel
 
 
 class UnexpandedStarts(Protocol):
@@ -30,7 +32,7 @@ class UnexpandedStarts(Protocol):
 
 
 try:
-    from engine.kernels._kernels import even_parts, flows, linearization, monodromies, newton
+    from engine.kernels._kernels import even_parts, flows, linearization, monodromies, newton, reaches
 
     AVAILABLE = True
 except ImportError:
@@ -192,6 +194,18 @@ def even_part(
     inputs = (polynomials, statics, np.broadcast_to(member, angle.shape), angle)
     even_parts((polynomials.shape[0], angle.size), _contiguous(*inputs), (even, square))
     return even, square
+
+
+def largest_reaches(motion: NodalMotion, member: IntArray, state: FloatArray) -> FloatArray:
+    """Find the largest angles of attack and velocity ratios; as `engine.models.relative_wind.largest_reach`."""
+    motions, samples, width = state.shape
+    (members, nodes, *_), subconductors = motion.forms.shape, motion.arms.shape[-2]
+    arms = np.broadcast_to(motion.arms, (members, nodes, subconductors, 2))
+    reach = np.empty((2, motions))
+    published = motion.model is AerodynamicModel.PUBLISHED
+    size = (members, motions, samples, nodes, width // 2, subconductors, published)
+    reaches(size, _contiguous(motion.forms, arms, motion.diameter, member, state), reach)
+    return reach
 
 
 def integrated_block(

@@ -148,6 +148,20 @@ typedef struct {
 /* Integrate all starts; return 0 if memory is short. engine/checks/settled_motion.py, _block. */
 int integrate_flows(const Flows *flows);
 
+/* Arguments and results of find_reaches, laid out as engine.models.relative_wind.NodalMotion: forms (members, nodes, 4,
+ * 2 m), arms (members, nodes, subconductors, 2), diameter (members); member (motions), state (motions, samples, 2 m),
+ * finite; reach (2, motions). Where `published`, only the vertical velocity turns the wind. */
+typedef struct {
+    ptrdiff_t motions, samples, nodes, subconductors;
+    int m, published;
+    const double *forms, *arms, *diameter, *state;
+    const ptrdiff_t *member;
+    double *reach;
+} Reaches;
+
+/* Find the largest angle of attack and velocity ratio of each motion; return 0 if memory is short. */
+int find_reaches(const Reaches *wanted);
+
 /* Arguments and results of evaluate_even_parts: polynomials (members, 4, 7) and statics (members, 3) as in _ScalarEquation
  * of engine/cycles/first_harmonic.py; member, angle (count); even, square (count, 2). */
 typedef struct {

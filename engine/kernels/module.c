@@ -227,6 +227,30 @@ static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, 1);
 }
 
+static PyObject *reaches(PyObject *Py_UNUSED(self), PyObject *arguments)
+{
+    Buffers buffers = {.count = 0};
+    PyObject *forms, *arms, *diameter, *member, *state, *reach;
+    Py_ssize_t members;
+    Reaches wanted = {.m = 0};
+    int done = 1;
+    if (!PyArg_ParseTuple(arguments, "(nnnninp)(OOOOO)O", &members, &wanted.motions, &wanted.samples, &wanted.nodes,
+                          &wanted.m, &wanted.subconductors, &wanted.published, &forms, &arms, &diameter, &member, &state,
+                          &reach))
+        return NULL;
+    const Py_ssize_t motions = wanted.motions, nodes = wanted.nodes, width = 2 * (Py_ssize_t)wanted.m;
+    if ((wanted.forms = REALS(forms, members * nodes * 4 * width))
+        && (wanted.arms = REALS(arms, members * nodes * wanted.subconductors * 2))
+        && (wanted.diameter = REALS(diameter, members)) && (wanted.member = INDICES(member, motions))
+        && within(wanted.member, motions, members)
+        && (wanted.state = REALS(state, motions * wanted.samples * width)) && (wanted.reach = RESULT(reach, 2 * motions))) {
+        Py_BEGIN_ALLOW_THREADS
+        done = find_reaches(&wanted);
+        Py_END_ALLOW_THREADS
+    }
+    return finished(&buffers, done);
+}
+
 /* Read the unexpanded load of starts: gain, linear, wind_speed and member, then the load as in read_unexpanded. */
 static int read_unexpanded_starts(Buffers *held, PyObject *extra, PyObject *parts, Flows *flows)
 {
@@ -280,6 +304,7 @@ static PyMethodDef methods[] = {
     {"linearization", linearization, METH_VARARGS, "Evaluate the harmonic balance of a stack of cycles with its slopes."},
     {"monodromies", monodromies, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
     {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},
+    {"reaches", reaches, METH_VARARGS, "Find the largest angle of attack and velocity ratio of a stack of motions."},
     {"flows", flows, METH_VARARGS, "Integrate the equations of motion of a stack of starts directly."},
     {NULL, NULL, 0, NULL},
 };

@@ -10,8 +10,9 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
 from engine.checks.data_limits import motion_outcomes
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
+from engine.kernels import compiled
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
-from engine.models.relative_wind import FASTEST, largest_reach
+from engine.models.relative_wind import FASTEST, NodalMotion, largest_reach
 from engine.outcome import Outcome, Stability
 from engine.report.cells import finite_or_none, lists_by_line
 from engine.report.findings import (
@@ -151,7 +152,7 @@ def _cycles(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     state = states(cycles.orbits, 2.0 * np.pi * np.arange(REACH_SAMPLES) / REACH_SAMPLES)
     observed = observer.moving(findings, cycles.member, cycle_coordinates(findings), state)
     series = observed.shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients
-    reach = largest_reach(observer.local_motion(findings, seen.model), cycles.member, state)
+    reach = _reach(observer.local_motion(findings, seen.model), cycles.member, state)
     measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
     slack = seen.tensions.cycles[..., 0].min(axis=-1) <= 0.0
     keys = _RowKeys(findings.line[cycles.member], cycle_loops(findings), cycles.orbits.wind_speed, observed)
@@ -164,6 +165,13 @@ def _cycles(seen: _Seen) -> Iterator[tuple[int, Motion]]:
         "outcome": _slack_first(slack, _outcomes(seen, keys, measures)),
     }
     return _rows(seen, keys, measures, labels, series)
+
+
+def _reach(motion: NodalMotion, member: IntArray, state: FloatArray) -> FloatArray:
+    """Return what `largest_reach` does, by the compiled kernel where it is available."""
+    if compiled.AVAILABLE:
+        return compiled.largest_reaches(motion, member, state)
+    return largest_reach(motion, member, state)
 
 
 def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArray]:
@@ -199,7 +207,7 @@ def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
         path = state[i, :, : model.mass.shape[-1]] @ observed.shapes[i]
         middle[:, i] = 0.5 * (path.max(axis=0) + path.min(axis=0))
-        reach[:, [i]] = largest_reach(motion, member[[i]], state[[i]])
+        reach[:, [i]] = _reach(motion, member[[i]], state[[i]])
     measures = {
         **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
         **dict(zip(_MIDDLES, middle, strict=True)),

@@ -19,12 +19,26 @@ from engine.cycles.starts import energy_starts
 from engine.kernels import compiled
 from engine.mechanics.coefficients import fit_measured
 from engine.models.critical_wind_speeds import critical_wind_speeds
+from engine.models.discretization import nodal_motion
 from engine.models.reduced_model import ReducedModel, take
+from engine.models.relative_wind import largest_reach
 from engine.numerics.newton import NewtonOptions, Solution
 from engine.outcome import Outcome
-from engine.spec import Analysis, Closure, MeasuredCoefficients
-from tests.builders import hybrid, source_line
-from tests.engine.motions import COPIES, MODELS, TABLE, perturbed, random_orbits, short
+from engine.spec import AerodynamicModel, Analysis, Closure, MeasuredCoefficients
+from tests.builders import discretized, hybrid, source_line
+from tests.engine.motions import COPIES, MODELS, TABLE, perturbed, random_orbits, relative_line, short
+
+
+@pytest.mark.parametrize("model", list(AerodynamicModel))
+@pytest.mark.parametrize("size", [0.3, 3.0])  # the larger motions outrun the wind
+def test_the_reach_of_motions_is_that_of_the_numpy_form(model: AerodynamicModel, size: float) -> None:
+    lines, rng = [relative_line(n) for n in (4, 2)], np.random.default_rng(5)
+    shapes = np.concatenate([hybrid(line, 2).shapes for line in lines])
+    motion = nodal_motion(discretized(*lines), np.arange(2), shapes, model)
+    state = size * rng.normal(size=(COPIES, 7, 6)) * np.array([1.0, 1.0, 1.0, 0.5, 0.5, 2.0])
+    member = np.arange(COPIES) % 2
+    found = compiled.largest_reaches(motion, member, state)
+    assert found == pytest.approx(largest_reach(motion, member, state), rel=1e-12)
 
 
 def test_a_machine_with_a_compiler_has_them() -> None:
