@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.cycles.harmonic_balance import Orbits, balance, basis, half_peak_to_peak, linearized, resized, select
+from engine.cycles.harmonic_balance import Orbits, balance, basis, half_peak_to_peak, residual, resized, select
 from engine.cycles.search import Cycles
 from engine.models.reduced_model import ReducedModel, diagonals, take
 from engine.models.stretching import restoring_force, take_stretching
@@ -75,19 +75,18 @@ def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArr
 
     Truncation and detuning refer to the amplitude of largest M_ii |q_i|^2.
     """
-    residual, _ = linearized(model, member, orbits)
+    error = np.abs(residual(take(model, member), orbits)).max(axis=(1, 2))
     elastic = np.abs(model.stiffness[member] @ orbits.coefficients).max(axis=(1, 2))
     with_one_more, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
-    before, by_harmonic = (half_peak_to_peak(o.coefficients) for o in (orbits, with_one_more))
-    main = (before * np.sqrt(model.modal_masses)[member]).argmax(axis=-1)
+    every = half_peak_to_peak(orbits.coefficients)
+    main = (every * np.sqrt(model.modal_masses)[member]).argmax(axis=-1)
     row = np.arange(member.size)
-    truncation = np.abs(by_harmonic[row, main] / before[row, main] - 1.0)
 
     def change(coefficients: FloatArray) -> FloatArray:
-        return np.asarray(half_peak_to_peak(coefficients)[row, main] / before[row, main] - 1.0)
+        return np.asarray(half_peak_to_peak(coefficients[row, main]) / every[row, main] - 1.0)
 
     detuning = _largest_change(model, member, orbits, change)
-    return np.stack([np.abs(residual).max(axis=-1) / elastic, truncation, detuning])
+    return np.stack([error / elastic, np.abs(change(with_one_more.coefficients)), detuning])
 
 
 def _largest_change(

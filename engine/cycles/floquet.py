@@ -76,8 +76,9 @@ def monodromy(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: i
     The parameters are those of `floquet`.
     """
     size = 2 * model.mass.shape[-1]
-    inverse = np.asarray(np.linalg.inv(model.mass), dtype=np.float64)
-    steps = fineness * steps_needed((inverse @ model.stiffness)[member], orbits.angular_frequency)
+    inverse, own = np.zeros_like(model.mass), np.unique(member)  # points of few branches have few of the models
+    inverse[own] = np.linalg.inv(model.mass[own])
+    steps = fineness * steps_needed(inverse[member] @ model.stiffness[member], orbits.angular_frequency)
     if compiled.AVAILABLE:
         return _compiled_products(model, member, orbits, inverse, np.where(steps <= MOST_STEPS, steps, 0))
     matrices: FloatArray = np.full((orbits.wind_speed.size, size, size), np.nan)
