@@ -5,6 +5,7 @@ from contextlib import asynccontextmanager
 from functools import partial
 from typing import Any
 
+from anyio import CapacityLimiter
 from fastapi import FastAPI
 from sqlalchemy import Engine
 from starlette.types import ASGIApp
@@ -136,6 +137,7 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
+    app.state.printers = CapacityLimiter(1)
     app.state.previews = Previews(settings.preview_seconds)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
     app.state.inbox = GroupedCalls(

@@ -5,6 +5,7 @@ import json
 import os
 import sys
 from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -20,6 +21,7 @@ from app.cli.options import (
     LineFile,
     OutputFile,
     PlacementFile,
+    ReportFile,
     StudyFile,
 )
 from app.cli.report import print_distances, print_report
@@ -38,6 +40,7 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     defaults: DefaultsFile = None,
     output: OutputFile = None,
     csv: CsvDirectory = None,
+    report: ReportFile = None,
     as_json: AsJson = False,
 ) -> None:
     """Analyse a line in this process, without service or database.
@@ -48,6 +51,8 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     result = computed(read_request(line, analysis, study, placement, defaults))
     if csv is not None:
         _write_tables(result, csv)
+    if report is not None:
+        _write_report(complete, points[0], report)
     if output is not None or as_json or not sys.stdout.isatty():
         write(result, output)
     if not as_json and sys.stdout.isatty():
@@ -116,6 +121,20 @@ def _write_tables(result: Mapping[str, Any], directory: Path) -> None:
                 (directory / f"{name}.csv").write_text(text, encoding="utf-8", newline="")
     except OSError as error:
         typer.echo(f"{directory} cannot be written: {error.strerror or error}", err=True)
+
+
+def _write_report(request: Mapping[str, Any], point: "PointResult", path: Path) -> None:
+    from app.pages import reports
+    from app.pages.measures import SI
+
+    material = reports.computed_material(request, point, datetime.now(UTC))
+    try:
+        if path.suffix.lower() in {".html", ".htm"}:
+            path.write_text(reports.report_html_alone(material, SI), encoding="utf-8")
+        else:
+            path.write_bytes(reports.report_pdf(material, SI))
+    except (OSError, reports.NotPrintable) as error:
+        typer.echo(f"{path} cannot be written: {error}", err=True)
 
 
 def resolve(line: LineFile, defaults: DefaultsFile = None, output: OutputFile = None) -> None:

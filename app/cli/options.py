@@ -27,5 +27,8 @@ OutputFile = Annotated[
 CsvDirectory = Annotated[
     Path | None, typer.Option("--csv", metavar="DIR", help="Write every table with rows there as a CSV file.")
 ]
+ReportFile = Annotated[
+    Path | None, typer.Option("--report", metavar="REPORT.pdf", help="Write a report of the result, as PDF or .html.")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON also on a terminal.")]
 DataDirectory = Annotated[Path | None, typer.Option("--data-dir", help="Directory for all files of the service.")]

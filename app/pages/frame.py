@@ -39,6 +39,11 @@ def page(
     return HTMLResponse(text, status, {"Content-Security-Policy": POLICY, "Vary": "Accept, Cookie", **(headers or {})})
 
 
+def rendered(template: str, **values: Any) -> str:
+    """Return the text of a template that is no page of the frame."""
+    return _templates().get_template(template).render(**values)
+
+
 def moved(request: Request, path: str) -> RedirectResponse:
     """Return the answer to a form that leads to another page; scripts and plain browsers follow it alike."""
     return RedirectResponse(address(request)(path), 303)

@@ -35,7 +35,7 @@ def motions(session: Session, job: Job, found: Findings) -> list[Motion]:
     """Return the motions of a point whose courses are stored, stable ones first, then by wind speed and size."""
     rows = found.rows("limit_cycles")
     made = [
-        _motion(orbit, rows[orbit["cycle"]])
+        motion_of(orbit, rows[orbit["cycle"]])
         for orbit in stored_results.orbits(session, job.id)
         if orbit["point"] == found.point
     ]
@@ -64,7 +64,8 @@ def _wave(number: int, samples: int) -> tuple[tuple[float, float], ...]:
     return tuple((cos(angle), sin(angle)) for angle in angles)
 
 
-def _motion(orbit: Mapping[str, Any], row: Row) -> Motion:
+def motion_of(orbit: Mapping[str, Any], row: Row) -> Motion:
+    """Return the motion with the stored coefficients of its course."""
     return Motion(orbit["cycle"], row, *(course(orbit[name]) for name in ("vertical", "horizontal", "torsional")))
 
 

@@ -80,9 +80,18 @@ _COLUMNS = {
 
 def parts(job: Job, found: Findings, units: Units, seen: Sequence[Motion]) -> dict[str, Any]:
     """Return the values of the template beside the job, what it found, and the motions of which courses are stored."""
-    largest = worst(seen)
     return {
         "chart_words": json.dumps(vars(words().chart)),
+        "downloads": [(ADDRESSES[name], TABLES[name].title) for name in TABLES if found.rows(name)],
+        "job_tags": {tag.key: tag.value for tag in job.tags},
+        **findings_parts(found, units, seen),
+    }
+
+
+def findings_parts(found: Findings, units: Units, seen: Sequence[Motion]) -> dict[str, Any]:
+    """Return the values that pages and reports share: what was found, in the units of the reader."""
+    largest = worst(seen)
+    return {
         "largest": None if largest is None else _largest(found, largest, units),
         "facts": facts(found, units),
         "assumed": [row for row in found.rows("assumptions") if row["origin"] == "assumed"],
@@ -90,9 +99,7 @@ def parts(job: Job, found: Findings, units: Units, seen: Sequence[Motion]) -> di
         "tornado": tornado.bars(found.rows("sensitivities"), units),
         "physics": next(iter(found.rows("physics")), {}),
         "shown": {name: _table(name, found, units) for name in _COLUMNS if found.rows(name)},
-        "downloads": [(ADDRESSES[name], TABLES[name].title) for name in TABLES if found.rows(name)],
         "spread": next((row for row in found.rows("uncertainty") if row["wind_speed_m_per_s"] is None), None),
-        "job_tags": {tag.key: tag.value for tag in job.tags},
     }
 
 
