@@ -48,11 +48,16 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     On a terminal the verdict and the tables behind it are printed, else the whole result as JSON.
     """
     try_output(output)
-    result = computed(read_request(line, analysis, study, placement, defaults))
+    try_output(report)
+    document = read_request(line, analysis, study, placement, defaults)
+    if report is not None and document.get("study"):
+        end("a report is for a line, not for a study", BAD_INPUT)
+    request, points = _points(document)
+    result = result_document(request, points)
     if csv is not None:
         _write_tables(result, csv)
     if report is not None:
-        _write_report(complete, points[0], report)
+        _write_report(request, points[0], report)
     if output is not None or as_json or not sys.stdout.isatty():
         write(result, output)
     if not as_json and sys.stdout.isatty():
@@ -85,6 +90,11 @@ def clearance(
 
 def computed(document: Any) -> Any:
     """Return the result document of a request, computed in this process; end the command if it is wrong or fails."""
+    return result_document(*_points(document))
+
+
+def _points(document: Any) -> tuple[dict[str, Any], list["PointResult"]]:
+    """Return the request with all defaults, and its points."""
     from app.runtime.processes import ONE_BLAS_THREAD
 
     os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, because BLAS reads it once
@@ -106,7 +116,7 @@ def computed(document: Any) -> Any:
                     points.append(item)
     except (ArithmeticError, ValueError) as error:
         end(f"the computation failed: {error}", FAILED)
-    return result_document(complete, points)
+    return complete, points
 
 
 def _write_tables(result: Mapping[str, Any], directory: Path) -> None:

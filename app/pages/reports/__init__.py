@@ -7,4 +7,12 @@ from app.pages.reports.document import report_html
 from app.pages.reports.material import Material, computed_material, job_material
 from app.pages.reports.printing import NotPrintable, report_html_alone, report_pdf
 
-__all__ = ["Material", "NotPrintable", "computed_material", "job_material", "report_html", "report_html_alone", "report_pdf"]
+__all__ = [
+    "Material",
+    "NotPrintable",
+    "computed_material",
+    "job_material",
+    "report_html",
+    "report_html_alone",
+    "report_pdf",
+]

@@ -64,5 +64,3 @@ def _given(part: object, path: str = "") -> Iterator[tuple[str, str]]:
                 yield from _given(value, f"{path}.{number}")
     elif part is not None:
         yield path, f"{part:.6g}" if isinstance(part, float) else str(part)
-
-

@@ -2,6 +2,7 @@
 
 from base64 import b64encode
 from importlib import resources
+from io import BytesIO
 from typing import Any
 
 from app import plots
@@ -34,7 +35,7 @@ def report_pdf(material: Material, units: Units) -> bytes:
 
     sources = _sources(material)
 
-    class OnlyOwn(plutoprint.ResourceFetcher):  # type: ignore[misc]  # it has no types
+    class OnlyOwn(plutoprint.ResourceFetcher):
         def fetch_url(self, url: str) -> Any:
             """Return a part of the report, and nothing else."""
             if url not in sources:
@@ -49,9 +50,9 @@ def report_pdf(material: Material, units: Units) -> bytes:
     moment = material.made.strftime("%Y-%m-%dT%H:%M:%SZ")
     for when in (plutoprint.PDF_METADATA_CREATION_DATE, plutoprint.PDF_METADATA_MODIFICATION_DATE):
         book.set_metadata(when, moment)
-    written = _Bytes()
+    written = BytesIO()
     book.write_to_pdf_stream(written)
-    return b"".join(written.parts)
+    return written.getvalue()
 
 
 def report_html_alone(material: Material, units: Units) -> str:
@@ -64,15 +65,6 @@ def report_html_alone(material: Material, units: Units) -> str:
 
     sources[_STYLE] = _sheet(), "css"
     return report_html(material, units, lambda name: inside(f"report:{name}"), inside(_STYLE))
-
-
-class _Bytes:
-    def __init__(self) -> None:
-        self.parts: list[bytes] = []
-
-    def write(self, data: bytes) -> int:
-        self.parts.append(bytes(data))
-        return len(data)
 
 
 def _sources(material: Material) -> dict[str, tuple[bytes, str]]:

@@ -52,7 +52,8 @@ async def report_as_pdf(request: Request, job_id: UUID, finished: FinishedJob, p
     except NotPrintable as error:
         raise ProblemError(ProblemKind.NOT_FOUND, str(error)) from error
     name = quote(f"{material.name or job_id}.pdf")
-    return Response(made, headers={"Content-Disposition": f"inline; filename*=UTF-8''{name}"}, media_type="application/pdf")
+    headers = {"Content-Disposition": f"inline; filename*=UTF-8''{name}"}
+    return Response(made, headers=headers, media_type="application/pdf")
 
 
 def _material(request: Request, finished: Any, point: int) -> Material:

@@ -86,3 +86,10 @@ def test_distances_and_weights_stand_below_the_motions(tmp_path: Path) -> None:
     weighty = {row["path"] for row in result["sensitivities"] if (row["onset_total_lowest"] or 0.0) >= 0.01}
     assert ("What the assumed values weigh" in printed) == bool(weighty)
     assert {row["path"] for row in result["sensitivities"] if f" {row['path']} " in printed} == weighty
+
+
+def test_a_report_is_written_as_pdf_or_html(request_file: str, tmp_path: Path) -> None:
+    galloping("analyse", request_file, "--report", str(tmp_path / "report.pdf"))
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF-")
+    result = json.loads(galloping("analyse", request_file, "--report", str(tmp_path / "report.html")).stdout)
+    assert result["verdict"][0]["sentence"] in (tmp_path / "report.html").read_text(encoding="utf-8")
