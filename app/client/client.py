@@ -10,13 +10,15 @@ from uuid import UUID
 import httpx
 from pydantic import BaseModel
 
-from app.answers.batches import BatchDocument, BatchTableName
+from app.answers.batches import BatchDocument, BatchTableName, RankedLine, RankingPage
 from app.answers.jobs import JobDocument, JobPage
 from app.answers.results import ResultDocument, TableName
 from app.client import uploads
 from app.client.connection import Connection, ServiceError, Show
+from app.client.known_lines import KnownLines
 from app.client.uploads import Lines, Upload, as_json
 from app.schemas import Analysis, Line, Remedies, Study
+from app.schemas.known import KnownLine
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,7 +41,7 @@ class JobFailed(ServiceError):
         super().__init__(f"the job failed: {job.failure.detail}" if job.failure else "the job was cancelled")
 
 
-class Client:
+class Client(KnownLines):
     """A connection to the service; use it in a `with` statement or close it.
 
     Every method raises `ServiceError` if the service does not answer in time or answers with a problem, and `Refused`
@@ -74,7 +76,7 @@ class Client:
 
     def analyse(
         self,
-        line: Line | Mapping[str, Any],
+        line: Line | KnownLine | Mapping[str, Any],
         analysis: Analysis | Mapping[str, Any] | None = None,
         study: Study | Mapping[str, Any] | None = None,
     ) -> ResultDocument:
@@ -92,7 +94,7 @@ class Client:
 
     def submit(
         self,
-        line: Line | Mapping[str, Any],
+        line: Line | KnownLine | Mapping[str, Any],
         analysis: Analysis | Mapping[str, Any] | None = None,
         study: Study | Mapping[str, Any] | None = None,
     ) -> JobDocument:
@@ -233,6 +235,17 @@ class Client:
     def batch_frame(self, batch: BatchDocument, table: BatchTableName = "summary") -> "pd.DataFrame":
         """Return one table of a batch as a data frame; needs pandas (`galloping[pandas]`)."""
         return uploads.frame(self.batch_rows(batch, table))
+
+    def ranking(self, batch: BatchDocument, **query: str | float | bool) -> Iterator[RankedLine]:
+        """Yield the lines of a batch in the order of a figure, `by="risk"` for the hours of galloping a year.
+
+        The query is that of `GET /v1/batches/{id}/ranking`.
+        """
+        address: str | None = str(httpx.URL(f"{_address(batch)}/ranking", params=query))
+        while address is not None:
+            page = self._get(RankingPage, address)
+            yield from page.lines
+            address = page.next
 
     def resubmit(self, batch: BatchDocument) -> BatchDocument:
         """Run the failed lines of a batch again."""

@@ -15,7 +15,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "client.md"
 
 def test_examples_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     examples = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(examples) == 3
+    assert len(examples) == 4
     names: dict[str, Any] = {}
     with serving(hasty_settings(tmp_path), free_port()) as (_, http):
         monkeypatch.setenv("GALLOPING_URL", str(http.base_url))
@@ -26,3 +26,5 @@ def test_examples_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert names["summary"]["status"].tolist() == ["successful"] * 4
     assert names["summary"]["reference"].tolist() == ["L100", "L110", "L120", "L130"]
     assert len(names["frame"]) == 4
+    assert names["resolved"].line["conductor"]["rated_strength_n"] == pytest.approx(140_120.0)
+    assert names["kept"][0].conductor.name == "Ours"
