@@ -28,7 +28,7 @@ class KnownLines:
 
     def resolve(self, line: KnownLine | Mapping[str, Any]) -> ResolvedLine:
         """Return the explicit line of what is known, and where each of its values came from."""
-        return self._posted(ResolvedLine, "/v1/lines/resolve", as_json(line))
+        return self._answered(ResolvedLine, "/v1/lines/resolve", as_json(line))
 
     def conductors(self, search: str = "") -> list[ConductorRow]:
         """Return the conductors whose name, designation, type or stranding contain all words: own ones first."""
@@ -41,7 +41,7 @@ class KnownLines:
 
     def fit(self, table: Mapping[str, Any]) -> FitAnswer:
         """Return the coefficients of a measured table, as `POST /v1/aerodynamics/fit` takes it."""
-        return self._posted(FitAnswer, "/v1/aerodynamics/fit", table)
+        return self._answered(FitAnswer, "/v1/aerodynamics/fit", table)
 
     def own_conductors(self) -> list[OwnConductorRow]:
         """Return the conductors that the owner keeps."""
@@ -59,7 +59,7 @@ class KnownLines:
 
     def store_table(self, table: OwnTable | Mapping[str, Any]) -> OwnTableRow:
         """Store a table of measured coefficients, in place of the owner's one of the same name."""
-        return self._posted(OwnTableRow, "/v1/aerodynamics/own", as_json(table))
+        return self._answered(OwnTableRow, "/v1/aerodynamics/own", as_json(table))
 
     def remove_own(self, kind: Kept, row_id: UUID | str) -> None:
         """Remove a conductor or a table that the owner keeps."""
@@ -68,7 +68,7 @@ class KnownLines:
     def _read(self, model: type[Model], address: str) -> Model:
         return self._connection.read(model, self._connection.get(address))
 
-    def _posted(self, model: type[Model], address: str, document: Mapping[str, Any]) -> Model:
+    def _answered(self, model: type[Model], address: str, document: Mapping[str, Any]) -> Model:
         text = json.dumps(document).encode()
         return self._connection.read(
             model, self._connection.post(address, lambda: text, {"Content-Type": "application/json"})
