@@ -121,6 +121,7 @@ class BatchDocument(Answer):
     created_at: datetime = described("When the batch was accepted", "2026-11-22T10:00:00+00:00")
     started_at: datetime | None = described("When work on it began", "2026-11-22T10:00:01+00:00")
     finished_at: datetime | None = described("When its last line ended", "2026-11-22T10:00:05+00:00")
+    duration_seconds: float | None = described("Time from the begin of the work to its end [s]", 4.0)
     errors: list[LineFault] = described(
         "Faults of the first rejected lines; a link leads to all of them", [example_of(LineFault)]
     )
@@ -129,6 +130,17 @@ class BatchDocument(Answer):
     )
     links: list[Link] = described(
         "Links to related addresses", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
+    )
+
+
+class BatchCheck(Answer):
+    """What would become of a batch, of which nothing was stored."""
+
+    total: Count = described("Lines read [1]", 3)
+    rejected: Count = described("Lines that would be rejected because of faults [1]", 1)
+    errors: list[LineFault] = described("Faults of the first lines that would be rejected", [example_of(LineFault)])
+    notes: list[str] = described(
+        "How the body was read, where that is not plain", ["Row 4 is not UTF-8; read as Windows-1252."]
     )
 
 
@@ -142,6 +154,7 @@ class BatchSummary(Answer):
     created_at: datetime = described("When the batch was accepted", "2026-11-22T10:00:00+00:00")
     started_at: datetime | None = described("When work on it began", "2026-11-22T10:00:01+00:00")
     finished_at: datetime | None = described("When its last line ended", "2026-11-22T10:00:05+00:00")
+    duration_seconds: float | None = described("Time from the begin of the work to its end [s]", 4.0)
     links: list[Link] = described(
         "Links to related addresses", [{"rel": "self", "href": "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"}]
     )

@@ -40,6 +40,9 @@ class JobDocument(Answer):
     created_at: datetime = described("When the job was accepted", "2026-11-22T10:00:00+00:00")
     started_at: datetime | None = described("When its last attempt began", "2026-11-22T10:00:01+00:00")
     finished_at: datetime | None = described("When it ended", "2026-11-22T10:00:05+00:00")
+    duration_seconds: float | None = described(
+        "Time from the begin of its last attempt to its end; null unless it has both [s]", 4.0
+    )
     attempt: int = described("Attempts so far; the service starts another if a worker is lost [1]", 1)
     cancel_requested: bool = described("Whether the running job was asked to stop", False)
     failure: Failure | None = described("Why it failed; null if it did not", example_of(Failure))
@@ -49,6 +52,12 @@ class JobDocument(Answer):
         "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d80",
     )
     links: list[Link] = described("Links to related addresses", [example_of(Link)])
+
+
+class Validity(Answer):
+    """That a request may be submitted as it is."""
+
+    valid: Literal[True] = described("Always true: a request with faults gets a problem that lists them", True)
 
 
 class JobPage(Answer):

@@ -7,6 +7,14 @@ from app.schemas.fields import Answer, described, example_of
 Number = float | None
 
 
+class Version(Answer):
+    """What runs here."""
+
+    service: str = described("Version of the service", "0.4.0")
+    engine: str = described("Version of the computation; stored results of another one are not reused", "0.4.0")
+    api: str = described("First part of the addresses", "v1")
+
+
 class ConductorRow(Answer):
     """A bare conductor; a line's `conductor` takes diameter, area, modulus and strength unchanged, mass with ice."""
 

@@ -1,14 +1,13 @@
 """Answer every error as problem details (RFC 9457): from routes, FastAPI, Starlette, the body limit, or a defect."""
 
 import logging
-from collections.abc import Callable, Coroutine, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from fastapi.routing import APIRoute
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
@@ -16,7 +15,7 @@ from starlette.routing import Match
 from app import convert
 from app.http.body_limit import BodyLimit, Limit
 from app.http.conditional import Bodiless
-from app.schemas.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer, parse_json
+from app.schemas.faults import MOST_FAULTS, Fault, faults_of, json_pointer
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -147,56 +146,6 @@ def install(app: FastAPI, max_body_bytes: Mapping[str, int], shown: Shown) -> No
 def _too_large(most_bytes: int) -> ProblemError:
     detail = f"The body is larger than {most_bytes} bytes."
     return ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
-
-
-class StrictJsonRoute(APIRoute):
-    """A route that accepts strict JSON only: answer 415 to another media type and 422 to any error in the text."""
-
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Return the handler that parses the body strictly."""
-        handler = super().get_route_handler()
-        takes_body = self.body_field is not None
-
-        async def strict(request: Request) -> Response:
-            if takes_body:
-                _require_json(request)
-            return await handler(_StrictRequest(request, self.prepared))
-
-        return strict
-
-    async def prepared(self, request: Request, document: Any) -> Any:
-        """Return the document that the schema is to read; a kind of route may change what was posted.
-
-        Raises
-        ------
-        BadInput
-            If the document cannot be prepared.
-        """
-        del request
-        return document
-
-
-class _StrictRequest(Request):
-    def __init__(self, request: Request, prepare: Callable[[Request, Any], Coroutine[Any, Any, Any]]) -> None:
-        super().__init__(request.scope, request.receive)
-        self._prepare = prepare
-
-    async def json(self) -> Any:
-        try:
-            return await self._prepare(self, parse_json(await self.body()))
-        except BadInput as error:
-            raise ProblemError(ProblemKind.INVALID_DOCUMENT, _count(error.faults), faults=error.faults) from error
-
-
-def _require_json(request: Request) -> None:
-    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if media_type != "application/json":
-        detail = f"The body is {media_type[:100]!r}, not application/json."
-        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Post": "application/json"})
-    encoding = request.headers.get("content-encoding", "identity").strip().lower()
-    if encoding != "identity":
-        detail = f"The content encoding {encoding[:100]!r} is accepted for batches only."
-        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Encoding": "identity"})
 
 
 def invalid_document(faults: Sequence[Fault]) -> ProblemError:

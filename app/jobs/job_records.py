@@ -47,6 +47,7 @@ class JobFilters:
     tags: Mapping[str, str] = field(default_factory=dict)
     batch_id: UUID | None = None
     created_after: datetime | None = None
+    created_before: datetime | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,6 +194,8 @@ def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
     conditions += [column == value for column, value in equal.items() if value is not None]
     if filters.created_after is not None:
         conditions.append(Job.created_at > filters.created_after)
+    if filters.created_before is not None:
+        conditions.append(Job.created_at < filters.created_before)
     for key, value in filters.tags.items():
         tagged = select(JobTag.job_id).where(JobTag.key == key, JobTag.value == value)
         conditions.append(Job.id.in_(tagged))

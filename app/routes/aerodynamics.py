@@ -7,7 +7,8 @@ from fastapi.responses import JSONResponse
 
 from app import convert, schemas
 from app.answers.aerodynamics import FitAnswer
-from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document
+from app.http.problems import ProblemKind, invalid_document
+from app.http.strict_routes import StrictJsonRoute
 from app.jobs import idempotency, job_records
 from app.routes import documentation, reference_documentation
 from app.routes.dependencies import PREFIX, Writers

@@ -54,6 +54,7 @@ _SUMMARY: dict[str, Any] = {
     "created_at": "2026-11-22T10:00:00+00:00",
     "started_at": None,
     "finished_at": None,
+    "duration_seconds": None,
     "links": [{"rel": "self", "href": _ADDRESS}],
 }
 ACCEPTED: dict[str, Any] = {**_SUMMARY, "errors": [], "notes": []}
@@ -64,9 +65,11 @@ FINISHED: dict[str, Any] = {
     "lines": {**_COUNTS, "total": 3, "accepted": 0, "successful": 2, "rejected": 1},
     "started_at": "2026-11-22T10:00:01+00:00",
     "finished_at": "2026-11-22T10:00:02+00:00",
+    "duration_seconds": 1.0,
     "errors": [FAULT],
     "links": [{"rel": "self", "href": _ADDRESS}, {"rel": "results", "href": f"{_ADDRESS}/results"}],
 }
+CHECKED: dict[str, Any] = {"total": 3, "rejected": 1, "errors": [FAULT], "notes": []}
 DISMISSED: dict[str, Any] = {**ACCEPTED, "status": "dismissed", "lines": {**_COUNTS, "accepted": 0, "dismissed": 2}}
 STOPPING: dict[str, Any] = {**ACCEPTED, "status": "running", "lines": {**_COUNTS, "accepted": 0, "running": 2}}
 ACCEPTED_ANSWER: dict[str, Any] = {
@@ -123,6 +126,10 @@ RESULTS_ANSWER: dict[str, Any] = {
     "description": "NDJSON with one object for each line, or the rows of one table",
     "content": {
         "application/x-ndjson": {"schema": {"type": "string"}, "example": json.dumps(RESULT) + "\n"},
+        "application/json": {
+            "schema": {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "object"}}},
+            "example": {"frequencies": [{**_LABELS, **row} for row in convert.example_tables()["frequencies"]]},
+        },
         "text/csv": {
             "schema": {"type": "string"},
             "example": documentation.table_as_csv("frequencies", _LABELS),

@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 from uuid import UUID
@@ -11,15 +11,17 @@ from uuid import UUID
 import anyio
 from anyio import CapacityLimiter, from_thread, to_thread
 from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 from sqlalchemy.orm import Session, sessionmaker
 from starlette.requests import ClientDisconnect
 
-from app.answers.batches import BatchDocument
+from app.answers.batches import BatchCheck, BatchDocument
 from app.batches import intake
 from app.batches.intake import BodyTooLarge, Incoming
 from app.export.formats import GEOJSON, RDF_XML, XLSX
 from app.http.problems import ProblemError, ProblemKind, invalid_document, query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
 from app.routes import batch_documentation, documentation
@@ -33,7 +35,7 @@ from app.security.caller import Caller
 if TYPE_CHECKING:
     from hashlib import _Hash
 
-router = APIRouter(prefix=BATCHES, tags=["batches"])
+router = APIRouter(prefix=BATCHES, tags=["batches"], route_class=KnownParametersRoute)
 
 _SILENT_SECONDS = 60.0
 # Bodies that have no room for an analysis and for defaults, or need not have it.
@@ -62,6 +64,7 @@ class IntakeQuery(BaseModel):
         max_length=20_000,
         description="What the lines of a sheet, of features or of CIM leave open, as a JSON object of their fields",
     )
+    validate_only: bool = Field(default=False, description="Check the lines, and store nothing")
     webhook_url: str | None = Field(
         default=None,
         max_length=2000,
@@ -92,6 +95,10 @@ async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_re
     response_model=BatchDocument,
     responses={
         202: batch_documentation.ACCEPTED_ANSWER,
+        200: {
+            **documentation.body("Checked (`validate_only`)", ("application/json", batch_documentation.CHECKED)),
+            "model": BatchCheck,
+        },
         **documentation.problems(
             *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
         ),
@@ -112,13 +119,16 @@ async def submit_batch(
     computation.
     """
     made = await to_thread.run_sync(partial(_receive, writers, caller, key, posted), limiter=_limiter(posted.request))
-    await to_thread.run_sync(partial(sender.send, made.job_ids, chunk=True))
+    if made.job_ids:
+        await to_thread.run_sync(partial(sender.send, made.job_ids, chunk=True))
     return made.answer
 
 
 def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> PostOutcome:
     take_in, lease_seconds = partial(_take_in, writers, caller, key, posted), posted.settings.key_lease_seconds
     try:
+        if posted.how.validate_only:
+            return PostOutcome(_examined(writers, caller, posted))
         return run_holding_key(writers, key, partial(_fingerprint, posted), take_in, lease_seconds)
     except BodyTooLarge as error:
         raise ProblemError(ProblemKind.TOO_LARGE, str(error), headers={"Connection": "close"}) from error
@@ -140,6 +150,13 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
         webhook_url = _webhook_url(posted, incoming)
         receipt = intake.receive(writers, posted.settings, caller, incoming, on_accept, atomic=posted.how.atomic)
     return PostOutcome(answers[0], receipt.chunk_ids)
+
+
+def _examined(sessions: sessionmaker[Session], caller: Caller, posted: _Posted) -> JSONResponse:
+    with closing(_incoming(posted)) as incoming:
+        _webhook_url(posted, incoming)
+        found = intake.examine(sessions, posted.settings, caller, incoming, atomic=posted.how.atomic)
+    return JSONResponse(asdict(found))
 
 
 def _webhook_url(posted: _Posted, incoming: Incoming) -> str | None:

@@ -1,4 +1,4 @@
-"""Results of a batch, streamed as NDJSON, CSV, Parquet, XLSX or GeoJSON, and the faults of rejected lines."""
+"""Results of a batch, streamed as NDJSON, JSON, CSV, Parquet, XLSX or GeoJSON, and the faults of rejected lines."""
 
 from collections.abc import Iterator
 from typing import Annotated, Literal
@@ -25,9 +25,10 @@ from app.routes.streaming import streamed
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
-BatchFormat = Literal["ndjson", "csv", "parquet", "xlsx", "geojson"]
+BatchFormat = Literal["ndjson", "json", "csv", "parquet", "xlsx", "geojson"]
 _MEDIA_TYPES: dict[BatchFormat, str] = {
     "ndjson": "application/x-ndjson",
+    "json": formats.MEDIA_TYPES["json"],
     "csv": "text/csv",
     "parquet": formats.PARQUET,
     "xlsx": formats.XLSX,
@@ -100,7 +101,7 @@ def batch_results(
             return workbook.xlsx_bytes(name, exported_columns(name, line_results.columns(name)), rows)
         if form == "csv":
             return formats.in_blocks(formats.csv_text(line_results.columns(name), rows, asked.dialect))
-        return formats.in_blocks(formats.ndjson_text(rows))
+        return formats.in_blocks(formats.json_text(name, rows) if form == "json" else formats.ndjson_text(rows))
 
     return streamed(readers, pieces, _MEDIA_TYPES[form], headers)
 

@@ -11,6 +11,7 @@ from app.http.problems import ProblemError, ProblemKind
 from app.jobs import batch_progress
 from app.jobs.batch_progress import Counts
 from app.routes.dependencies import PREFIX, RETRY_SECONDS
+from app.routes.job_status import seconds_between
 from app.security.caller import Caller
 from app.tables import ENDED, Batch
 
@@ -73,6 +74,7 @@ def batch_summary(batch: Batch, counts: Counts) -> dict[str, Any]:
         "created_at": batch.created_at.isoformat(),
         "started_at": counts.started_at.isoformat() if counts.started_at else None,
         "finished_at": counts.finished_at.isoformat() if counts.finished_at else None,
+        "duration_seconds": seconds_between(counts.started_at, counts.finished_at),
         "links": _links(batch, counts),
     }
 

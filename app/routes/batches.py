@@ -13,6 +13,7 @@ from app.answers.batches import BatchDocument, BatchPage
 from app.batches import batch_records, intake
 from app.http import paging
 from app.http.problems import ProblemKind, query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import batch_progress, idempotency
 from app.jobs.job_records import CancelOutcome
 from app.routes import batch_documentation, documentation
@@ -31,7 +32,7 @@ from app.runtime.settings import signing_key
 from app.security.caller import Owned
 from app.tables import ENDED
 
-router = APIRouter(prefix=BATCHES, tags=["batches"])
+router = APIRouter(prefix=BATCHES, tags=["batches"], route_class=KnownParametersRoute)
 
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
 

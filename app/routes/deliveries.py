@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.answers.deliveries import DeliveryLog, WebhookSecret
 from app.http.problems import ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import idempotency, webhooks
 from app.routes import documentation
 from app.routes.batch_status import batch_address, find_batch
@@ -18,7 +19,7 @@ from app.routes.job_status import find_job, job_address
 from app.schemas.fields import example_of
 from app.tables import WebhookDelivery
 
-router = APIRouter(prefix=PREFIX, tags=["webhooks"])
+router = APIRouter(prefix=PREFIX, tags=["webhooks"], route_class=KnownParametersRoute)
 
 _LOG = documentation.body("The deliveries", ("application/json", example_of(DeliveryLog)))
 _READ: dict[int | str, dict[str, Any]] = {200: _LOG, **documentation.problems(ProblemKind.NOT_FOUND)}

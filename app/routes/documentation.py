@@ -55,7 +55,7 @@ ACCEPTED_HEADERS: dict[str, Any] = {
     "Retry-After": {"description": "Seconds to wait before the next request", "schema": {"type": "integer"}},
     **REPLAYED_HEADER,
 }
-_NOTHING_YET = ("started_at", "finished_at", "failure", "engine_version", "reused_from")
+_NOTHING_YET = ("started_at", "finished_at", "duration_seconds", "failure", "engine_version", "reused_from")
 ACCEPTED_JOB: dict[str, Any] = {
     **example_of(JobDocument),
     "status": "accepted",
@@ -77,7 +77,7 @@ DISMISSED_JOB: dict[str, Any] = {**ACCEPTED_JOB, "status": "dismissed", "finishe
 STOPPING_JOB: dict[str, Any] = {
     **example_of(JobDocument),
     "cancel_requested": True,
-    **dict.fromkeys(("finished_at", "failure", "engine_version", "reused_from")),
+    **dict.fromkeys(("finished_at", "duration_seconds", "failure", "engine_version", "reused_from")),
 }
 RESULT: dict[str, Any] = {**example_of(ResultDocument), "failures": [], "failure": None}
 PROBLEM_PAGE: dict[str, Any] = {

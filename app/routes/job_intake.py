@@ -29,7 +29,7 @@ async def accepted_job(request: Request, document: schemas.JobRequest, key: Key 
     ProblemError
         422 with every fault of the document.
     """
-    await _check(request, document)
+    await check_request(request, document)
     order = _order(request.state.caller, document, key, may_reuse=may_reuse)
     shared = request.app.state  # read directly, since a FastAPI dependency costs as much as checking the line
     try:
@@ -58,7 +58,14 @@ def _accepted(job: Job) -> JSONResponse:
     return JSONResponse(job_document(job), 202, headers)
 
 
-async def _check(request: Request, document: schemas.JobRequest) -> None:
+async def check_request(request: Request, document: schemas.JobRequest) -> None:
+    """Check a request beyond its schema.
+
+    Raises
+    ------
+    ProblemError
+        422 with every fault of the document.
+    """
     # Checking all points of a study, or remedies, takes time; a single line takes less than a switch to a thread.
     check = partial(convert.request_faults, document)
     quick = document.study is None and document.remedies is None

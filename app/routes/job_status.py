@@ -1,5 +1,6 @@
 """What the routes of jobs share: finding a job, its status document and its links."""
 
+from datetime import datetime
 from typing import Any
 from uuid import UUID
 
@@ -58,6 +59,11 @@ def failure_of(job: Job) -> dict[str, Any] | None:
     return {"kind": job.failure_kind.value, "detail": job.failure_detail} if job.failure_kind else None
 
 
+def seconds_between(begin: datetime | None, end: datetime | None) -> float | None:
+    """Return the time between two moments [s], None if one of them is not known."""
+    return None if begin is None or end is None else (end - begin).total_seconds()
+
+
 def job_document(job: Job) -> dict[str, Any]:
     """Return the status document of a job."""
     return {
@@ -71,6 +77,7 @@ def job_document(job: Job) -> dict[str, Any]:
         "created_at": job.created_at.isoformat(),
         "started_at": job.started_at.isoformat() if job.started_at else None,
         "finished_at": job.finished_at.isoformat() if job.finished_at else None,
+        "duration_seconds": seconds_between(job.started_at, job.finished_at),
         "attempt": job.attempt,
         "cancel_requested": job.cancel_requested,
         "failure": failure_of(job),

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 from app import schemas
-from app.answers.jobs import JobDocument, JobPage
+from app.answers.jobs import JobDocument, JobPage, Validity
 from app.http import paging
 from app.http.problems import ProblemKind, query_fault
 from app.jobs import job_records
@@ -19,7 +19,7 @@ from app.jobs.job_records import CancelOutcome, JobFilters
 from app.routes import documentation, own_documentation
 from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf
-from app.routes.job_intake import JOBS, accepted_job
+from app.routes.job_intake import JOBS, accepted_job, check_request
 from app.routes.job_status import find_job, find_status, job_document
 from app.routes.known_lines import KnownLineRoute
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
@@ -64,6 +64,9 @@ class ListQuery(BaseModel):
     created_after: Moment | None = Field(
         default=None, description="Only jobs created after this time, with a time zone"
     )
+    created_before: Moment | None = Field(
+        default=None, description="Only jobs created before this time, with a time zone"
+    )
     limit: int = Field(default=50, ge=1, le=_MOST_ON_PAGE, description="Most jobs on the page")
     cursor: str | None = Field(default=None, max_length=200, description="Cursor from a `next` address")
 
@@ -79,7 +82,7 @@ class ListQuery(BaseModel):
         tags = {key: value for key, _, value in pairs}
         if len(tags) != len(pairs) or not all(key and colon and value for key, colon, value in pairs):
             raise query_fault("tag", "a tag is key:value, each key at most once")
-        return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after)
+        return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after, self.created_before)
 
 
 @router.post(
@@ -94,6 +97,10 @@ class ListQuery(BaseModel):
             ),
             "headers": documentation.ACCEPTED_HEADERS,
         },
+        200: {
+            **documentation.body("Valid, and not submitted (`validate_only`)", ("application/json", {"valid": True})),
+            "model": Validity,
+        },
         **documentation.problems(
             *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
         ),
@@ -104,6 +111,7 @@ async def submit_job(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=_REQUESTS)],
     key: KeyOf,
     may_reuse: MayReuse,
+    validate_only: Annotated[bool, Query(description="Check the document, and submit nothing")] = False,
 ) -> Response:
     """Accept a line for analysis. The service stores the job before it answers, whether or not a worker is running.
 
@@ -114,6 +122,9 @@ async def submit_job(
     ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new
     computation.
     """
+    if validate_only:
+        await check_request(request, document)
+        return JSONResponse({"valid": True})
     return await accepted_job(request, document, key, may_reuse=may_reuse)
 
 

@@ -6,7 +6,7 @@ from anyio import to_thread
 from fastapi import Request
 
 from app import convert
-from app.http.problems import StrictJsonRoute
+from app.http.strict_routes import StrictJsonRoute
 from app.owned import records
 
 

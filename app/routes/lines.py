@@ -8,7 +8,8 @@ from sqlalchemy.orm import Session
 
 from app import convert
 from app.answers.lines import ResolvedLine
-from app.http.problems import ProblemKind, StrictJsonRoute, invalid_document
+from app.http.problems import ProblemKind, invalid_document
+from app.http.strict_routes import StrictJsonRoute
 from app.jobs import idempotency, job_records
 from app.owned import records
 from app.routes import documentation, own_documentation

@@ -8,7 +8,8 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
 from app.answers.owned import OwnTableList, OwnTableRow
-from app.http.problems import ProblemError, ProblemKind, StrictJsonRoute, invalid_document
+from app.http.problems import ProblemError, ProblemKind, invalid_document
+from app.http.strict_routes import StrictJsonRoute
 from app.jobs import idempotency, job_records
 from app.owned import records
 from app.owned.records import TooMany

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from app.answers.owned import OwnConductorList, StoredConductors
 from app.http.problems import ProblemError, ProblemKind, invalid_document
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import idempotency
 from app.owned import records
 from app.owned.conductor_sheets import read_conductors
@@ -23,7 +24,7 @@ from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_on
 from app.schemas.faults import BadInput, Fault
 from app.tables import OwnConductor
 
-router = APIRouter(prefix=f"{PREFIX}/conductors/own", tags=["reference"])
+router = APIRouter(prefix=f"{PREFIX}/conductors/own", tags=["reference"], route_class=KnownParametersRoute)
 
 
 async def _sheet(request: Request) -> bytes:

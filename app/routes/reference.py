@@ -5,7 +5,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from fastapi.responses import JSONResponse
 
-from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList
+from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList, Version
+from app.convert import ENGINE_VERSION
 from app.export.exported_columns import all_tables
 from app.http.problems import ProblemKind
 from app.owned import records
@@ -13,9 +14,22 @@ from app.reference import conductors
 from app.reference.ice_shapes import ICE_SHAPES
 from app.routes import documentation, reference_documentation
 from app.routes.dependencies import PREFIX, CallerOf, Readers
+from app.runtime.version import SERVICE_VERSION
 from app.schemas import field_table
+from app.schemas.fields import example_of
 
 router = APIRouter(prefix=PREFIX, tags=["reference"])
+
+
+@router.get(
+    "/version",
+    summary="Get the versions",
+    response_model=Version,
+    responses={200: documentation.body("The versions", ("application/json", example_of(Version)))},
+)
+def get_version() -> JSONResponse:
+    """Return the versions of the service, of the computation and of the addresses."""
+    return JSONResponse({"service": SERVICE_VERSION, "engine": ENGINE_VERSION, "api": PREFIX.removeprefix("/")})
 
 
 @router.get(

@@ -10,13 +10,15 @@ from app.batches.intake.body_formats import (
     read_rdf_xml,
     read_xlsx,
 )
-from app.batches.intake.receive import Receipt, lines_a_chunk, receive
+from app.batches.intake.receive import Examined, Receipt, examine, lines_a_chunk, receive
 from app.schemas.faults import BodyTooLarge
 
 __all__ = [
     "BodyTooLarge",
+    "Examined",
     "Incoming",
     "Receipt",
+    "examine",
     "gunzipped",
     "lines_a_chunk",
     "read_csv",

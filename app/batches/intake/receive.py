@@ -29,6 +29,7 @@ from app.sheets.columns import Computed, PlacedLine
 
 _LINES_A_BLOCK = 500
 _FAULTS_A_LINE = 20
+_FAULTS_SHOWN = 100
 _LABEL: TypeAdapter[str] = TypeAdapter(Label)
 
 
@@ -102,6 +103,39 @@ def receive(
             batch_records.discard(session, batch_id)
         raise
     return Receipt(batch_id, tuple(chunk.id for chunk in draft.chunks))
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """What would become of a batch: its lines, those that would be rejected, the faults of the first, and notes."""
+
+    total: int
+    rejected: int
+    errors: list[dict[str, Any]]
+    notes: list[str]
+
+
+def examine(
+    sessions: sessionmaker[Session], settings: Settings, caller: Caller, incoming: Incoming, *, atomic: bool
+) -> Examined:
+    """Check the lines of a batch as `receive` does, and store nothing.
+
+    Raises
+    ------
+    BadInput, BodyTooLarge
+        As in `receive`.
+    """
+    analysis, defaults = convert.read_analysis(incoming.analysis), checked_defaults(incoming.defaults)
+    with sessions() as session:
+        own = records.own_rows(session, caller.owner)
+    draft = _Draft(uuid7(), analysis, lines_a_chunk(settings, analysis), atomic, own, defaults)
+    errors: list[dict[str, Any]] = []
+    for block in _blocks(settings, draft, incoming.lines):
+        named = ((item["number"], item["reference"], fault) for item in block for fault in item["faults"] or ())
+        found = ({"number": number, "reference": reference, **fault} for number, reference, fault in named)
+        errors += islice(found, _FAULTS_SHOWN - len(errors))
+    _refuse_hopeless(draft)
+    return Examined(draft.taken, draft.rejected, errors, incoming.notes())
 
 
 def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:

@@ -103,6 +103,7 @@ def test_filters(sessions: sessionmaker[Session]) -> None:
     assert found(JobFilters(tags={"north": "region"})) == []
     assert found(JobFilters(batch_id=uuid4())) == []
     assert found(JobFilters(created_after=north.created_at)) == [south.id]
+    assert found(JobFilters(created_before=south.created_at)) == [north.id]
 
 
 def test_cancel_ends_a_queued_job_at_once(sessions: sessionmaker[Session]) -> None:

@@ -122,6 +122,9 @@ def test_csv_has_labels_and_the_summary_every_line(client: httpx.Client, setting
     assert float(first["lowest_critical_wind_speed_m_per_s"]) == lowest
     assert (second["status"], second["sag_m"]) == ("rejected", "")
     rows = list(csv.DictReader(io.StringIO(client.get(f"{address}/results?table=frequencies&format=csv").text)))
+    whole = client.get(f"{address}/results?table=frequencies", headers={"Accept": "application/json"}).json()
+    lines = client.get(f"{address}/results?table=frequencies&format=ndjson").text.splitlines()
+    assert whole == {"frequencies": [json.loads(line) for line in lines]}
     assert [row["number"] for row in rows] == ["1"] * len(cycle["frequencies"])
 
 

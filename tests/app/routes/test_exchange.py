@@ -184,3 +184,15 @@ def test_what_cim_does_not_have_is_told_of_by_segment_and_attribute(client: http
     assert (mixed.status_code, mixed.json()["lines"]["accepted"]) == (202, 2)
     (error,) = mixed.json()["errors"]
     assert (error["place"], error["pointer"]) == ("ACLineSegment _segment-17", "/span/length_m")
+
+
+def test_a_batch_may_be_checked_without_storing_it(client: httpx.Client) -> None:
+    good, *_ = SPANS["features"]
+    bad = {**good, "geometry": {"type": "Polygon"}}
+    answer = post(client, {**SPANS, "features": [good, bad]}, validate_only="true")
+    assert answer.status_code == 200, answer.text
+    found = answer.json()
+    assert (found["total"], found["rejected"], found["notes"]) == (2, 1, [])
+    assert [(error["place"], error["pointer"]) for error in found["errors"]] == [("feature 2", "/geometry/type")]
+    assert post(client, {**SPANS, "features": [bad]}, validate_only="true").status_code == 422
+    assert client.get("/v1/batches").json()["batches"] == []

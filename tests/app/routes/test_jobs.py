@@ -40,10 +40,20 @@ def test_a_job_runs_to_its_end(client: httpx.Client, settings: Settings) -> None
     status = client.get(service.finished(client, settings)).json()
     assert (status["status"], status["progress"], status["attempt"]) == ("successful", 1.0, 1)
     assert status["created_at"] <= status["started_at"] <= status["finished_at"]
+    taken = datetime.fromisoformat(status["finished_at"]) - datetime.fromisoformat(status["started_at"])
+    assert status["duration_seconds"] == taken.total_seconds()
     assert status["failure"] is None
     links = {link["rel"]: link["href"] for link in status["links"]}
     assert set(links) >= {"self", "results", "frequencies", "critical-wind-speeds", "limit-cycles", "amplitude-plot"}
     assert {client.get(href).status_code for href in links.values()} == {200}
+
+
+def test_a_request_may_be_checked_without_a_job(client: httpx.Client) -> None:
+    answer = client.post("/v1/jobs?validate_only=true", json=short_request())
+    assert (answer.status_code, answer.json()) == (200, {"valid": True})
+    wrong = client.post("/v1/jobs?validate_only=true", json=labelled(span={}))
+    assert (wrong.status_code, wrong.json()["errors"][0]["code"]) == (422, "missing")
+    assert client.get("/v1/jobs").json()["jobs"] == []
 
 
 def test_only_a_job_that_has_not_ended_asks_to_look_again(client: httpx.Client, settings: Settings) -> None:
@@ -105,6 +115,7 @@ def test_jobs_are_found_by_asset_status_and_time(
     assert found(status="accepted") == [first["id"]]
     assert found(status="running") == [second["id"]]
     assert found(created_after=first["created_at"]) == [second["id"]]
+    assert found(created_before=second["created_at"]) == [first["id"]]
     assert found(created_after=(datetime.now(UTC) + timedelta(hours=1)).isoformat()) == []
 
 

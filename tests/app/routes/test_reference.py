@@ -1,8 +1,15 @@
 import httpx
 
 from app import convert
-from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList
+from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList, Version
+from app.convert import ENGINE_VERSION
+from app.runtime.version import SERVICE_VERSION
 from app.schemas.field_table import input_fields
+
+
+def test_the_versions_are_told(shared_client: httpx.Client) -> None:
+    found = Version.model_validate_json(shared_client.get("/v1/version").content)
+    assert (found.service, found.engine, found.api) == (SERVICE_VERSION, ENGINE_VERSION, "v1")
 
 
 def test_conductors_are_sought_by_words(shared_client: httpx.Client) -> None:

@@ -1,0 +1,101 @@
+"""Kinds of routes that take what they know and refuse everything else."""
+
+from collections.abc import Callable, Coroutine, Iterator
+from typing import Any
+
+from fastapi import Request, Response
+from fastapi.dependencies.models import Dependant
+from fastapi.routing import APIRoute
+from pydantic import BaseModel
+
+from app.http.problems import ProblemError, ProblemKind, invalid_document
+from app.schemas.faults import BadInput, Fault, json_pointer, parse_json
+
+_READING = frozenset({"GET", "HEAD"})
+
+
+class KnownParametersRoute(APIRoute):
+    """A route that refuses unknown query parameters of a request that changes something, where a slip costs most."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Return the handler that looks at the names of the parameters first."""
+        handler = super().get_route_handler()
+        known = frozenset(_parameters(self.dependant))
+
+        async def knowing(request: Request) -> Response:
+            if request.scope["query_string"] and request.method not in _READING:
+                _refuse_unknown(request, known)
+            return await handler(request)
+
+        return knowing
+
+
+def _parameters(dependant: Dependant) -> Iterator[str]:
+    """Yield the names of the query parameters that a route and what it depends on take."""
+    for field in dependant.query_params:
+        kind = field.field_info.annotation
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            yield from (inner.alias or name for name, inner in kind.model_fields.items())
+        else:
+            yield field.alias
+    for inner in dependant.dependencies:
+        yield from _parameters(inner)
+
+
+def _refuse_unknown(request: Request, known: frozenset[str]) -> None:
+    unknown = [name for name in request.query_params if name not in known]
+    if unknown:
+        named = f"known are {', '.join(sorted(known))}" if known else "there are none here"
+        detail = f"unknown parameter; {named}"
+        faults = [Fault(json_pointer(["query", name]), "unknown_field", detail) for name in unknown]
+        raise ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=faults)
+
+
+class StrictJsonRoute(KnownParametersRoute):
+    """A route that accepts strict JSON only: answer 415 to another media type and 422 to any error in the text."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Return the handler that parses the body strictly."""
+        handler = super().get_route_handler()
+        takes_body = self.body_field is not None
+
+        async def strict(request: Request) -> Response:
+            if takes_body:
+                _require_json(request)
+            return await handler(_StrictRequest(request, self.prepared))
+
+        return strict
+
+    async def prepared(self, request: Request, document: Any) -> Any:
+        """Return the document that the schema is to read; a kind of route may change what was posted.
+
+        Raises
+        ------
+        BadInput
+            If the document cannot be prepared.
+        """
+        del request
+        return document
+
+
+class _StrictRequest(Request):
+    def __init__(self, request: Request, prepare: Callable[[Request, Any], Coroutine[Any, Any, Any]]) -> None:
+        super().__init__(request.scope, request.receive)
+        self._prepare = prepare
+
+    async def json(self) -> Any:
+        try:
+            return await self._prepare(self, parse_json(await self.body()))
+        except BadInput as error:
+            raise invalid_document(error.faults) from error
+
+
+def _require_json(request: Request) -> None:
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type != "application/json":
+        detail = f"The body is {media_type[:100]!r}, not application/json."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Post": "application/json"})
+    encoding = request.headers.get("content-encoding", "identity").strip().lower()
+    if encoding != "identity":
+        detail = f"The content encoding {encoding[:100]!r} is accepted for batches only."
+        raise ProblemError(ProblemKind.UNSUPPORTED_MEDIA_TYPE, detail, headers={"Accept-Encoding": "identity"})

@@ -1,0 +1,32 @@
+"""Routes take what they know: query parameters of requests that change something. Bodies are in test_problems."""
+
+import httpx
+import pytest
+
+from tests.documents import short_request
+
+
+@pytest.mark.parametrize(
+    ("method", "address", "known"),
+    [
+        ("POST", "/v1/jobs?validate-only=true", "known are validate_only"),
+        (
+            "POST",
+            "/v1/batches?atomik=true&atomic=true",
+            "known are analysis, atomic, defaults, validate_only, webhook_url",
+        ),
+        ("POST", "/v1/lines/resolve?x=1", "there are none here"),
+        ("DELETE", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e?x=1", ""),
+        ("DELETE", "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e?x=1", ""),
+    ],
+)
+def test_unknown_query_parameters_are_refused(
+    shared_client: httpx.Client, method: str, address: str, known: str
+) -> None:
+    answer = shared_client.request(method, address, json=short_request())
+    assert answer.status_code == 400, answer.text
+    (fault,) = answer.json()["errors"]
+    assert fault["code"] == "unknown_field"
+    assert fault["pointer"] in {"/query/validate-only", "/query/atomik", "/query/x"}
+    assert known in fault["detail"]
+    assert shared_client.get("/v1/jobs").json()["jobs"] == []
