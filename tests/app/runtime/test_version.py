@@ -4,4 +4,4 @@ from app.runtime.version import SERVICE_VERSION
 
 
 def test_it_is_that_of_the_distribution() -> None:
-    assert SERVICE_VERSION == version("galloping")
+    assert version("galloping") == SERVICE_VERSION
