@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: setup demo test test-pages test-faults reliability check bench capacity validation
+.PHONY: setup demo test test-pages page-pictures test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -25,6 +25,10 @@ test: setup
 # Opens every page in the chromium of the system; CHROMIUM names another one.
 test-pages: setup
 	$(BIN)/python -m pytest tests/browser
+
+# Takes pictures of the pages into docs/pictures/.
+page-pictures: setup
+	$(BIN)/python -m benchmarks.page_pictures
 
 # Kills and restarts processes for some seven minutes and prints the figures; `make reliability` writes them into
 # docs/reliability.md.

@@ -11,6 +11,7 @@ from markupsafe import Markup
 from app import convert
 from app.owned import records
 from app.pages.drawings.iced_bundles import iced_bundle
+from app.pages.drawings.phase_places import phase_places
 from app.pages.drawings.spans import span_drawing
 from app.pages.frame import caller_of
 from app.pages.measures import Units
@@ -25,6 +26,7 @@ class Preview:
 
     bundle: Markup
     span: Markup
+    phases: Markup | None
     assumptions: Sequence[Mapping[str, Any]]
     doubts: Sequence[str]
     tension: float
@@ -55,6 +57,7 @@ def preview(request: Request, document: Mapping[str, Any], units: Units) -> Prev
     return Preview(
         bundle=iced_bundle(line, said, thickness, units),
         span=span_drawing(line, sag, 0.0, units).picture,
+        phases=phase_places(line, units),
         assumptions=found["assumptions"],
         doubts=[str(doubt) for doubt in found["doubts"]],
         tension=tension or _weight(line) * line["span"]["length_m"] ** 2 / (8.0 * sag),

@@ -1,14 +1,17 @@
+import re
 from uuid import UUID
 
 import httpx
 import pytest
 from sqlalchemy import update
 
+from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.storage.database import make_engine, session_factory
 from app.tables import FailureKind, Job, JobStatus
 from tests.app import service
 from tests.app.pages.reading import BROWSER, read, send
+from tests.documents import short_request
 
 
 def test_the_page_of_a_result_begins_with_the_verdict(shared_client: httpx.Client, known_job: str) -> None:
@@ -70,3 +73,25 @@ def test_a_motion_is_shown_in_its_course(shared_client: httpx.Client, known_job:
     assert "data-motion=" in text
     assert "style=" not in text
     assert shared_client.get(f"/pages/jobs/{known_job}/motion?cycle=9999").status_code == 404
+
+
+@pytest.mark.parametrize("name", ["c11-single", "c11-quad"])
+def test_a_line_of_the_source_has_its_page(shared_client: httpx.Client, shared_settings: Settings, name: str) -> None:
+    request = {**short_request(), "line": example(name)}
+    address = service.finished(shared_client, shared_settings, request)
+    page = read(shared_client, address.replace("/v1/", "/pages/"))
+    assert page.status == 200
+    assert "Aerodynamic model" in page.text
+    assert "Assumptions" not in page.text
+    assert shared_client.get(address.replace("/v1/", "/pages/") + "/motion").status_code == 200
+
+
+def test_a_study_shows_each_of_its_points(shared_client: httpx.Client, shared_settings: Settings) -> None:
+    axes = [{"parameter": "span.length_m", "values": [110.0, 125.88]}]
+    address = service.finished(shared_client, shared_settings, {**short_request(), "study": {"axes": axes}})
+    path = address.replace("/v1/", "/pages/")
+    sags = [re.search(r"Sag (\S+) m", read(shared_client, f"{path}?point={point}").text) for point in (0, 1)]
+    assert all(sags)
+    assert len({found[1] for found in sags if found}) == 2
+    assert "span.length_m = 110" in read(shared_client, path).text
+    assert read(shared_client, f"{path}?point=7").status == 404
