@@ -24,6 +24,7 @@ from app.jobs.job_records import look_up
 from app.jobs.watched_states import batches_seen, jobs_seen
 from app.operation import metrics
 from app.pages import assets, frame, views
+from app.plots.studio import Studio
 from app.routes import (
     aerodynamics,
     batch_intake,
@@ -41,6 +42,7 @@ from app.routes import (
     own_aerodynamics,
     own_conductors,
     own_documentation,
+    pictures,
     previews,
     reference,
     remedies,
@@ -94,6 +96,7 @@ def create_app(settings: Settings | None = None) -> Service:
         await meter.close()
         for watch in (app.state.job_watch, app.state.batch_watch):
             await watch.close()
+        app.state.studio.close()
         app.state.sender.close()
         database.dispose()
         app.state.prober.dispose()
@@ -117,7 +120,7 @@ def create_app(settings: Settings | None = None) -> Service:
     limits = {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes}
     problems.install(app, limits, frame.shown_problem)
     app.add_middleware(HeadAsGet)
-    for module in (jobs, remedies, lines, previews, results, batch_intake, batches, batch_results):
+    for module in (jobs, remedies, lines, previews, results, pictures, batch_intake, batches, batch_results):
         app.include_router(module.router)
     for module in (batch_ranking, clearance, events, deliveries, aerodynamics, own_aerodynamics, own_conductors):
         app.include_router(module.router)
@@ -147,5 +150,6 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
         "messages", lambda job_ids: [app.state.sender.send(job_ids)] * len(job_ids), _MESSAGES_PAUSE_SECONDS
     )
     app.state.statuses = GroupedCalls("statuses", partial(look_up, app.state.readers))
+    app.state.studio = Studio(settings.drawing_processes)
     app.state.job_watch = SharedWatch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
     app.state.batch_watch = SharedWatch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)

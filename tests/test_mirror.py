@@ -41,7 +41,6 @@ WITHOUT_A_TEST_FILE = {
     "app.operation.workers": "tests/worker/test_presence.py and tests/app/operation/test_service_status.py hold it.",
     "app.pages.submitting": "tests/app/pages/views/test_start.py and test_line_form.py submit and are refused by it.",
     "app.pages.views.__init__": "It lists the routers; tests/app/pages/views/test_start.py opens their pages.",
-    "app.plots.drawing": "It sets up figures; tests/app/test_plots.py draws every picture with it.",
     "app.routes.batch_status": "tests/app/routes/test_batches.py holds the documents of batches that it makes.",
     "app.routes.dependencies": "It hands settings, caller and sessions to routes; all tests of routes use it.",
     "app.routes.finished_jobs": "tests/app/routes/test_results.py holds its answers.",

@@ -2,7 +2,7 @@
 
 import typer
 
-from app.cli import catalogue, climate, keys, lines, operate, remedies, service
+from app.cli import catalogue, climate, keys, lines, operate, pictures, remedies, service
 
 app = typer.Typer(
     help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
@@ -22,6 +22,7 @@ for command in (
     lines.ellipse,
     lines.resolve,
     lines.clearance,
+    pictures.plot,
     climate.climate,
     catalogue.conductors,
     catalogue.ice_shapes,

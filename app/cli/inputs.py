@@ -29,14 +29,14 @@ def read_request(
 
     A file of a GIS or CIM program, told by its name, must hold one line.
     """
-    document = _document(line, None if defaults is None else _read_json(defaults))
+    document = _document(line, None if defaults is None else read_json(defaults))
     parts = {"analysis": analysis, "study": study, "placement": placement, "remedies": remedies}
     for name, path in parts.items():
         if path is None:
             continue
         if name in document:
             end(f"{name} is given twice: in {line} and in {path}", BAD_INPUT)
-        document = {**document, name: _read_json(path)}
+        document = {**document, name: read_json(path)}
     return document
 
 
@@ -44,7 +44,7 @@ def _document(path: Path, defaults: Any) -> dict[str, Any]:
     """Return the request in the file of a line, which may be the line alone."""
     if path.suffix.lower() in SUFFIXES:
         return exchanged_request(path, _read(path), defaults)
-    given = _read_json(path)
+    given = read_json(path)
     document = given if isinstance(given, dict) and "line" in given else {"line": given}
     if defaults is None or not isinstance(document["line"], dict):
         return document
@@ -64,7 +64,8 @@ def _read(path: Path) -> bytes:
         end(f"{path} cannot be read: {error.strerror or error}", BAD_INPUT)
 
 
-def _read_json(path: Path) -> Any:
+def read_json(path: Path) -> Any:
+    """Read a JSON file, or standard input for -; end the command with a message if that cannot be read."""
     from app.schemas.faults import BadInput, parse_json
 
     raw = _read(path)

@@ -21,6 +21,7 @@ from app.cli.options import (
     LineFile,
     OutputFile,
     PlacementFile,
+    PlotsDirectory,
     ReportFile,
     StudyFile,
 )
@@ -40,6 +41,7 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     defaults: DefaultsFile = None,
     output: OutputFile = None,
     csv: CsvDirectory = None,
+    plots: PlotsDirectory = None,
     report: ReportFile = None,
     as_json: AsJson = False,
 ) -> None:
@@ -56,6 +58,10 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     result = result_document(request, points)
     if csv is not None:
         _write_tables(result, csv)
+    if plots is not None:
+        from app.cli.pictures import Wanted, draw_all
+
+        draw_all(result, {point.point: point.orbits for point in points}, Wanted(plots))
     if report is not None:
         _write_report(request, points[0], report)
     if output is not None or as_json or not sys.stdout.isatty():

@@ -27,6 +27,9 @@ OutputFile = Annotated[
 CsvDirectory = Annotated[
     Path | None, typer.Option("--csv", metavar="DIR", help="Write every table with rows there as a CSV file.")
 ]
+PlotsDirectory = Annotated[
+    Path | None, typer.Option("--plots", metavar="DIR", help="Draw every picture that the result has rows for there.")
+]
 ReportFile = Annotated[
     Path | None, typer.Option("--report", metavar="REPORT.pdf", help="Write a report of the result, as PDF or .html.")
 ]

@@ -4,7 +4,7 @@ import json
 import time
 from collections.abc import Iterator, Mapping
 from types import TracebackType
-from typing import IO, TYPE_CHECKING, Any, Literal, Self, TypeVar
+from typing import IO, TYPE_CHECKING, Any, Self, TypeVar
 from uuid import UUID
 
 import httpx
@@ -17,6 +17,7 @@ from app.client import uploads
 from app.client.connection import Connection, ServiceError, Show
 from app.client.known_lines import KnownLines
 from app.client.uploads import Lines, Upload, as_json
+from app.plots import Extension
 from app.schemas import Analysis, Line, Remedies, Study
 from app.schemas.known import KnownLine
 
@@ -181,9 +182,14 @@ class Client(KnownLines):
         """Return one table of a finished job as a data frame; needs pandas (`galloping[pandas]`)."""
         return uploads.frame(self.rows(job, table))
 
-    def plot(self, job: JobDocument, picture: str = "amplitude", extension: Literal["svg", "png"] = "svg") -> bytes:
-        """Return a picture of a finished job: amplitude, orbit, or another one named in its links."""
-        return self.download(job, f"plots/{picture}.{extension}")
+    def plot(
+        self, job: JobDocument, picture: str = "amplitude", extension: Extension = "svg", **look: str | float
+    ) -> bytes:
+        """Return a picture of a finished job: amplitude, orbit, or another one named in its links.
+
+        `look` holds theme ("light", "dark"), width and height [px], point, and the abscissa of a study.
+        """
+        return self.download(job, str(httpx.URL(f"plots/{picture}.{extension}", params=look)))
 
     def download(self, job: JobDocument | BatchDocument, path: str) -> bytes:
         """Return the content at a path below the address of a job or batch."""

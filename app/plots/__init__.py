@@ -1,13 +1,28 @@
 """Pictures of results, the only package that imports matplotlib.
 
+`PICTURES` names them, and `draw` makes a file of one from rows. matplotlib is loaded when the first one is drawn.
 Figures are created as objects, without pyplot and its global state.
 """
 
-from app.plots.amplitudes import amplitude
-from app.plots.drawing import MEDIA_TYPES, Extension
-from app.plots.fonts import fonts
-from app.plots.modes import modes
-from app.plots.orbits import orbit
-from app.plots.studies import Abscissa, Study, study
+from app.plots.facts import Facts, Found, facts_of
+from app.plots.options import LARGEST_PX, MEDIA_TYPES, SMALLEST_PX, Abscissa, Extension, Options, Theme
+from app.plots.registry import EDITION, PICTURES, Picture, draw, drawable, fonts
 
-__all__ = ["MEDIA_TYPES", "Abscissa", "Extension", "Study", "amplitude", "fonts", "modes", "orbit", "study"]
+__all__ = [
+    "EDITION",
+    "LARGEST_PX",
+    "MEDIA_TYPES",
+    "PICTURES",
+    "SMALLEST_PX",
+    "Abscissa",
+    "Extension",
+    "Facts",
+    "Found",
+    "Options",
+    "Picture",
+    "Theme",
+    "draw",
+    "drawable",
+    "facts_of",
+    "fonts",
+]

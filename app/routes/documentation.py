@@ -106,6 +106,7 @@ PICTURE_ANSWER: dict[str, Any] = {
     "content": {
         "image/svg+xml": {"schema": {"type": "string"}, "example": "<svg/>"},
         "image/png": {"schema": {"type": "string", "format": "binary"}},
+        "application/pdf": {"schema": {"type": "string", "format": "binary"}},
     },
 }
 JOB_PAGE: dict[str, Any] = {"jobs": [FINISHED_JOB], "next": None}

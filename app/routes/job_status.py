@@ -6,6 +6,7 @@ from uuid import UUID
 
 from sqlalchemy.orm import Session
 
+from app import plots
 from app.coalescing.grouped_calls import GroupedCalls
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import job_records
@@ -14,7 +15,6 @@ from app.security.caller import Caller, Owned
 from app.tables import Job, JobStatus
 
 _TABLE_LINKS = ("frequencies", "internal-resonances", "critical-wind-speeds", "limit-cycles")
-_PLOT_LINKS = ("amplitude", "orbit", "modes", "study")
 
 
 async def find_status(statuses: GroupedCalls[Owned, Job | None], caller: Caller, job_id: UUID) -> Job:
@@ -93,5 +93,5 @@ def _links(job: Job) -> list[dict[str, str]]:
     if job.status in {JobStatus.SUCCESSFUL, JobStatus.FAILED}:
         links.append({"rel": "results", "href": f"{address}/results"})
         links += [{"rel": name, "href": f"{address}/results/{name}"} for name in _TABLE_LINKS]
-        links += [{"rel": f"{name}-plot", "href": f"{address}/plots/{name}.svg"} for name in _PLOT_LINKS]
+        links += [{"rel": f"{name}-plot", "href": f"{address}/plots/{name}.svg"} for name in plots.PICTURES]
     return links

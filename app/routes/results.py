@@ -1,10 +1,10 @@
-"""Results of a job, streamed: the whole document, single tables as JSON, CSV, Parquet or XLSX, and pictures."""
+"""Results of a job, streamed: the whole document, and single tables as JSON, CSV, Parquet or XLSX."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Query, Request
 from fastapi.responses import StreamingResponse
 from sqlalchemy.orm import Session
 
@@ -25,15 +25,12 @@ from app.tables import Job
 
 router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
 
-Picture = Literal["amplitude", "orbit", "modes"]
-PictureFormat = Literal["svg", "png"]
 Rows = Iterator[dict[str, object]]
 
 _PROBLEMS = {
     **documentation.UNCHANGED,
     **documentation.problems(ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED),
 }
-_PICTURE_PROBLEMS = {**_PROBLEMS, **documentation.problems(ProblemKind.INVALID_PARAMETER)}
 _TABLE_PROBLEMS = {
     **_PROBLEMS,
     **documentation.problems(ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_ACCEPTABLE),
@@ -104,72 +101,6 @@ def result_table(
     return streamed(readers, pieces, formats.MEDIA_TYPES[chosen], headers)
 
 
-@router.get(
-    "/plots/study.{extension}",
-    summary="Draw the study of a job",
-    response_class=Response,
-    responses={200: documentation.PICTURE_ANSWER, **_PICTURE_PROBLEMS},
-)
-def study_plot(
-    extension: PictureFormat,
-    finished: FinishedJob,
-    readers: Readers,
-    abscissa: Annotated[
-        Literal["reduced", "parameter"],
-        Query(description="Abscissa: ratios as in the source, or values in the field's unit"),
-    ] = "reduced",
-) -> Response:
-    """Draw all points of a study over the varied field, or as a map over two fields."""
-    from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
-
-    job, headers = finished.job, finished.headers(extension)
-    with readers() as session:
-        found = _study_rows(session, job.id)
-    length = job.document.get("line", {"span": {"length_m": 0.0}})["span"]["length_m"]
-    drawn = plots.study(job.name or str(job.id), {"": plots.Study(_axes(job), length, found)}, extension, abscissa)
-    return Response(drawn, headers=headers, media_type=plots.MEDIA_TYPES[extension])
-
-
-@router.get(
-    "/plots/{picture}.{extension}",
-    summary="Draw a point of a job",
-    response_class=Response,
-    responses={200: documentation.PICTURE_ANSWER, **_PICTURE_PROBLEMS},
-)
-def point_plot(
-    picture: Picture,
-    extension: PictureFormat,
-    finished: FinishedJob,
-    readers: Readers,
-    point: Annotated[int, Query(ge=0, description="Number of the study's point, from 0")] = 0,
-) -> Response:
-    """Draw amplitudes over wind speed, orbits at the observation point, or mode shapes of both models."""
-    from app import plots  # noqa: PLC0415 - matplotlib loads slowly, and only pictures need it
-
-    job, headers = finished.job, finished.headers(extension)
-    with readers() as session:
-        found = point_rows(session, job.id, point)
-        if picture == "modes":
-            found["shapes"] = _shapes(session, job, point)
-    title = job.name or str(job.id)
-    draw = {"amplitude": plots.amplitude, "orbit": plots.orbit, "modes": plots.modes}[picture]
-    return Response(draw(title, found, extension), headers=headers, media_type=plots.MEDIA_TYPES[extension])
-
-
-def _shapes(session: Session, job: Job, point: int) -> list[dict[str, Any]]:
-    """Compute the mode shapes of a point anew, which costs less than storing them.
-
-    Raises
-    ------
-    ProblemError
-        404 if the line of the point has no mode shapes.
-    """
-    try:
-        return convert.mode_shapes(*request_of_point(session, job, point))
-    except (ArithmeticError, ValueError) as error:
-        raise ProblemError(ProblemKind.NOT_FOUND, f"The line has no mode shapes at point {point}.") from error
-
-
 def request_of_point(session: Session, job: Job, point: int) -> tuple[Mapping[str, Any], int]:
     """Return the request and the point number for a point of a job; the points of a chunk are lines."""
     if job.batch_id is None:
@@ -211,14 +142,3 @@ def point_rows(session: Session, job_id: UUID, point: int) -> dict[str, list[dic
     found: dict[str, list[dict[str, Any]]] = {name: at_point(name) for name in convert.TABLES}
     found["orbits"] = [orbit for orbit in stored_results.orbits(session, job_id) if orbit["point"] == point]
     return found
-
-
-def _study_rows(session: Session, job_id: UUID) -> dict[str, list[dict[str, Any]]]:
-    """Return the rows that the picture of a study shows, each after the values of the axes."""
-    points = list(stored_results.points(session, job_id))
-    solved = [{**point["axes"], **point["static"]} for point in points if point["static"]]
-    failed = [{**point["axes"], "failure": point["failure"]} for point in points if point["failure"]]
-    tables = {
-        name: list(stored_results.rows(session, job_id, name)) for name in ("critical_wind_speeds", "limit_cycles")
-    }
-    return {"static": solved, "failures": failed, **tables}

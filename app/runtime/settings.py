@@ -89,6 +89,7 @@ class Settings(BaseSettings):
     opentelemetry: bool = Field(default=False, description="Whether to trace requests and jobs")
 
     api_processes: Count = Field(default=1, description="Processes that answer requests")
+    drawing_processes: Count = Field(default=1, description="Pictures that one API process draws at once")
     worker_processes: Count = Field(default_factory=_usable_processors, description="Jobs that one worker runs at once")
     max_jobs_per_process: Count = Field(default=200, description="Jobs after which a worker process is replaced")
     shutdown_seconds: Seconds = Field(default=8.0, description="Time that a stopping worker gives its running jobs")

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from app import convert, plots
-from app.plots.studies import curves
+from app import convert
+from app.plots import Options
+from app.plots.studies import Study, curves, drawn_together
 from app.reference.source_lines import EXAMPLE_NAMES
 from app.reference.source_studies import study_request
 from benchmarks.validation.common import ROOT, table
@@ -64,11 +65,11 @@ def _verdict(checked: tuple[str, bool]) -> tuple[str, str]:
     return text, "agrees" if agrees else "**differs**"
 
 
-def _studies(name: str) -> Mapping[str, plots.Study]:
+def _studies(name: str) -> Mapping[str, Study]:
     return {line.removeprefix("c11-"): _study(name, line) for line in EXAMPLE_NAMES}
 
 
-def _study(name: str, line: str) -> plots.Study:
+def _study(name: str, line: str) -> Study:
     """Run a preset as `galloping analyse` does."""
     request = study_request(name, line)
     document = convert.read(request).model_dump(mode="json", by_alias=True)
@@ -76,14 +77,14 @@ def _study(name: str, line: str) -> plots.Study:
     found = {t: [{**p.axes, **row} for p in points for row in p.tables[t]] for t in convert.TABLES}
     static = [{**p.axes, **p.static} for p in points if p.static]
     axes = [axis["parameter"] for axis in request.get("study", {"axes": []})["axes"]]
-    return plots.Study(axes, request["line"]["span"]["length_m"], {**found, "static": static})
+    return Study(axes, request["line"]["span"]["length_m"], {**found, "static": static})
 
 
-def _draw(name: str, title: str, found: Mapping[str, plots.Study]) -> None:
-    (IMAGES / f"{name}.svg").write_bytes(plots.study(title, found, "svg"))
+def _draw(name: str, title: str, found: Mapping[str, Study]) -> None:
+    (IMAGES / f"{name}.svg").write_bytes(drawn_together(title, found, Options()))
 
 
-def _curves(found: Mapping[str, plots.Study]) -> list[Curve]:
+def _curves(found: Mapping[str, Study]) -> list[Curve]:
     result = []
     for curve in curves(found, "reduced"):
         for loops in sorted({row["loops"] for _, row in curve.points}):

@@ -75,10 +75,17 @@ def _sources(material: Material) -> dict[str, tuple[bytes, str]]:
     for weight, content in fonts.items():
         made[f"report:{weight}"] = content, "ttf"
     found = {**material.found.tables, "orbits": material.orbits}
-    draw = {"amplitude": plots.amplitude, "orbit": plots.orbit}
     for name in PICTURES if found["limit_cycles"] else ():
-        made[f"report:{name}"] = draw[name]("", found, "svg"), "svg"
+        made[f"report:{name}"] = plots.draw(name, found, _facts(material, name), plots.Options()), "svg"
     return made
+
+
+def _facts(material: Material, picture: str) -> plots.Facts:
+    """Return the facts that a picture shows; its title is its own, since the report begins with the line's name."""
+    found = material.found
+    request = {"line": found.line_here, "analysis": found.analysis}
+    title = plots.PICTURES[picture].title
+    return plots.facts_of(title, request, found.here["static"], found.tables, found.here["engine_version"])
 
 
 def _sheet() -> bytes:

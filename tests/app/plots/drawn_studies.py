@@ -3,7 +3,7 @@
 import itertools
 from typing import Any
 
-from app import plots
+from app.plots.studies import Study
 
 VALUES: dict[str, list[Any]] = {
     "damping.vertical_ratio": [0.0003, 0.0005, 0.0007],
@@ -14,7 +14,7 @@ VALUES: dict[str, list[Any]] = {
 }
 
 
-def study(*axes: str, winds: tuple[float, ...] = (4.0,), failures: int = 0) -> plots.Study:
+def study(*axes: str, winds: tuple[float, ...] = (4.0,), failures: int = 0) -> Study:
     found: dict[str, list[dict[str, Any]]] = {"static": [], "limit_cycles": [], "critical_wind_speeds": []}
     for number, values in enumerate(itertools.product(*(VALUES[axis] for axis in axes))):
         point = dict(zip(axes, values, strict=True))
@@ -32,7 +32,7 @@ def study(*axes: str, winds: tuple[float, ...] = (4.0,), failures: int = 0) -> p
                 {**cycle, "vertical_ratio": 0.0, "horizontal_ratio": 0.0, "stability": "stable", "kind": "equilibrium"},
             ]
     found["failures"] = [{**dict.fromkeys(axes, 1.0), "failure": "x"}] * failures
-    return plots.Study(axes, 125.0, found)
+    return Study(axes, 125.0, found)
 
 
-NOTHING = plots.Study((), 125.0, {"static": [], "limit_cycles": [], "critical_wind_speeds": []})
+NOTHING = Study((), 125.0, {"static": [], "limit_cycles": [], "critical_wind_speeds": []})

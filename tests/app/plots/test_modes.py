@@ -1,11 +1,12 @@
-import io
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
-from matplotlib.image import imread
+import pytest
 
-from app import plots
+from app.plots import Options
+from app.plots.modes import picture
+from tests.app.plots.drawn_motions import FACTS
+from tests.app.plots.seen import figure_of
 
 
 def found(loops: tuple[int, ...] = (1, 2), models: tuple[str, ...] = ("hybrid", "finite_element")) -> Any:
@@ -25,13 +26,22 @@ def found(loops: tuple[int, ...] = (1, 2), models: tuple[str, ...] = ("hybrid", 
     return {"shapes": shapes, "frequencies": frequencies}
 
 
-def test_the_picture_is_whole_whatever_was_asked() -> None:
-    for rows in (found(), found((3,), ("hybrid",))):
-        assert ElementTree.fromstring(plots.modes("$x^ <&>", rows, "svg")).tag.endswith("svg")
-    picture = imread(io.BytesIO(plots.modes("C11 twin", found(), "png")), format="png")
-    assert float(picture[..., :3].std()) > 0.01
+def test_each_direction_and_number_of_loops_has_its_shapes() -> None:
+    panels = figure_of(picture(found(), FACTS, Options())).axes
+    assert len(panels) == 6
+    assert panels[0].get_title() == "vertical, 1 loop\nhybrid 0.5000 Hz, finite element 0.5000 Hz"
+    shape = np.asarray(panels[3].get_lines()[0].get_data())
+    assert shape[0, [0, -1]].tolist() == [0.0, 126.0]
+    assert shape[1, 5] == pytest.approx(1.0)  # a quarter of the span: the top of the first of two loops
+    assert len({panel.get_ylim() for panel in panels}) == 1
 
 
-def test_the_same_shapes_make_the_same_picture_and_others_another() -> None:
-    assert plots.modes("x", found(), "svg") == plots.modes("x", found(), "svg")
-    assert plots.modes("x", found(), "svg") != plots.modes("x", found((1, 3)), "svg")
+def test_one_model_and_other_loops_are_drawn_too() -> None:
+    panels = figure_of(picture(found((3,), ("hybrid",)), FACTS, Options())).axes
+    assert [panel.get_title().split("\n")[0] for panel in panels] == [
+        f"{direction}, 3 loops" for direction in ("vertical", "horizontal", "torsional")
+    ]
+
+
+def test_a_line_without_shapes_has_an_empty_picture() -> None:
+    assert len(figure_of(picture({"shapes": [], "frequencies": []}, FACTS, Options())).axes) == 3

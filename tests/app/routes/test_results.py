@@ -24,7 +24,6 @@ TABLES = {
     "critical-wind-speeds": "critical_wind_speeds",
     "limit-cycles": "limit_cycles",
 }
-PNG = b"\x89PNG\r\n\x1a\n"
 STUDY = {"axes": [{"parameter": "span.horizontal_tension_n", "values": [24000.0, 30000.0]}]}
 
 
@@ -130,32 +129,6 @@ def test_rows_of_a_study_begin_with_its_axes(shared_client: httpx.Client, study_
     cells = table(shared_client.get(f"{study_address}/results/limit-cycles?format=csv"))
     assert next(iter(cells[0])) == axis
     assert {row[axis] for row in cells} == {"24000.0", "30000.0"}
-
-
-@pytest.mark.parametrize("picture", ["amplitude", "orbit", "study"])
-def test_pictures_are_svg_and_png(shared_client: httpx.Client, address: str, picture: str) -> None:
-    svg = shared_client.get(f"{address}/plots/{picture}.svg")
-    assert svg.headers["content-type"] == "image/svg+xml"
-    assert b"</svg>" in svg.content
-    png = shared_client.get(f"{address}/plots/{picture}.png")
-    assert png.headers["content-type"] == "image/png"
-    assert png.content.startswith(PNG)
-
-
-def test_each_point_of_a_study_has_its_own_picture(shared_client: httpx.Client, study_address: str) -> None:
-    pictures = [shared_client.get(f"{study_address}/plots/orbit.svg?point={point}") for point in range(3)]
-    assert [picture.status_code for picture in pictures] == [200, 200, 404]
-    assert pictures[0].content != pictures[1].content
-    assert shared_client.get(f"{study_address}/plots/orbit.svg").content == pictures[0].content
-    assert shared_client.get(f"{study_address}/plots/orbit.svg?point=-1").status_code == 400
-
-
-def test_a_study_has_a_picture_of_all_its_points(shared_client: httpx.Client, study_address: str) -> None:
-    reduced = shared_client.get(f"{study_address}/plots/study.svg")
-    own_unit = shared_client.get(f"{study_address}/plots/study.svg?abscissa=parameter")
-    assert [reduced.status_code, own_unit.status_code] == [200, 200]
-    assert reduced.content != own_unit.content
-    assert shared_client.get(f"{study_address}/plots/study.svg?abscissa=x").status_code == 400
 
 
 PARTS = ["results", "results/frequencies", "results/limit-cycles?format=csv", "plots/orbit.svg"]
