@@ -21,6 +21,9 @@ ENV OPENBLAS_NUM_THREADS=1 \
     PYTHONDONTWRITEBYTECODE=1 \
     GALLOPING_DATA_DIR=/data
 
+# For Chinese, Japanese and Korean names on pictures; see docs/operation.md.
+RUN apt-get update && apt-get install --yes --no-install-recommends fonts-wqy-microhei && rm -rf /var/lib/apt/lists/*
+
 RUN useradd --system --uid 10001 --home-dir /data --create-home galloping
 
 WORKDIR /opt/galloping
