@@ -20,6 +20,7 @@ from engine.mechanics.coefficient_curves import CoefficientCurves, evaluate, loc
 from engine.models.discretization import Discretization
 from engine.spec import Analysis
 
+ALIKE = 1e-8  # of the largest value, and rad: difference of mirror images; shapes are symmetric to some 1e-10
 FEWEST_SAMPLES = 32  # of a period in the harmonic balance
 
 
@@ -106,22 +107,41 @@ def unexpanded_load(discretization: Discretization, shapes: FloatArray) -> Unexp
     def grouped(values: Any) -> Any:
         return np.broadcast_to(values[:, None], (*groups, *values.shape[1:]))
 
-    load = UnexpandedLoad(
-        fields=values,
-        strength=grouped(strength),
-        factor=grouped(factor),
-        diameter=grouped(diameter),
-        positions=grouped(positions),
-        present=grouped(present),
-        which=grouped(_flat(local.which)),
-        rest_angle=grouped(_flat(local.angle)),
-        at_rest=np.zeros((*groups, values.shape[-1])),
-        at_rest_gradient=np.zeros((*groups, values.shape[-1], 2 * values.shape[-1])),
-        curves=local.curves,
+    load = _folded(
+        UnexpandedLoad(
+            fields=values,
+            strength=grouped(strength),
+            factor=grouped(factor),
+            diameter=grouped(diameter),
+            positions=grouped(positions),
+            present=grouped(present),
+            which=grouped(_flat(local.which)),
+            rest_angle=grouped(_flat(local.angle)),
+            at_rest=np.zeros((*groups, values.shape[-1])),
+            at_rest_gradient=np.zeros((*groups, values.shape[-1], 2 * values.shape[-1])),
+            curves=local.curves,
+        )
     )
     wind = _relative_wind(load, np.zeros((*groups, 1, 2 * values.shape[-1])))
     at_rest, gradient = _generalized(load, wind), _generalized_gradient(load, wind)
     return replace(load, at_rest=at_rest[..., 0, :], at_rest_gradient=gradient[..., 0, :, :])
+
+
+def _folded(load: UnexpandedLoad) -> UnexpandedLoad:
+    """Let each point count for its mirror image, too, where a line and its shapes are symmetric about the middle.
+
+    The image gets no strength, as padding has none. Every line of a stack is judged by itself.
+    """
+    symmetric = np.asarray((load.which == load.which[..., ::-1]).all(axis=-1))
+    for values, axes in ((load.fields, 3), (load.positions, 3), (load.strength, 1), (load.factor, 1)):
+        image = np.flip(values, axis=-axes)
+        every = tuple(range(-axes, 0))
+        symmetric &= np.abs(values - image).max(axis=every) <= ALIKE * np.abs(values).max(axis=every)
+    symmetric &= np.abs(load.rest_angle - load.rest_angle[..., ::-1]).max(axis=-1) <= ALIKE
+    points = load.strength.shape[-1]
+    share = np.where(2 * np.arange(points) + 1 < points, 2.0, 0.0)
+    share[points // 2 : points // 2 + points % 2] = 1.0
+    return replace(load, strength=load.strength * np.where(symmetric[..., None], share, 1.0))
 
 
 def force(load: UnexpandedLoad, state: FloatArray) -> FloatArray:

@@ -38,10 +38,12 @@ def random_states(model: ReducedModel, samples: int, size: float) -> FloatArray:
     return np.asarray(size / largest * states)
 
 
-@pytest.mark.parametrize("line", [source_line(1), source_line(2), off_centre(source_line(3))])
-def test_load_is_the_integral_of_the_formula(line: Line) -> None:
+@pytest.mark.parametrize(
+    ("line", "loops"), [(source_line(1), 2), (source_line(2), 1), (off_centre(source_line(3)), 2)]
+)
+def test_load_is_the_integral_of_the_formula(line: Line, loops: int) -> None:
     line = iced(line)
-    model, system = hybrid(line, 2, UNEXPANDED), discretized(line)
+    model, system = hybrid(line, loops, UNEXPANDED), discretized(line)
     state = random_states(model, 3, 0.8)
     shapes = at_points(system.matrices, model.shapes)[0]
     q, rate = state[0, :, :3], state[0, :, 3:]
@@ -76,6 +78,19 @@ def test_gradient_is_that_of_finite_differences(line: Line, asked: Analysis) -> 
             step = 1e-6 * np.abs(state).max() * np.eye(state.shape[-1])[k]
             numerical = (force(model, state + step) - force(model, state - step)) / (2.0 * step[k])
             assert exact[..., k] == pytest.approx(numerical, rel=1e-5, abs=1e-7 * np.abs(exact[..., k]).max())
+
+
+def test_mirror_images_are_evaluated_once_where_line_and_shapes_are_symmetric() -> None:
+    line = with_table(source_line(2), 20.0)
+    uneven = replace(line, ice=replace(line.ice, segments=(IceSegment(0.0, 40.0, aerodynamics=KNOWN),)))
+
+    def count(line: Line, loops: int) -> int:
+        load = hybrid(line, loops, TABLE).unexpanded
+        assert load is not None
+        return int((load.strength > 0.0).sum())
+
+    assert [count(line, 1), count(line, 2), count(line, 3)] == [25, 50, 25]
+    assert count(uneven, 1) > 50
 
 
 def test_the_gradient_at_rest_is_kept() -> None:
