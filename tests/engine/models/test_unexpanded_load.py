@@ -38,9 +38,7 @@ def random_states(model: ReducedModel, samples: int, size: float) -> FloatArray:
     return np.asarray(size / largest * states)
 
 
-@pytest.mark.parametrize(
-    ("line", "loops"), [(source_line(1), 2), (source_line(2), 1), (off_centre(source_line(3)), 2)]
-)
+@pytest.mark.parametrize(("line", "loops"), [(source_line(1), 2), (source_line(2), 1), (off_centre(source_line(3)), 2)])
 def test_load_is_the_integral_of_the_formula(line: Line, loops: int) -> None:
     line = iced(line)
     model, system = hybrid(line, loops, UNEXPANDED), discretized(line)
