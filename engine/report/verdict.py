@@ -71,6 +71,7 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
         vertical_peak_to_peak_m=None if worst is None else _doubled(worst.vertical_m),
         horizontal_peak_to_peak_m=None if worst is None else _doubled(worst.horizontal_m),
         tension_range_n=_range(tension),
+        largest_share_of_rated_strength=None if tension is None else tension.largest_share_of_rated_strength,
         clearance_m=_smallest(row.distance_m for row in clearances),
         clearance_margin_m=_smallest(row.margin_m for row in clearances),
         clearance_ok=_clearances_kept(clearances),
@@ -186,6 +187,9 @@ def _sentences(evidence: _Evidence, tension: TensionRow | None, clearances: Sequ
         texts.append(f"The size is not to be relied on: {_lowered(evidence.moving[0].outcome.sentence)}")
     if tension is not None and tension.outcome is Outcome.SLACK:
         texts.append(tension.outcome.sentence)
+    share = None if tension is None else tension.largest_share_of_rated_strength
+    if share is not None and share > 1.0:
+        texts.append(f"The tension reaches {share:.0%} of the rated strength.")
     return texts + _reasons(evidence)
 
 

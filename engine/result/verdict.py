@@ -42,6 +42,15 @@ class VerdictRow:
             unit="N",
         ),
     ]
+    largest_share_of_rated_strength: Annotated[
+        float | None,
+        Column(
+            "Largest tension at the higher support in the worst motion over the rated strength; null where it is not "
+            "known",
+            0.23,
+            unit="1",
+        ),
+    ]
     clearance_m: Annotated[
         float | None, Column("Smallest distance to another phase; null where none is given", None, unit="m")
     ]

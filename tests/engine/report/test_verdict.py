@@ -179,3 +179,14 @@ def test_distances_at_the_design_wind_and_at_the_worst_one_stand_behind_their_mo
     assert least[10.0] < 1.0 < least[4.0]
     assert before.endswith(f"keeps {least[4.0]:.1f} m to the next phase")
     assert f"comes within {least[10.0]:.1f} m of the next phase, nearer than required" in after
+
+
+@pytest.mark.parametrize("share", [None, 0.4, 1.3])
+def test_the_share_of_the_rated_strength_is_that_of_the_worst_motion(share: float | None) -> None:
+    largest = next(row.largest_at_support_n for row in analysed().tensions if row.wind_speed_m_per_s == 10.0)
+    assert largest is not None
+    strength = None if share is None else largest / share
+    line = replace(twin(), conductor=replace(twin().conductor, rated_strength=strength))
+    (row,) = run(line, ASKED).verdict
+    assert row.largest_share_of_rated_strength == (None if share is None else pytest.approx(share, rel=1e-6))
+    assert ("The tension reaches 130 % of the rated strength." in row.sentence.replace("%", " %")) is (share == 1.3)
