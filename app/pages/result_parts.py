@@ -15,6 +15,7 @@ from app.pages.motions import Motion, worst
 from app.pages.moving import name_of, surroundings
 from app.pages.shown_tables import ADDRESSES, ShownTable, shown_table
 from app.pages.wording import words
+from app.plots import PICTURES, drawable
 from app.tables import Job
 
 _MOST_ROWS = 200  # the downloads have all of them
@@ -83,6 +84,7 @@ def parts(job: Job, found: Findings, units: Units, seen: Sequence[Motion]) -> di
     return {
         "chart_words": json.dumps(vars(words().chart)),
         "downloads": [(ADDRESSES[name], TABLES[name].title) for name in TABLES if found.rows(name)],
+        "pictures": [(name, PICTURES[name].title) for name in drawable(found.tables, study=len(found.points) > 1)],
         "job_tags": {tag.key: tag.value for tag in job.tags},
         **findings_parts(found, units, seen),
     }
