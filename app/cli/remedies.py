@@ -1,17 +1,15 @@
 """The command that compares a line with remedies: `galloping remedies`."""
-# ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from app.cli.console import FAILED, end, print_table, progress_bar, refuse, try_output, write
+from app.cli.console import print_table, try_output, write
 from app.cli.inputs import read_request
-from app.cli.lines import result_document
-from app.cli.options import AnalysisFile, AsJson, LineFile, OutputFile
+from app.cli.lines import computed
+from app.cli.options import AnalysisFile, AsJson, DefaultsFile, LineFile, OutputFile
 
 Row = Mapping[str, Any]
 RemediesFile = Annotated[
@@ -23,6 +21,7 @@ def remedies(
     line: LineFile,
     analysis: AnalysisFile = None,
     tried: RemediesFile = None,
+    defaults: DefaultsFile = None,
     output: OutputFile = None,
     as_json: AsJson = False,
 ) -> None:
@@ -30,31 +29,9 @@ def remedies(
 
     A table for people is printed, with --json or --output the whole result as JSON.
     """
-    from app.runtime.processes import ONE_BLAS_THREAD
-
-    os.environ.update(ONE_BLAS_THREAD)  # before convert loads numpy, because BLAS reads it once
-    from app import convert
-    from app.schemas.faults import BadInput
-
     try_output(output)
-    document = read_request(line, analysis, None, remedies=tried)
-    if isinstance(document, dict) and document.get("remedies") is None:
-        document = {**document, "remedies": {}}
-    try:
-        complete = convert.read(convert.explicit_request(document)).kept()
-    except BadInput as error:
-        refuse(error.faults)
-    points: list[convert.PointResult] = []
-    try:
-        with progress_bar() as show:
-            for item in convert.run(complete):
-                if isinstance(item, convert.Advance):
-                    show(item.fraction, item.step)
-                else:
-                    points.append(item)
-    except (ArithmeticError, ValueError) as error:
-        end(f"the computation failed: {error}", FAILED)
-    result = result_document(complete, points)
+    document = read_request(line, analysis, None, defaults=defaults, remedies=tried)
+    result = computed(document if document.get("remedies") is not None else {**document, "remedies": {}})
     if output is not None or as_json:
         write(result, output)
     if not as_json:

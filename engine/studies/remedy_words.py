@@ -76,6 +76,9 @@ def what_it_does(
         phrases.append(f"a figure of the line {unknown} is not known")
     elif None not in size:
         phrases.append(_motion(*size))
+    near = (before["clearance_m"], own["clearance_m"])
+    if change != "undecided" and None not in near and abs(near[1] - near[0]) > LEAST * abs(near[0]):
+        phrases.append(f"the smallest clearance {_moved(*near)} m")
     return f"{_HEADS[change]}: {', '.join(phrases)}{_of_samples(shares)}."
 
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -27,6 +28,7 @@ from engine.spec import (
 from engine.studies.both_ends import mirrored
 from engine.studies.placement import place
 from tests.builders import ICE_AT_40, only, run, source_line, stable_cycles
+from tests.engine.uncertainty.den_hartog_line import line_of as den_hartog_line
 
 ONSET = only(Model.HYBRID, wind_speeds=(), loops=(1, 2))
 CALM = Aerodynamics((0.0, 0.0, 0.0), (0.9, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -185,3 +187,41 @@ def test_effect_of_devices_is_that_of_two_analyses() -> None:
     )
     assert rows[Model.HYBRID, 1, 2.3].amplitude_without_m == 0.0  # below the onset at 2.403 m/s the line rests
     assert run(fitted, asked).device_effects == ()
+
+
+def test_four_pendulums_keep_apart_and_do_not_enlarge_the_motion() -> None:
+    """The search once put four of them within 13 m of one tower, and raised the amplitude by a fifth."""
+    asked = only(Model.HYBRID, wind_speeds=(6.0,), loops=(2,))
+    choice = PendulumChoice(4, (0.0, 125.88), (5.0, 20.0), (0.2, 0.5))
+    result, _ = placed(source_line(2), asked, Placement(choice, generations=2, population=12))
+    places = [row.position_m or 0.0 for row in result.placements]
+    assert len(places) == 4
+    assert all(right - left >= 125.88 / 20 - 1e-9 for left, right in pairwise(places))
+    (effect,) = result.device_effects
+    assert (effect.amplitude_with_m or 0.0) <= 1.01 * (effect.amplitude_without_m or 0.0)
+    assert (effect.critical_wind_speed_with_m_per_s or 0.0) > (effect.critical_wind_speed_without_m_per_s or 0.0)
+
+
+def test_where_nothing_helps_nothing_is_placed() -> None:
+    """A spoiler whose lift falls twice as steeply as that of the ice feeds Den Hartog's mechanism wherever it is."""
+    asked = only(Model.HYBRID, wind_speeds=(8.0,), loops=(1,))
+    choice = SpoilerChoice(40.0, (0.0, 125.88), Aerodynamics((-1.8, 0.0, 8.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    line = den_hartog_line({})
+    result, _ = placed(line, asked, Placement(choice, generations=1, population=6))
+    assert result.placements == ()
+    assert result.device_effects == ()
+    assert result.limit_cycles == run(line, asked).limit_cycles
+    assert any(warning.startswith("No improvement found") for warning in result.warnings)
+
+
+def test_placed_devices_keep_away_from_those_of_the_line() -> None:
+    line = replace(source_line(2), devices=(DetuningPendulum(62.94, 15.0, 0.4),))
+    choice = PendulumChoice(1, (50.0, 75.0), (15.0, 15.0), (0.4, 0.4))
+    result, _ = placed(line, ONSET, Placement(choice, generations=2, population=8, separation=5.0))
+    assert all(abs((row.position_m or 0.0) - 62.94) >= 5.0 for row in result.placements)
+
+
+def test_devices_without_room_are_refused() -> None:
+    choice = PendulumChoice(4, (10.0, 20.0), (5.0, 20.0), (0.2, 0.5))
+    with pytest.raises(InvalidSpec, match=r"separation must leave room: 4 devices 5 m apart need 15 m"):
+        next(place(source_line(2), ONSET, Placement(choice, separation=5.0)), None)

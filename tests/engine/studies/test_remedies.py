@@ -24,6 +24,7 @@ from engine.spec import (
     Line,
     Model,
     MovedDevices,
+    Phase,
     Remedies,
     Spacer,
     Uncertainty,
@@ -238,3 +239,17 @@ def test_progress_rises() -> None:
     fractions = [step.fraction for step in progress]
     assert fractions == sorted(fractions)
     assert fractions[-1] == pytest.approx(1.0)
+
+
+def test_phases_that_a_spacer_ties_are_compared_by_the_finite_element_model() -> None:
+    """The other phase's ice takes the motion: at 2.40 m/s the line gallops alone, tied it rests (validation.md)."""
+    calm = replace(ICE_AT_40, vertical=(0.3, *ICE_AT_40.vertical[1:]))
+    line = source_line(2)
+    line = replace(line, phases=(Phase("top", 7.0, 0.0, ice=replace(line.ice, aerodynamics=calm)),))
+    asked = only(Model.FINITE_ELEMENT, loops=(1,), finite_element_loops=(1,), wind_speeds=(4.0,))
+    tried = Remedies((AddedDevices(InterphaseSpacer(0.0, 20.0, ("this", "top")), 1),))
+    first, tied = finished(compare(explicit(line), asked, tried, Uncertainty(4))).remedies
+    assert first.onset_m_per_s == pytest.approx(2.403, abs=2e-3)
+    assert (tied.kind, tied.change, tied.gallops, tied.onset_m_per_s) == ("interphase_spacer", "better", "no", None)
+    assert tied.arrangements == 3
+    assert tied.improves is None

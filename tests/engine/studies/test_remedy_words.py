@@ -10,8 +10,8 @@ RESULT = run(source_line(1), only(Model.HYBRID, loops=(1,), wind_speeds=()))
 NONE: dict[str, float | None] = {"improves": None, "worsens": None}
 
 
-def row(onset: float | None, motion: float | None, gallops: str = "yes") -> dict[str, Any]:
-    return {"onset_m_per_s": onset, "motion_peak_to_peak_m": motion, "gallops": gallops}
+def row(onset: float | None, motion: float | None, clearance: float | None = None) -> dict[str, Any]:
+    return {"onset_m_per_s": onset, "motion_peak_to_peak_m": motion, "gallops": "yes", "clearance_m": clearance}
 
 
 def test_what_is_done() -> None:
@@ -33,5 +33,7 @@ def test_what_it_does() -> None:
     assert "stays at 2.00 m/s" in what_it_does("worse", row(2.0, 1.0), row(2.01, 1.5), NONE, None)
     assert "line with the remedy" in what_it_does("undecided", row(2.0, 1.0), row(None, None), NONE, None)
     assert "line without it" in what_it_does("undecided", row(None, None), row(2.0, 1.0), NONE, None)
+    nearer = what_it_does("no_improvement", row(2.0, 1.0, 5.0), row(2.0, 0.8, 4.5), NONE, None)
+    assert nearer.endswith("the smallest clearance falls from 5.00 to 4.50 m.")
     found = what_it_does("no_improvement", row(2.0, 1.0), row(2.0, 1.0), NONE, 31)
     assert found == "No improvement found: none of 31 arrangements is better than nothing; none is proposed."
