@@ -24,16 +24,23 @@ async def submit(request: Request, document: Mapping[str, Any], *, may_reuse: bo
     BadInput
         With every fault of the document.
     """
-    checked = await to_thread.run_sync(lambda: _checked(request, document))
-    line, shared = checked.line, request.app.state
-    submission = Submission(caller_of(request), checked.kept(), line.name, line.asset_id, line.tags)
+    sound = await to_thread.run_sync(lambda: checked(request, document))
+    line, shared = sound.line, request.app.state
+    submission = Submission(caller_of(request), sound.kept(), line.name, line.asset_id, line.tags)
     job: Job = await shared.inbox.call(Order(submission, may_reuse=may_reuse))
     if job.status is JobStatus.ACCEPTED:
         shared.messages.submit(job.id)
     return job
 
 
-def _checked(request: Request, document: Mapping[str, Any]) -> schemas.JobRequest:
+def checked(request: Request, document: Mapping[str, Any]) -> schemas.JobRequest:
+    """Return a request document with its line resolved, if it has no faults.
+
+    Raises
+    ------
+    BadInput
+        With every fault of the document.
+    """
     with request.app.state.readers() as session:
         own = records.own_rows(session, caller_of(request).owner)
     try:

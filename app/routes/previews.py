@@ -14,6 +14,7 @@ from app.routes import documentation
 from app.routes.dependencies import PREFIX, CallerOf
 from app.routes.known_lines import KnownLineRoute
 from app.schemas.faults import Fault
+from app.security.caller import Caller
 
 router = APIRouter(prefix=f"{PREFIX}/previews", tags=["lines"], route_class=KnownLineRoute)
 
@@ -45,6 +46,19 @@ async def preview_line(
     Nothing is stored, so there is nothing to read later. Each process of the API computes one line at a time, for a few
     seconds at most; values that are assumed are not sampled. Studies and placements need a job.
     """
+    kept, point = await preview(request, caller, document)
+    text = await to_thread.run_sync(_text, kept, point)
+    return Response(text, media_type=formats.MEDIA_TYPES["json"])
+
+
+async def preview(request: Request, caller: Caller, document: schemas.JobRequest) -> tuple[dict[str, Any], PointResult]:
+    """Return a checked request as it is computed, and what was found.
+
+    Raises
+    ------
+    ProblemError
+        422 if only a job takes it, the engine refuses it or it takes too long; 429 if too many previews wait.
+    """
     if faults := [*_only_for_jobs(document), *convert.request_faults(document)]:
         raise invalid_document(faults)
     kept = _without_samples(document.kept())
@@ -58,8 +72,7 @@ async def preview_line(
         raise ProblemError(ProblemKind.TAKES_TOO_LONG, detail) from error
     except (ArithmeticError, ValueError) as error:
         raise invalid_document([Fault("/line", "invalid", str(error))]) from error
-    text = await to_thread.run_sync(_text, kept, point)
-    return Response(text, media_type=formats.MEDIA_TYPES["json"])
+    return kept, point
 
 
 def _only_for_jobs(document: schemas.JobRequest) -> list[Fault]:

@@ -5,12 +5,12 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page
 
-PAGES = ("/", "/pages/jobs", "/pages/lines/new", "/pages/sign-in", "/pages/nothing", "finished job")
+PAGES = ("/", "/pages/jobs", "/pages/lines/new", "/pages/sign-in", "/pages/nothing", "finished job", "what if")
 Open = Callable[..., Page]
 
 
 def path_of(name: str, finished_job: str) -> str:
-    return finished_job if name == "finished job" else name
+    return {"finished job": finished_job, "what if": f"{finished_job}/what-if"}.get(name, name)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -16,8 +16,8 @@
     probe.remove();
     return found || colour(name);
   }
-  function faint(text) {
-    return text.replace(/^rgb\((.*)\)$/, "rgba($1, 0.18)");
+  function faint(text, part = 0.18) {
+    return text.replace(/^rgb\((.*)\)$/, `rgba($1, ${part})`);
   }
 
   class Chart {
@@ -31,8 +31,16 @@
       this.families = this.familyNames();
       this.controls();
       this.draw();
-      new ResizeObserver(() => this.resize()).observe(place);
+      new ResizeObserver(() => this.resize()).observe(this.canvas);
       window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    }
+    // Shows other curves in the place of these; the choice of direction stays.
+    show(data) {
+      const name = this.quantity.name;
+      this.data = data;
+      this.quantity = data.quantities.find((quantity) => quantity.name === name);
+      this.families = this.familyNames();
+      this.draw();
     }
     familyNames() {
       const all = [...this.data.pieces, ...this.data.motions, ...this.data.tori];
@@ -100,6 +108,9 @@
         bands.push({ series: [top, bottom], fill: faint(grey) });
         add(spread.wind, middle, { stroke: grey, width: 1, dash: [1, 3] });
       }
+      for (const piece of this.data.before || []) {
+        add(piece.wind, piece[name], { stroke: faint(resolved("--ink"), 0.45), width: 1.5, dash: DASH[piece.stability] });
+      }
       for (const piece of this.data.pieces) {
         add(piece.wind, piece[name], { ...this.look(piece), dash: DASH[piece.stability], label: piece.name });
       }
@@ -155,7 +166,7 @@
           { ...axis, label: `${this.words.wind} [${this.data.wind_unit}]` },
           { ...axis, label: `${narrow ? this.words.amplitude : this.quantity.label} [${unit}]`, size: narrow ? 48 : 4.4 * this.letter() },
         ],
-        hooks: { setCursor: [() => this.read()], draw: [() => this.markOnset()] },
+        hooks: { setCursor: [() => this.read()], draw: [() => this.markWinds()] },
       }, joined, this.canvas);
       this.whole();
       this.legend();
@@ -173,15 +184,19 @@
     resize() {
       if (this.plot && Math.abs(this.plot.width - this.size().width) > 1) this.plot.setSize(this.size());
     }
-    markOnset() {
-      if (this.data.onset === null) return;
-      const x = Math.round(this.plot.valToPos(this.data.onset, "x", true));
+    markWinds() {
+      this.markWind(this.data.onset, "--bad", [6, 6]);
+      this.markWind(this.data.at ?? null, "--ink", [2, 4]);
+    }
+    markWind(wind, colour, dash) {
+      if (wind === null) return;
+      const x = Math.round(this.plot.valToPos(wind, "x", true));
       const { left, top, width, height } = this.plot.bbox;
       if (x < left || x > left + width) return;
       const pen = this.plot.ctx;
       pen.save();
-      pen.strokeStyle = resolved("--bad");
-      pen.setLineDash([6, 6]);
+      pen.strokeStyle = resolved(colour);
+      pen.setLineDash(dash);
       pen.lineWidth = devicePixelRatio;
       pen.beginPath();
       pen.moveTo(x, top);
@@ -218,6 +233,8 @@
       if (this.data.tori.length) entries.set(this.words.torus, { stroke: faint(ink), width: 9, dash: [] });
       if (this.data.spread) entries.set(this.words.spread, { stroke: faint(ink), width: 9, dash: [] });
       if (this.data.onset !== null) entries.set(this.words.onset, { stroke: resolved("--bad"), width: 1.5, dash: [6, 6] });
+      if (this.data.at !== undefined) entries.set(this.words.at, { stroke: ink, width: 1.5, dash: [2, 4] });
+      if (this.data.before) entries.set(this.words.before, { stroke: faint(ink, 0.45), width: 1.5, dash: [] });
       list.replaceChildren(...[...entries].map(([text, look]) => {
         const item = document.createElement("li");
         const key = document.createElementNS("http://www.w3.org/2000/svg", "svg");
@@ -245,5 +262,6 @@
       throw error;
     }
   }
-  for (const place of document.querySelectorAll(".chart")) start(place);
+  window.galloping.Chart = Chart;
+  for (const place of document.querySelectorAll(".chart[data-curves]")) start(place);
 })();

@@ -17,7 +17,7 @@ from tests.app.pages.known_jobs import known_request
 @pytest.fixture(scope="session")
 def shared_settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """Give settings of a service with SQLite and the embedded broker."""
-    return service.sqlite_settings(tmp_path_factory.mktemp("pages"))
+    return service.sqlite_settings(tmp_path_factory.mktemp("pages"), preview_seconds=60.0)
 
 
 @pytest.fixture(scope="session")
