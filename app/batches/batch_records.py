@@ -110,11 +110,13 @@ def outcome(session: Session, batch_id: UUID) -> str:
     return hashlib.sha256(repr(session.execute(statement).all()).encode()).hexdigest()
 
 
-def cancel(session: Session, caller: Caller, batch_id: UUID) -> CancelOutcome:
-    """End queued chunks at once and ask running ones to stop; remove a finished batch with its results."""
+def cancel(session: Session, caller: Caller, batch_id: UUID, *, may_remove: bool = True) -> CancelOutcome:
+    """End queued chunks at once and ask running ones to stop; remove a finished batch, if it may be."""
     if _locked(session, caller.owner, batch_id) is None:
         return CancelOutcome.MISSING
     before = batch_progress.counts(session, [batch_id])[batch_id]
+    if not before.accepted + before.running and not may_remove:
+        return CancelOutcome.KEPT
     if not before.accepted + before.running:
         session.execute(delete(Job).where(Job.batch_id == batch_id))
         session.execute(delete(Batch).where(Batch.id == batch_id))

@@ -196,8 +196,12 @@ class Client(KnownLines):
         return self._connection.get(f"{_address(job)}/{path}").content
 
     def cancel(self, job: JobDocument | BatchDocument) -> None:
-        """Cancel a job or batch; remove one that has ended, with its results."""
-        self._connection.delete(_address(job))
+        """Cancel a job or batch; one that has ended keeps its results."""
+        self._connection.post(f"{_address(job)}/cancel")
+
+    def remove(self, job: JobDocument | BatchDocument) -> None:
+        """Remove a job or batch that has ended, with its results; one that has not is refused, not cancelled."""
+        self._connection.delete(f"{_address(job)}?if_ended=true")
 
     def submit_batch(
         self,

@@ -27,11 +27,12 @@ _COLUMNS = tuple(column.key for column in Job.__table__.columns)
 
 
 class CancelOutcome(StrEnum):
-    """What a cancel did: ended a queued job, asked a running one to stop, removed a finished one, or found none."""
+    """What a cancel did: ended a queued job, asked a running one to stop, removed or kept an ended one, found none."""
 
     DISMISSED = "dismissed"
     REQUESTED = "requested"
     REMOVED = "removed"
+    KEPT = "kept"
     MISSING = "missing"
 
 
@@ -152,8 +153,8 @@ def page(
     return list(session.scalars(statement.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit)))
 
 
-def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
-    """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows.
+def cancel(session: Session, caller: Caller, job_id: UUID, *, may_remove: bool = True) -> CancelOutcome:
+    """End a queued job at once, ask a running one to stop, or remove a finished one with all its rows, if it may be.
 
     Removing a chunk removes its lines from the batch.
     """
@@ -173,6 +174,8 @@ def cancel(session: Session, caller: Caller, job_id: UUID) -> CancelOutcome:
             audit.record(session, caller, AuditAction.JOB_CANCELLED, job_id)
             record(session, job_id, JobEventKind.CANCEL_REQUESTED, attempt=job.attempt)
         return CancelOutcome.REQUESTED
+    if not may_remove:
+        return CancelOutcome.KEPT
     session.execute(delete(BatchItem).where(BatchItem.chunk_id == job_id))
     session.execute(delete(Job).where(Job.id == job_id))
     audit.record(session, caller, AuditAction.JOB_REMOVED, job_id)

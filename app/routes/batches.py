@@ -12,7 +12,7 @@ from app import convert
 from app.answers.batches import BatchDocument, BatchPage
 from app.batches import batch_records, intake
 from app.http import paging
-from app.http.problems import ProblemKind, query_fault
+from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.http.strict_routes import KnownParametersRoute
 from app.jobs import batch_progress, idempotency
 from app.jobs.job_records import CancelOutcome
@@ -141,12 +141,25 @@ def resubmit_failed_lines(
         },
         204: {"description": "The finished batch and its results are removed"},
         **_COMMON,
+        **documentation.problems(ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_READY),
     },
 )
-def cancel_batch(batch_id: UUID, caller: CallerOf, writers: Writers) -> Response:
-    """Cancel the lines of a batch that have not ended, or remove a finished batch."""
+def cancel_or_remove_batch(
+    batch_id: UUID,
+    caller: CallerOf,
+    writers: Writers,
+    if_ended: Annotated[
+        bool, Query(description="Remove only: 409 if it has not ended, instead of cancelling it")
+    ] = False,
+) -> Response:
+    """Cancel the lines of a batch that have not ended, or remove a finished batch.
+
+    What has just ended is removed, too: `POST .../cancel` never removes, and `?if_ended=true` never cancels.
+    """
     with writers.begin() as session:
         batch = find_batch(session, caller, batch_id)
+        if if_ended and batch_progress.counts(session, [batch_id])[batch_id].status not in ENDED:
+            raise ProblemError(ProblemKind.NOT_READY, "The batch has not ended, so it was not removed.")
         outcome = batch_records.cancel(session, caller, batch_id)
         if outcome is CancelOutcome.REMOVED:
             return Response(status_code=204)
@@ -154,6 +167,37 @@ def cancel_batch(batch_id: UUID, caller: CallerOf, writers: Writers) -> Response
     if outcome is CancelOutcome.REQUESTED:
         return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
     return JSONResponse(document)
+
+
+@router.post(
+    "/{batch_id}/cancel",
+    summary="Cancel a batch",
+    response_model=BatchDocument,
+    responses={
+        200: {
+            **documentation.body("No line runs any more", ("application/json", batch_documentation.DISMISSED)),
+            "model": BatchDocument,
+        },
+        202: {
+            **documentation.body("Running lines will stop", ("application/json", batch_documentation.STOPPING)),
+            "model": BatchDocument,
+        },
+        **_COMMON,
+        **documentation.problems(*KEY_PROBLEMS),
+    },
+)
+def cancel_batch(batch_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
+    """Cancel the lines of a batch that have not ended; what has ended keeps its results."""
+
+    def make(session: Session) -> PostOutcome:
+        batch = find_batch(session, caller, batch_id)
+        outcome = batch_records.cancel(session, caller, batch_id, may_remove=False)
+        document = batch_document(session, batch, batch_progress.counts(session, [batch_id])[batch_id])
+        if outcome is CancelOutcome.REQUESTED:
+            return PostOutcome(JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS}))
+        return PostOutcome(JSONResponse(document))
+
+    return run_once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "cancel"), make).answer
 
 
 def _place(key: bytes, cursor: str) -> paging.Place:

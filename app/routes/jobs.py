@@ -9,18 +9,19 @@ from fastapi import APIRouter, Body, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
+from sqlalchemy.orm import Session
 
 from app import schemas
 from app.answers.jobs import JobDocument, JobPage, Validity
 from app.http import paging
-from app.http.problems import ProblemKind, query_fault
-from app.jobs import job_records
+from app.http.problems import ProblemError, ProblemKind, query_fault
+from app.jobs import idempotency, job_records
 from app.jobs.job_records import CancelOutcome, JobFilters
 from app.routes import documentation, own_documentation
 from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers
-from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf
+from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
 from app.routes.job_intake import JOBS, accepted_job, check_request
-from app.routes.job_status import find_job, find_status, job_document
+from app.routes.job_status import find_job, find_status, job_address, job_document
 from app.routes.known_lines import KnownLineRoute
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import signing_key
@@ -195,11 +196,24 @@ def list_jobs(
         },
         204: {"description": "The finished job and its results are removed"},
         **_COMMON,
+        **documentation.problems(ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_READY),
     },
 )
-def cancel_job(job_id: UUID, caller: CallerOf, writers: Writers) -> Response:
-    """Cancel a job, or remove a finished one with its results."""
+def cancel_or_remove_job(
+    job_id: UUID,
+    caller: CallerOf,
+    writers: Writers,
+    if_ended: Annotated[
+        bool, Query(description="Remove only: 409 if it has not ended, instead of cancelling it")
+    ] = False,
+) -> Response:
+    """Cancel a job, or remove a finished one with its results.
+
+    What has just ended is removed, too: `POST .../cancel` never removes, and `?if_ended=true` never cancels.
+    """
     with writers.begin() as session:
+        if if_ended and find_job(session, caller, job_id).status not in ENDED:
+            raise ProblemError(ProblemKind.NOT_READY, "The job has not ended, so it was not removed.")
         outcome = job_records.cancel(session, caller, job_id)
         if outcome is CancelOutcome.REMOVED:
             return Response(status_code=204)
@@ -208,6 +222,37 @@ def cancel_job(job_id: UUID, caller: CallerOf, writers: Writers) -> Response:
     if outcome is CancelOutcome.REQUESTED:
         return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
     return JSONResponse(document)
+
+
+@router.post(
+    "/{job_id}/cancel",
+    summary="Cancel a job",
+    response_model=JobDocument,
+    responses={
+        200: {
+            **documentation.body("It has ended, now or before", ("application/json", documentation.DISMISSED_JOB)),
+            "model": JobDocument,
+        },
+        202: {
+            **documentation.body("The running job will stop", ("application/json", documentation.STOPPING_JOB)),
+            "model": JobDocument,
+        },
+        **_COMMON,
+        **documentation.problems(*KEY_PROBLEMS),
+    },
+)
+def cancel_job(job_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> Response:
+    """Cancel a job; one that has ended keeps its results."""
+
+    def make(session: Session) -> PostOutcome:
+        outcome = job_records.cancel(session, caller, job_id, may_remove=False)
+        session.flush()
+        document = job_document(find_job(session, caller, job_id))
+        if outcome is CancelOutcome.REQUESTED:
+            return PostOutcome(JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS}))
+        return PostOutcome(JSONResponse(document))
+
+    return run_once(writers, key, lambda: idempotency.fingerprint(job_address(job_id), "cancel"), make).answer
 
 
 def _place(key: bytes, cursor: str) -> paging.Place:

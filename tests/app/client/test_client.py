@@ -52,7 +52,7 @@ def test_a_job_is_followed_to_its_result(client: Client, own_client: httpx.Clien
     assert len(rows) == len(frame) > 3
     assert frame["wind_speed_m_per_s"].tolist() == [row["wind_speed_m_per_s"] for row in rows]
     assert b"<svg" in client.plot(ended)
-    client.cancel(ended)
+    client.remove(ended)
     with pytest.raises(ServiceError, match="404"):
         client.job(ended.id)
 

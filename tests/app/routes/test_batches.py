@@ -254,8 +254,11 @@ def test_limits_on_bodies_are_those_of_batches(own_settings: Settings) -> None:
 
 def test_a_waiting_batch_is_cancelled_at_once_and_then_removed(client: httpx.Client) -> None:
     address = accepted(client, [TWIN] * 3)
+    assert client.delete(f"{address}?if_ended=true").status_code == 409
     answer = client.delete(address)
     assert (answer.status_code, answer.json()["status"], answer.json()["lines"]["dismissed"]) == (200, "dismissed", 3)
+    kept = client.post(f"{address}/cancel")
+    assert (kept.status_code, kept.json()["status"]) == (200, "dismissed")
     assert client.delete(address).status_code == 204
     assert [client.get(address + end).status_code for end in ("", "/results", "/errors")] == [404, 404, 404]
     assert client.delete(address).status_code == 404

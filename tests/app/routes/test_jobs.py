@@ -176,3 +176,24 @@ def test_what_is_kept_holds_the_defaults_that_were_used(client: httpx.Client, se
 def test_newer_jobs_have_larger_ids(client: httpx.Client) -> None:
     made = [service.submit(client)["id"] for _ in range(3)]
     assert all(a < b for a, b in pairwise(made))
+
+
+def test_cancelling_never_removes_and_removing_never_cancels(client: httpx.Client, settings: Settings) -> None:
+    waiting, address = service.submit(client), service.finished(client, settings)
+    assert client.delete(f"/v1/jobs/{waiting['id']}?if_ended=true").status_code == 409
+    kept = client.post(f"{address}/cancel", headers={"Idempotency-Key": "once"})
+    assert (kept.status_code, kept.json()["status"]) == (200, "successful")
+    assert (
+        client.post(f"{address}/cancel", headers={"Idempotency-Key": "once"}).headers["idempotency-replayed"] == "true"
+    )
+    assert client.get(f"{address}/results").status_code == 200
+    cancelled = client.post(f"/v1/jobs/{waiting['id']}/cancel")
+    assert (cancelled.status_code, cancelled.json()["status"]) == (200, "dismissed")
+    assert client.delete(f"{address}?if_ended=true").status_code == 204
+    assert client.post(f"{address}/cancel").status_code == 404
+    running = service.submit(client)
+    engine = make_engine(settings)
+    running_job(session_factory(engine), running)
+    engine.dispose()
+    asked = client.post(f"/v1/jobs/{running['id']}/cancel")
+    assert (asked.status_code, asked.json()["cancel_requested"]) == (202, True)
