@@ -81,7 +81,7 @@ class Gate:
             caller = await self._caller(scope, dict(scope["headers"]))
         except OperationalError as error:
             raise problems.database_fault(error) from error
-        needed = _NEEDED.get(scope["method"])
+        needed = _needed(scope)
         if needed is not None and needed not in caller.scopes:
             detail = f"The key lacks the scope {needed}."
             raise _refused(ProblemKind.FORBIDDEN, detail, error="insufficient_scope", scope=needed)
@@ -134,6 +134,13 @@ def is_open(path: str) -> bool:
 def _bearer(headers: Headers) -> str | None:
     kind, _, text = headers.get(b"authorization", b"").decode("latin-1").partition(" ")
     return text.strip() if kind.lower() == "bearer" else None
+
+
+def _needed(scope: types.Scope) -> Scope | None:
+    """Return the scope that a request needs: that of its method, but a POST that cancels needs what a DELETE needs."""
+    path: str = scope["path"].removeprefix(scope.get("root_path", ""))
+    cancels = scope["method"] == "POST" and path.startswith("/v1/") and path.endswith("/cancel")
+    return Scope.CANCEL if cancels else _NEEDED.get(scope["method"])
 
 
 def _is_from_this_machine(scope: types.Scope, headers: Headers) -> bool:

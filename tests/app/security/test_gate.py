@@ -184,7 +184,9 @@ def test_scopes_are_those_of_the_methods(guarded: Guarded) -> None:
     assert statuses("HEAD", f"/v1/jobs/{job}") == read
     submit = {Scope.READ: 403, Scope.SUBMIT: 202, Scope.CANCEL: 403}
     assert statuses("POST", "/v1/jobs", json=short_request()) == submit
-    assert statuses("DELETE", f"/v1/jobs/{job}") == {Scope.READ: 403, Scope.SUBMIT: 403, Scope.CANCEL: 200}
+    cancel = {Scope.READ: 403, Scope.SUBMIT: 403, Scope.CANCEL: 200}
+    assert statuses("DELETE", f"/v1/jobs/{job}") == cancel
+    assert statuses("POST", f"/v1/jobs/{job}/cancel") == cancel
     refused = guarded.client.delete(f"/v1/jobs/{job}", headers=allowed[Scope.READ])
     assert 'error="insufficient_scope", scope="cancel"' in refused.headers["www-authenticate"]
 
