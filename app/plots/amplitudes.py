@@ -66,7 +66,7 @@ def picture(found: Found, facts: Facts, options: Options) -> Sheet:
     for panel, (count, quantity) in zip(panels.flat, places, strict=True):
         _panel(panel, sheet.palette, found, (count, models), quantity)
         for stretch in lines:
-            if stretch.key[1] == count:
+            if stretch.key[1] == count and stretch.points[0][_WIND] <= reach(found):
                 _curve(panel, sheet.palette, stretch, quantity)
         for mark in points:
             if mark.row["loops"] == count and mark.row[_WIND] <= reach(found):
@@ -88,10 +88,20 @@ def _subtitle(found: Found) -> str:
 
 
 def reach(found: Found) -> float:
-    """Return the highest wind speed that the picture shows [m/s]; without motions all critical ones are shown."""
-    motions = [row for row in found.get("limit_cycles", ()) if row.get("kind") != "equilibrium"]
-    winds = [row[_WIND] for table in (motions, found.get("amplitude_curves", ())) for row in table if row["vertical_m"]]
-    return 1.1 * max([*winds, *(row[_WIND] for row in found.get("limit_cycles", ()))]) if winds else math.inf
+    """Return the highest wind speed that the picture shows [m/s]; without motions all critical ones are shown.
+
+    It is a tenth beyond the winds asked for and the branches that have a motion at one of them.
+    """
+    motions = [row for row in found.get("limit_cycles", ()) if row.get("kind") != "equilibrium" and row["vertical_m"]]
+    branches = {(row["model"], row["loops"], row["branch"]) for row in motions}
+    curves = [
+        row
+        for row in found.get("amplitude_curves", ())
+        if row["vertical_m"] and (not branches or (row["model"], row["loops"], row["branch"]) in branches)
+    ]
+    if not motions and not curves:
+        return math.inf
+    return 1.1 * max(float(row[_WIND]) for row in (*found.get("limit_cycles", ()), *curves))
 
 
 def _beyond(found: Found, of_section: bool) -> str:

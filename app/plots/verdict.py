@@ -37,6 +37,7 @@ _MAGNIFIED = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _PANEL_PX = 300.0
 _SENTENCE_PX = 17.0
 _POINTS = 121
+_MOST_LINES = 12  # more than a sentence takes in the narrowest picture
 
 
 def picture(found: Found, facts: Facts, options: Options) -> Sheet:
@@ -49,7 +50,7 @@ def picture(found: Found, facts: Facts, options: Options) -> Sheet:
     palette = PALETTES[options.theme]
     beside = columns(layout_width(options), 2, 330.0)
     handles = list(_legend(facts, worst, palette))
-    sentence = wrapped(_sentence(row), (layout_width(options) - 60.0) / _SENTENCE_PX, 4)
+    sentence = wrapped(_sentence(row), (layout_width(options) - 60.0) / _SENTENCE_PX, _MOST_LINES)
     spoken = 1.4 * _SENTENCE_PX * len(sentence) + 22.0
     height = spoken + _PANEL_PX * (2 // beside) + legend_height(handles, options)
     names = [phase.name for phase in facts.phases]

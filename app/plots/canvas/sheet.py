@@ -28,6 +28,7 @@ Box = tuple[float, float, float, float]
 
 _TITLE, _TEXT, _FOOT = 15.0, 12.0, 10.5  # sizes of letters [px]
 _LINE = 1.35
+_HINTED = 1.06  # small letters of a PNG are rounded to whole px, which widens a line by so much at most
 _LEGEND_PX, _LEGEND_ROW_PX = 16.0, 18.0
 _LEFT_OUT = f"{MISSING} stands for characters without a font on this machine."
 
@@ -123,7 +124,7 @@ def new_sheet(heading: Heading, options: Options, body_height: float, names: Seq
     width = layout_width(options)
     scale = (options.width or USUAL_WIDTH) / width
     chosen = families(" ".join((heading.title, *heading.footer, *names)))
-    inside = width - 2.0 * _MARGIN
+    inside = (width - 2.0 * _MARGIN) / _HINTED
     titles = wrapped(writable(heading.title, chosen), inside / (1.1 * _TITLE), 2)
     subtitles = wrapped(heading.subtitle, inside / _TEXT, 3)
     feet = _feet(heading, chosen, inside)
