@@ -27,7 +27,7 @@ from engine.numerics.continuation import (
 from engine.outcome import Outcome
 from engine.progress import driven
 
-STEPS = StepControl(first=0.2)
+FIRST_STEP = 0.2  # from a cycle; the branch from a Hopf point is a parabola, so nothing keeps the first step short
 REFERENCE_ANGLE = 0.05  # rad; the amplitude with this angle of attack is the smallest scale of a branch
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
@@ -248,7 +248,9 @@ def _followed(
         left_start[new.branch] |= distance > LEFT
         return np.asarray(alive & ~closed)
 
-    outcome = driven(continue_branches(problem, start.z, start.tangent, STEPS), goes_on)
+    moving = start.z[:, :-2].any(axis=-1)
+    steps = StepControl(first=np.where(moving, FIRST_STEP, StepControl().largest))
+    outcome = driven(continue_branches(problem, start.z, start.tangent, steps), goes_on)
     return concatenated(found), outcome, ended
 
 

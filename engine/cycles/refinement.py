@@ -29,6 +29,7 @@ ROUNDING = 1e-10  # share of the largest multiplier below which another one is l
 SHORTEST = 1e-3  # scaled length of a segment that is not divided again
 PARTS = 4  # most parts into which a segment is divided at once
 ROUNDS = 12
+ACCURATE = 1e-7  # tolerance of points between others: short steps need errors that are far shorter
 LONGEST = 40  # most points that replace a segment
 
 
@@ -171,7 +172,7 @@ def _points_between(
         found.append(new.select(~arrived))
         return np.asarray(~arrived & (count[own] < LONGEST))
 
-    control = StepControl(first=step, largest=step)
+    control = StepControl(first=step, largest=step, tolerance=ACCURATE)
     outcome = driven(continue_branches(some, left.z, left.tangent, control), goes_on)
     lost = np.flatnonzero(np.asarray((outcome != Outcome.CONVERGED) & (ends == Ends.ELSEWHERE), dtype=np.bool_))
     ends[lost] = filled(lost.size, Ends.NOWHERE)

@@ -14,7 +14,7 @@ from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled, 
 from engine.numerics.newton import NewtonOptions, Solution, newton, solve_systems
 from engine.outcome import Outcome
 
-CONTINUATION_OPTIONS = NewtonOptions(tolerance=3e-5, iterations=5)  # a step that needs more of them is too long
+MOST_ITERATIONS = 5  # of Newton's method: a step that needs more of them is too long
 ALL_UNKNOWNS = slice(None)
 QUICKEST = 2.0  # largest growth of a step from one point to the next
 
@@ -113,8 +113,8 @@ class StepControl:
 
     A step grows or shrinks so that the prediction misses the next solution by the fraction `aim` of the step. It is
     halved if Newton's method fails, if the cosine between successive tangents falls below `straightness`, or if the
-    prediction misses by more than the fraction `miss`. `points` is the largest number of points. First and largest
-    steps may differ between branches: (branches,).
+    prediction misses by more than the fraction `miss`. `tolerance` is that of Newton's method, `points` the largest
+    number of points. First and largest steps may differ between branches: (branches,).
     """
 
     first: float | FloatArray = 0.05
@@ -123,6 +123,7 @@ class StepControl:
     aim: float = 0.02
     straightness: float = 0.85
     miss: float = 0.08
+    tolerance: float = 3e-5
     points: int = 400
 
 
@@ -170,12 +171,13 @@ def continue_branches(
     length, largest = (np.array(np.broadcast_to(size, active.shape)) for size in (steps.first, steps.largest))
     count = np.zeros(active.size, dtype=np.intp)
     outcome = filled(active.size, Outcome.CONVERGED)
+    options = NewtonOptions(tolerance=steps.tolerance, iterations=MOST_ITERATIONS)
     while active.size:
         here = last.select(active)
         guess = _predict(before.select(active), here, length[active])
         # A starting point may have no phase, as an equilibrium has none.
         anchor = np.where(np.isnan(before.z[active]), guess, here.z)
-        new, solution = solve_at_length(problem, here, length[active], guess, anchor, CONTINUATION_OPTIONS)
+        new, solution = solve_at_length(problem, here, length[active], guess, anchor, options)
         missed = _relative_miss(here, new, guess)
         good = solution.converged & (missed < steps.miss) & (_cosine(here, new) > steps.straightness)
         growth = np.where(good, _growth(missed, steps), 0.5)

@@ -67,7 +67,7 @@ def test_a_branch_from_beyond_that_meets_none_is_followed_through_the_range() ->
     branch_sets, joints = branches_in_groups(model, alone, NARROW, FIVE)
     assert joints == []
     assert branch_sets[1].ended_at_equilibrium.all()
-    assert branch_sets[1].orbits.wind_speed.min() == pytest.approx(crossings.wind_speed[0], rel=0.02)
+    assert crossings.wind_speed[0] < branch_sets[1].orbits.wind_speed.min() < NARROW[0]
     cycles = cycles_at(NARROW, alone)
     assert cycles.wind.tolist() == [0, 1]
     assert set(cycles.found_by) == {"hopf_branch"}
