@@ -82,18 +82,17 @@ def curves_of_job(request: Request, finished: FinishedJob, readers: Readers, poi
 
 @router.post("/cancel")
 def cancel(request: Request, job_id: UUID, caller: CallerOf, writers: Writers, fields: Fields) -> Response:
-    """Cancel a job that is under way, or remove one that has ended.
+    """Cancel a job that is under way, or remove one that has ended where the form says so: it may have ended meanwhile.
 
     Raises
     ------
     ProblemError
         403 if the key may not cancel.
     """
-    del fields
     if Scope.CANCEL not in caller.scopes:
         raise ProblemError(ProblemKind.FORBIDDEN, words().result.may_not_cancel)
     with writers.begin() as session:
-        outcome = job_records.cancel(session, caller, job_id)
+        outcome = job_records.cancel(session, caller, job_id, may_remove=fields.get("remove") == "yes")
     gone = outcome in {CancelOutcome.REMOVED, CancelOutcome.MISSING}
     return moved(request, "/pages/jobs" if gone else f"/pages/jobs/{job_id}")
 
