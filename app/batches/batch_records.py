@@ -117,6 +117,8 @@ def cancel(session: Session, caller: Caller, batch_id: UUID, *, may_remove: bool
     before = batch_progress.counts(session, [batch_id])[batch_id]
     if not before.accepted + before.running and not may_remove:
         return CancelOutcome.KEPT
+    if not before.accepted + before.running and not may_remove:
+        return CancelOutcome.DISMISSED
     if not before.accepted + before.running:
         session.execute(delete(Job).where(Job.batch_id == batch_id))
         session.execute(delete(Batch).where(Batch.id == batch_id))
@@ -162,6 +164,12 @@ def lines_of_chunk(session: Session, job_id: UUID, batch_id: UUID) -> tuple[dict
     statement = select(BatchItem.number, BatchItem.document, BatchItem.known).where(BatchItem.chunk_id == job_id)
     rows = session.execute(statement.order_by(BatchItem.number))
     return analysis, [NumberedLine(number, document or {}, known) for number, document, known in rows]
+
+
+def chunk_of_line(session: Session, batch_id: UUID, number: int) -> UUID | None:
+    """Return the id of the chunk that computes a line, None if there is no such line or it was rejected."""
+    mine = BatchItem.batch_id == batch_id, BatchItem.number == number
+    return session.scalars(select(BatchItem.chunk_id).where(*mine)).one_or_none()
 
 
 def _of(owner: str, batch_id: UUID) -> Select[Batch]:

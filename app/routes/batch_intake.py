@@ -88,6 +88,9 @@ async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_re
     return _Posted(request, request.app.state.settings, how, may_reuse)
 
 
+PostedBatch = Annotated[_Posted, Depends(_posted)]
+
+
 @router.post(
     "",
     summary="Submit a batch",
@@ -106,7 +109,7 @@ async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_re
     openapi_extra=batch_documentation.request_body(),
 )
 async def submit_batch(
-    posted: Annotated[_Posted, Depends(_posted)],
+    posted: PostedBatch,
     caller: CallerOf,
     key: KeyOf,
     writers: Writers,

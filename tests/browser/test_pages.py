@@ -5,7 +5,16 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page
 
-PAGES = ("/", "/pages/jobs", "/pages/lines/new", "/pages/sign-in", "/pages/nothing", "finished job", "what if")
+PAGES = (
+    "/",
+    "/pages/jobs",
+    "/pages/lines/new",
+    "/pages/sign-in",
+    "/pages/nothing",
+    "finished job",
+    "what if",
+    "/pages/batches",
+)
 Open = Callable[..., Page]
 
 

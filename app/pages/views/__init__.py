@@ -2,11 +2,13 @@
 
 from fastapi import APIRouter
 
-from app.pages.views import jobs, line_form, preferences, report, result, sign_in, start, what_if
+from app.pages.views import batches, jobs, line_form, preferences, report, result, sign_in, start, what_if
 
 __all__ = ["routers"]
 
 
 def routers() -> tuple[APIRouter, ...]:
     """Return the routers of all pages."""
-    return tuple(module.router for module in (start, jobs, line_form, report, result, what_if, preferences, sign_in))
+    return tuple(
+        module.router for module in (start, batches, jobs, line_form, report, result, what_if, preferences, sign_in)
+    )

@@ -1,0 +1,42 @@
+from typing import Any
+
+from app.pages.batches.overviews import Wanted, overview
+
+
+def feature(number: int, **said: Any) -> dict[str, Any]:
+    line = {
+        "number": number,
+        "name": f"span {number}",
+        "reference": None,
+        "asset_id": "L204",
+        "status": "successful",
+        "gallops": "yes",
+        "unknown_motions": False,
+        "vertical_peak_to_peak_m": float(number),
+    }
+    return {"geometry": None, "properties": {**line, **said}}
+
+
+FEATURES = [
+    feature(1),
+    feature(2),
+    feature(3, gallops="undecided", vertical_peak_to_peak_m=None),
+    feature(4, status="rejected", gallops=None, vertical_peak_to_peak_m=None, name=None),
+    feature(5, status="accepted", gallops=None, vertical_peak_to_peak_m=None),
+    feature(6, unknown_motions=True),
+    feature(7, gallops="no", vertical_peak_to_peak_m=None),
+]
+
+
+def test_unknown_motions_come_first_and_what_waits_last() -> None:
+    found = overview(FEATURES, Wanted())
+    assert [line["number"] for line in found.lines] == [6, 3, 4, 2, 1, 7, 5]
+    assert found.answers == {"yes": 3, "no": 1, "undecided": 1}
+    assert found.values("vertical_peak_to_peak_m") == [6.0, 2.0, 1.0]
+
+
+def test_lines_are_wanted_by_their_answer_and_by_any_of_their_names() -> None:
+    assert [line["number"] for line in overview(FEATURES, Wanted("no")).lines] == [7]
+    assert [line["number"] for line in overview(FEATURES, Wanted(name="SPAN 2")).lines] == [2]
+    assert len(overview(FEATURES, Wanted("yes", "l204")).lines) == 3
+    assert overview(FEATURES, Wanted(name="nowhere")).lines == []
