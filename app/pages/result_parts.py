@@ -66,6 +66,16 @@ _COLUMNS = {
         "amplitude_difference",
     ),
     "frequencies": ("model", "loops", "vertical_hz", "horizontal_hz", "torsional_hz", "outcome"),
+    "remedies": (
+        "what",
+        "gallops",
+        "onset_m_per_s",
+        "vertical_peak_to_peak_m",
+        "clearance_margin_m",
+        "static_tension_n",
+        "rank",
+        "sentence",
+    ),
     "risk": (
         "ice",
         "thickness_m",

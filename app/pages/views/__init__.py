@@ -2,7 +2,18 @@
 
 from fastapi import APIRouter
 
-from app.pages.views import batches, jobs, line_form, preferences, report, result, sign_in, start, what_if
+from app.pages.views import (
+    batches,
+    jobs,
+    line_form,
+    preferences,
+    remedy_trials,
+    report,
+    result,
+    sign_in,
+    start,
+    what_if,
+)
 
 __all__ = ["routers"]
 
@@ -10,5 +21,6 @@ __all__ = ["routers"]
 def routers() -> tuple[APIRouter, ...]:
     """Return the routers of all pages."""
     return tuple(
-        module.router for module in (start, batches, jobs, line_form, report, result, what_if, preferences, sign_in)
+        module.router
+        for module in (start, batches, jobs, line_form, report, result, what_if, remedy_trials, preferences, sign_in)
     )
