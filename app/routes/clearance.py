@@ -1,18 +1,24 @@
 """Clearance between two phases: computed motions beside the ellipses of design practice."""
 
+from collections.abc import Iterator
 from typing import Annotated
 
 from fastapi import APIRouter, Query
-from fastapi.responses import JSONResponse
+from fastapi.responses import JSONResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
+from sqlalchemy.orm import Session
 
 from app import convert
 from app.answers.clearance import Clearance
+from app.export import formats
+from app.export.clearance_report import COLUMNS, report_rows
+from app.export.formats import Dialect
 from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, Readers
 from app.routes.finished_jobs import FinishedJob
 from app.routes.results import point_rows, request_of_point
+from app.routes.streaming import streamed
 from app.schemas.fields import example_of
 from app.storage import stored_results
 
@@ -69,3 +75,36 @@ def clearance_between_phases(
     if not found["static"]:
         raise ProblemError(ProblemKind.NOT_FOUND, f"The job has no results at point {query.point}.")
     return JSONResponse(convert.clearances(request, found, offset, query.method), headers=headers)
+
+
+@router.get(
+    "/clearance-report",
+    summary="Get the clearances as a report that utilities process",
+    response_class=StreamingResponse,
+    responses={
+        200: documentation.body("The report", ("text/csv", ",".join(COLUMNS))),
+        **documentation.UNCHANGED,
+        **documentation.problems(
+            ProblemKind.INVALID_PARAMETER, ProblemKind.NOT_FOUND, ProblemKind.NOT_READY, ProblemKind.DISMISSED
+        ),
+    },
+)
+def clearance_report(
+    finished: FinishedJob,
+    readers: Readers,
+    dialect: Annotated[Dialect, Query(description=documentation.DIALECT)] = "plain",
+    point: Annotated[int, Query(ge=0, description="Number of the study's point, from 0")] = 0,
+) -> StreamingResponse:
+    """Return the table `clearances` as CSV under the names of clearance reports, lengths in m and angles in degrees.
+
+    The structure is the tag `structure` of the line, else its asset_id, else its name; the set is its tag `set`.
+    """
+    job, headers = finished.job, finished.headers(f"clearance report {dialect}")
+
+    def pieces(session: Session) -> Iterator[str]:
+        request, _ = request_of_point(session, job, point)
+        tables = stored_results.tables_of_point(session, job.id, point)
+        rows = report_rows(request["line"], [] if tables is None else tables["clearances"])
+        return formats.in_blocks(formats.csv_text(COLUMNS, rows, dialect))
+
+    return streamed(readers, pieces, formats.MEDIA_TYPES["csv"], headers)

@@ -1,3 +1,5 @@
+import csv
+import io
 from typing import Any
 
 import httpx
@@ -66,3 +68,20 @@ def test_a_point_that_there_is_not_is_404_and_a_waiting_job_409(shared_client: h
     other["line"]["span"]["length_m"] = 99.0  # what was asked before is answered at once
     waiting = service.submit(shared_client, other)
     assert shared_client.get(f"/v1/jobs/{waiting['id']}/clearance").status_code == 409
+
+
+def test_the_report_has_the_rows_of_the_table_under_the_names_of_reports(
+    shared_client: httpx.Client, shared_settings: Settings
+) -> None:
+    request = short_request()
+    request["line"] |= {"phases": [{"name": "top", "y_m": 4.0}], "tags": {"structure": "T17"}}
+    job = service.finished(shared_client, shared_settings, request)
+    rows = shared_client.get(f"{job}/results/clearances").json()["clearances"]
+    answer = shared_client.get(f"{job}/clearance-report")
+    assert answer.headers["content-type"].startswith("text/csv")
+    report = list(csv.DictReader(io.StringIO(answer.text)))
+    assert len(report) == len(rows) > 4
+    for made, row in zip(report, rows, strict=True):
+        assert (made["structure"], made["phase"], made["galloping_ellipse_method"]) == ("T17", "this", row["method"])
+        for name, column in (("distance", "distance_m"), ("major_axis_length", "major_axis_m")):
+            assert made[name] == ("" if row[column] is None else str(row[column]))
