@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: setup demo test test-pages page-pictures test-faults reliability check bench capacity validation
+.PHONY: setup demo test test-processes test-pages page-pictures test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -19,8 +19,16 @@ $(VENV)/.ready: pyproject.toml constraints.txt $(wildcard engine/kernels/*)
 demo: setup
 	$(BIN)/python -m app.cli.demo --output demo-output
 
+# Tests that start, kill and restart whole processes, or run whole commands one after another: they mostly wait.
+PROCESSES := tests/e2e tests/worker/test_lost_processes.py tests/worker/test_batches.py tests/worker/test_priorities.py \
+	tests/app/test_serve.py tests/app/operation tests/app/routes/test_idempotent_crashes.py tests/app/cli/test_demo.py \
+	tests/benchmarks/test_walkthrough.py
+
 test: setup
-	$(BIN)/python -m pytest -n 2 --dist worksteal tests
+	$(BIN)/python -m pytest -n 2 --dist worksteal $(PROCESSES:%=--ignore=%) tests
+
+test-processes: setup
+	$(BIN)/python -m pytest -n 2 --dist worksteal $(PROCESSES)
 
 # Opens every page in the chromium of the system; CHROMIUM names another one.
 test-pages: setup

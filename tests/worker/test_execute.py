@@ -81,7 +81,7 @@ def test_running_job_stops_when_cancelled(sessions: sessionmaker[Session], setti
 
 
 def test_a_search_for_places_stops_between_generations(sessions: sessionmaker[Session], settings: Settings) -> None:
-    job_id = add_job(sessions, short_request() | {"placement": EXAMPLE | {"generations": 200, "population": 60}})
+    job_id = add_job(sessions, short_request() | {"placement": EXAMPLE | {"generations": 200, "population": 8}})
     stopped_while_running(sessions, settings, job_id, 60.0)
     assert look(sessions, job_id).status is JobStatus.DISMISSED
     assert count_points(sessions, job_id) == 0
