@@ -116,11 +116,17 @@ def resolved_stability(
 
 
 def _tail(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
-    """Return the share of the last two harmonics in the size of each cycle; 0 for fewer than three harmonics."""
+    """Return the share of the last two harmonics in the size of each cycle; 0 for fewer than three harmonics.
+
+    The share is 0 without a motion, and 1 where the size is beyond all numbers, so that it counts as unresolved.
+    """
     if orbits.coefficients.shape[-1] // 2 < 3:
         return np.zeros(member.size)
     last = Orbits(orbits.coefficients[..., -5:], orbits.angular_frequency, orbits.wind_speed)
-    return oscillation_size(model, member, last) / oscillation_size(model, member, orbits)
+    size = oscillation_size(model, member, orbits)
+    known = np.isfinite(size) & (size > 0.0)
+    share = np.divide(oscillation_size(model, member, last), size, out=np.ones(size.size), where=known)
+    return np.where(size == 0.0, 0.0, share)
 
 
 def _refined(

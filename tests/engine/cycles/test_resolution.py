@@ -1,5 +1,8 @@
 """Cycles that a few harmonics do not resolve are solved again with more, and only those."""
 
+from dataclasses import replace
+from unittest.mock import patch
+
 import numpy as np
 import pytest
 
@@ -77,3 +80,17 @@ def test_branches_whose_last_harmonics_do_not_fall_off_are_told_from_smooth_ones
         branch_set = follow_from_cycles(model, ONE, start, np.array([1.0, 1.1]))
         coarse.append(unresolved_members(model, [branch_set]).tolist())
     assert coarse == [[False], [True]]
+
+
+@pytest.mark.parametrize(("size", "coarse"), [(1e-200, False), (np.inf, True)])
+def test_points_whose_size_is_no_number_are_judged_without_a_warning(size: float, coarse: bool) -> None:
+    """Squares of 1e-200 vanish: such a point does not move; one beyond all numbers is not resolved."""
+    model = van_der_pol(0.01)
+    followed = follow_from_cycles(model, ONE, cycle(model, 3), np.array([1.0, 1.1]))
+    count = followed.points.branch.size
+    sizes = np.full(followed.orbits.coefficients.shape, size)
+    orbits = Orbits(sizes, followed.orbits.angular_frequency, followed.orbits.wind_speed)
+    uneven = replace(followed.floquet, trivial_error=np.full(count, 1.0))
+    with patch.object(type(followed), "orbits", orbits):
+        found = unresolved_members(model, [replace(followed, floquet=uneven)])
+    assert found.tolist() == [coarse]
