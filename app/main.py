@@ -120,6 +120,12 @@ def create_app(settings: Settings | None = None) -> Service:
     limits = {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes}
     problems.install(app, limits, frame.shown_problem)
     app.add_middleware(HeadAsGet)
+    _add_addresses(app)
+    return app
+
+
+def _add_addresses(app: Service) -> None:
+    """Add the routes of the API, the pages, and the files that both need."""
     for module in (jobs, remedies, lines, previews, results, pictures, batch_intake, batches, batch_results):
         app.include_router(module.router)
     for module in (batch_ranking, clearance, events, deliveries, aerodynamics, own_aerodynamics, own_conductors):
@@ -130,7 +136,6 @@ def create_app(settings: Settings | None = None) -> Service:
         app.include_router(router)
     for address, files in {explorer.ASSETS: explorer.assets(), **assets.folders()}.items():
         app.mount(address, files)
-    return app
 
 
 def _equip(app: Service, settings: Settings, database: Engine) -> None:
