@@ -1,12 +1,10 @@
 """Clearance between two phases: computed motions beside the ellipses of design practice."""
 
-from collections.abc import Iterator
 from typing import Annotated
 
-from fastapi import APIRouter, Query
-from fastapi.responses import JSONResponse, StreamingResponse
+from fastapi import APIRouter, Query, Response
+from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
-from sqlalchemy.orm import Session
 
 from app import convert
 from app.answers.clearance import Clearance
@@ -18,7 +16,6 @@ from app.routes import documentation
 from app.routes.dependencies import PREFIX, Readers
 from app.routes.finished_jobs import FinishedJob
 from app.routes.results import point_rows, request_of_point
-from app.routes.streaming import streamed
 from app.schemas.fields import example_of
 from app.storage import stored_results
 
@@ -80,7 +77,7 @@ def clearance_between_phases(
 @router.get(
     "/clearance-report",
     summary="Get the clearances as a report that utilities process",
-    response_class=StreamingResponse,
+    response_class=Response,
     responses={
         200: documentation.body("The report", ("text/csv", ",".join(COLUMNS))),
         **documentation.UNCHANGED,
@@ -94,17 +91,22 @@ def clearance_report(
     readers: Readers,
     dialect: Annotated[Dialect, Query(description=documentation.DIALECT)] = "plain",
     point: Annotated[int, Query(ge=0, description="Number of the study's point, from 0")] = 0,
-) -> StreamingResponse:
+) -> Response:
     """Return the table `clearances` as CSV under the names of clearance reports, lengths in m and angles in degrees.
 
     The structure is the tag `structure` of the line, else its asset_id, else its name; the set is its tag `set`.
+
+    Raises
+    ------
+    ProblemError
+        404 if the job has no results at this point.
     """
     job, headers = finished.job, finished.headers(f"clearance report {dialect}")
-
-    def pieces(session: Session) -> Iterator[str]:
-        request, _ = request_of_point(session, job, point)
+    with readers() as session:
         tables = stored_results.tables_of_point(session, job.id, point)
-        rows = report_rows(request["line"], [] if tables is None else tables["clearances"])
-        return formats.in_blocks(formats.csv_text(COLUMNS, rows, dialect))
-
-    return streamed(readers, pieces, formats.MEDIA_TYPES["csv"], headers)
+        if tables is None:
+            raise ProblemError(ProblemKind.NOT_FOUND, f"The job has no results at point {point}.")
+        request, _ = request_of_point(session, job, point)
+    rows = report_rows(request["line"], tables.get("clearances", []))
+    text = "".join(formats.csv_text(COLUMNS, rows, dialect))
+    return Response(text, headers=headers, media_type=formats.MEDIA_TYPES["csv"])

@@ -85,3 +85,5 @@ def test_the_report_has_the_rows_of_the_table_under_the_names_of_reports(
         assert (made["structure"], made["phase"], made["galloping_ellipse_method"]) == ("T17", "this", row["method"])
         for name, column in (("distance", "distance_m"), ("major_axis_length", "major_axis_m")):
             assert made[name] == ("" if row[column] is None else str(row[column]))
+    missing = shared_client.get(f"{job}/clearance-report", params={"point": 7})
+    assert (missing.status_code, missing.json()["detail"]) == (404, "The job has no results at point 7.")
