@@ -17,13 +17,29 @@ SAMPLES = 60
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """A limit cycle: its number among the rows, its row, and V, W [m] and Theta [rad] over one period."""
+    """A limit cycle: its number among the rows, its row, and the Fourier coefficients of its course.
+
+    A page names hundreds of motions and draws one, so a course is computed where it is asked for.
+    """
 
     number: int
     row: Row
-    vertical: Sequence[float]
-    horizontal: Sequence[float]
-    torsional: Sequence[float]
+    coefficients: Mapping[str, Any]
+
+    @property
+    def vertical(self) -> Sequence[float]:
+        """Return V over one period [m]."""
+        return course(self.coefficients["vertical"])
+
+    @property
+    def horizontal(self) -> Sequence[float]:
+        """Return W over one period [m]."""
+        return course(self.coefficients["horizontal"])
+
+    @property
+    def torsional(self) -> Sequence[float]:
+        """Return Theta over one period [rad]."""
+        return course(self.coefficients["torsional"])
 
     @property
     def period(self) -> float:
@@ -35,7 +51,7 @@ def motions(session: Session, job: Job, found: Findings) -> list[Motion]:
     """Return the motions of a point whose courses are stored, stable ones first, then by wind speed and size."""
     rows = found.rows("limit_cycles")
     made = [
-        motion_of(orbit, rows[orbit["cycle"]])
+        Motion(orbit["cycle"], rows[orbit["cycle"]], orbit)
         for orbit in stored_results.orbits(session, job.id)
         if orbit["point"] == found.point
     ]
@@ -59,14 +75,9 @@ def course(coefficients: Sequence[float], samples: int = SAMPLES) -> list[float]
 
 @cache
 def _wave(number: int, samples: int) -> tuple[tuple[float, float], ...]:
-    """Return cosine and sine of a harmonic at the times of a course; a page has hundreds of courses."""
+    """Return cosine and sine of a harmonic at the times of a course."""
     angles = (2.0 * pi * number * sample / samples for sample in range(samples))
     return tuple((cos(angle), sin(angle)) for angle in angles)
-
-
-def motion_of(orbit: Mapping[str, Any], row: Row) -> Motion:
-    """Return the motion with the stored coefficients of its course."""
-    return Motion(orbit["cycle"], row, *(course(orbit[name]) for name in ("vertical", "horizontal", "torsional")))
 
 
 def _order(motion: Motion) -> tuple[bool, float, float]:

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.convert import PointResult
 from app.pages.findings import Findings, Row
-from app.pages.motions import Motion, motion_of, motions
+from app.pages.motions import Motion, motions
 from app.tables import Job
 
 
@@ -53,7 +53,7 @@ def computed_material(request: Mapping[str, Any], point: PointResult, made: date
     }
     found = Findings(point.point, [here], request["line"], request["analysis"], point.tables)
     cycles = point.tables["limit_cycles"]
-    seen = [motion_of(orbit, cycles[orbit["cycle"]]) for orbit in point.orbits]
+    seen = [Motion(orbit["cycle"], cycles[orbit["cycle"]], orbit) for orbit in point.orbits]
     return Material(request["line"].get("name"), found, seen, point.orbits, made, {})
 
 

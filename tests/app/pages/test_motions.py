@@ -13,7 +13,7 @@ def test_a_course_is_the_sum_of_its_waves() -> None:
 
 def motion(number: int, stability: str, vertical: float) -> Motion:
     row = {"stability": stability, "vertical_m": vertical, "frequency_hz": 0.25, "wind_speed_m_per_s": 4.0}
-    return Motion(number, row, [], [], [])
+    return Motion(number, row, {})
 
 
 def test_the_verdict_is_about_the_largest_stable_motion() -> None:

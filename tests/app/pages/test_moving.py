@@ -64,7 +64,7 @@ def test_the_design_ellipse_is_that_of_the_verdict(found: Findings) -> None:
 
 
 def test_sub_conductors_move_by_equation_3() -> None:
-    motion = Motion(0, {}, [0.1], [0.2], [0.01])
+    motion = Motion(0, {}, {"vertical": [0.1], "horizontal": [0.2], "torsional": [0.01]})
     (first, second) = wires(motion, positions({"subconductors": 2, "radius_m": 0.3, "orientation_deg": 90.0}))
     assert first[0] == pytest.approx((0.3 + 0.2, 0.1 - 0.3 * 0.01))
     assert second[0] == pytest.approx((-0.3 + 0.2, 0.1 + 0.3 * 0.01))

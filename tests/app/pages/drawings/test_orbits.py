@@ -4,7 +4,7 @@ from app.pages.drawings.orbits import SIZE, Surroundings, ellipse_points, orbit_
 from app.pages.measures import FEET, SI
 from app.pages.motions import Motion
 
-MOTION = Motion(0, {}, [0.5, 0.0, -0.5, 0.0], [0.0, 0.1, 0.0, -0.1], [0.0, 0.0, 0.0, 0.0])
+MOTION = Motion(0, {}, {"vertical": [0.0, 0.5, 0.0], "horizontal": [0.0, 0.0, 0.1], "torsional": [0.0, 0.0, 0.0]})
 LINE = {
     "bundle": {"subconductors": 2, "radius_m": 0.2, "orientation_deg": 90.0},
     "conductor": {"diameter_m": 0.03},
