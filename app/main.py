@@ -5,7 +5,6 @@ from contextlib import asynccontextmanager
 from functools import partial
 from typing import Any
 
-from anyio import CapacityLimiter
 from fastapi import FastAPI
 from sqlalchemy import Engine
 from starlette.types import ASGIApp
@@ -17,14 +16,13 @@ from app.http import problems
 from app.http.head_as_get import HeadAsGet
 from app.http.request_log import RequestLog
 from app.http.security_headers import SecurityHeaders
-from app.interactive import Previews
+from app.interactive import Previews, Workshop
 from app.jobs import submissions
 from app.jobs.dispatch import Sender, celery_application
 from app.jobs.job_records import look_up
 from app.jobs.watched_states import batches_seen, jobs_seen
 from app.operation import metrics
 from app.pages import assets, frame, views
-from app.plots.studio import Studio
 from app.routes import (
     aerodynamics,
     batch_intake,
@@ -56,6 +54,7 @@ from app.storage.database import make_engine, session_factory
 
 _INBOX_PAUSE_SECONDS = 0.006  # about as long as one group of posts takes
 _MESSAGES_PAUSE_SECONDS = 0.05  # nobody waits for a message to leave; each group costs a transaction
+_REPORTS_OF_OWNER, _REPORTS = 4, 16  # under way at once; each takes a second or two
 _DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
 
 Post a line to `/v1/jobs`, follow `Location` until the status is `successful`, then read `/results`.
@@ -96,7 +95,8 @@ def create_app(settings: Settings | None = None) -> Service:
         await meter.close()
         for watch in (app.state.job_watch, app.state.batch_watch):
             await watch.close()
-        app.state.studio.close()
+        for workshop in (app.state.studio, app.state.printers):
+            workshop.close()
         app.state.sender.close()
         database.dispose()
         app.state.prober.dispose()
@@ -145,7 +145,8 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
     app.state.prober = make_engine(settings, impatient=True)
-    app.state.printers = CapacityLimiter(1)
+    app.state.studio = Workshop(settings.drawing_processes)
+    app.state.printers = Workshop(1, most_of_owner=_REPORTS_OF_OWNER, most=_REPORTS)
     app.state.previews = Previews(settings.preview_seconds)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
     app.state.inbox = GroupedCalls(
@@ -155,6 +156,5 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
         "messages", lambda job_ids: [app.state.sender.send(job_ids)] * len(job_ids), _MESSAGES_PAUSE_SECONDS
     )
     app.state.statuses = GroupedCalls("statuses", partial(look_up, app.state.readers))
-    app.state.studio = Studio(settings.drawing_processes)
     app.state.job_watch = SharedWatch("job-watch", partial(jobs_seen, app.state.readers), settings.watch_seconds)
     app.state.batch_watch = SharedWatch("batch-watch", partial(batches_seen, app.state.readers), settings.watch_seconds)

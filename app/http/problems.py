@@ -65,7 +65,7 @@ class ProblemKind(Enum):
         "The line takes longer than a preview may; submit it as a job.",
     )
     INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is not JSON, or fields of it are wrong.")
-    BUSY = ("busy", 429, "Busy", "Other previews are not done yet; try again a second later.")
+    BUSY = ("busy", 429, "Busy", "Earlier ones are not done yet; try again when Retry-After says.")
     TOO_MANY_REQUESTS = (
         "too-many-requests",
         429,

@@ -15,6 +15,7 @@ from anyio import CapacityLimiter, to_process
 
 from app import convert
 from app.convert import PointResult
+from app.interactive.busy import Busy
 from app.reference.source_lines import example
 from app.runtime.processes import end_with_parent
 
@@ -23,10 +24,6 @@ Answer = TypeVar("Answer")
 
 _MOST_OF_OWNER = 2  # one that is computed and one that waits: a slider has moved on by then
 _MOST_WAITING = 8
-
-
-class Busy(Exception):
-    """Raised when too many previews wait already, of all owners or of this one."""
 
 
 class TakesTooLong(Exception):

@@ -1,7 +1,6 @@
 """Pictures of a job: those of one point, and that of a whole study."""
 
 from collections.abc import Awaitable, Callable, Mapping
-from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 from uuid import UUID
 
@@ -12,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app import convert, plots
 from app.http.problems import ProblemError, ProblemKind
-from app.plots.studio import Studio
+from app.interactive import Workshop
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, CallerOf, Readers
 from app.routes.finished_jobs import FinishedJob
@@ -43,8 +42,12 @@ Draw = Callable[[str, plots.Found, plots.Facts, plots.Options], Awaitable[bytes]
 
 
 async def _drawer(request: Request, caller: CallerOf) -> Draw:
-    studio: Studio = request.app.state.studio
-    return partial(studio.draw, caller.owner)
+    studio: Workshop = request.app.state.studio
+
+    async def drawn(name: str, found: plots.Found, facts: plots.Facts, options: plots.Options) -> bytes:
+        return await studio.run(caller.owner, plots.draw, name, found, facts, options)
+
+    return drawn
 
 
 Drawer = Annotated[Draw, Depends(_drawer)]

@@ -4,20 +4,24 @@ from typing import Annotated, Any
 from urllib.parse import quote
 from uuid import UUID
 
-from anyio import CapacityLimiter, to_process, to_thread
+from anyio import to_thread
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse
 
 from app.http.problems import ProblemError, ProblemKind
+from app.interactive import Busy, Workshop
 from app.pages import assets
 from app.pages.findings import findings
 from app.pages.frame import POLICY, address, units_of
 from app.pages.reports import Material, NotPrintable, job_material, report_html, report_pdf
 from app.pages.wording import words
+from app.routes.dependencies import CallerOf
 from app.routes.finished_jobs import FinishedJob
 from app.storage import stored_results
 
 router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}")
+
+_RETRY_SECONDS = "5"  # as long as a few reports take
 
 Point = Annotated[int, Query(ge=0, description="Number of the study's point, from 0")]
 
@@ -37,18 +41,22 @@ async def report(request: Request, job_id: UUID, finished: FinishedJob, point: P
 
 
 @router.get("/report.pdf")
-async def report_as_pdf(request: Request, job_id: UUID, finished: FinishedJob, point: Point = 0) -> Response:
+async def report_as_pdf(
+    request: Request, job_id: UUID, caller: CallerOf, finished: FinishedJob, point: Point = 0
+) -> Response:
     """Return the report as a file; it is made in a process of its own, one at a time.
 
     Raises
     ------
     ProblemError
-        404 if this platform cannot make it.
+        404 if this platform cannot make it; 429 if too many are being made.
     """
     material = await to_thread.run_sync(_material, request, finished, point)
-    printers: CapacityLimiter = request.app.state.printers
+    printers: Workshop = request.app.state.printers
     try:
-        made = await to_process.run_sync(report_pdf, material, units_of(request), limiter=printers)
+        made = await printers.run(caller.owner, report_pdf, material, units_of(request))
+    except Busy as error:
+        raise ProblemError(ProblemKind.BUSY, words().report.busy, headers={"Retry-After": _RETRY_SECONDS}) from error
     except NotPrintable as error:
         raise ProblemError(ProblemKind.NOT_FOUND, str(error)) from error
     name = quote(f"{material.name or job_id}.pdf")

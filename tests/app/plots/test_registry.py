@@ -68,6 +68,6 @@ def test_pictures_that_make_sense_are_those_with_rows(found: Tables) -> None:
 
 
 def test_matplotlib_is_not_loaded_before_a_picture_is_drawn() -> None:
-    script = "import sys, app.plots, app.plots.studio; sys.exit('matplotlib' in sys.modules)"
+    script = "import sys, app.plots, app.interactive; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
     assert EDITION > 0
