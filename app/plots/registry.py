@@ -50,6 +50,7 @@ PICTURES: Mapping[str, Picture] = {
     "tensions": Picture("Tensions during the motions", "tensions", ("tensions",)),
     "clearances": Picture("Smallest distances between phases", "clearances", ("clearances",)),
     "risk": Picture("Hours of galloping a year", "risk", ("risk",)),
+    "remedies": Picture("Remedies beside the line as it is", "remedies", ("remedies",)),
     "study": Picture(
         "Amplitudes over the varied field, or a map over two fields",
         "studies",

@@ -4,13 +4,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from app.pages.drawings.spans import span_drawing
+from app.pages.findings import Findings
 from app.pages.frame import rendered
 from app.pages.measures import Units
 from app.pages.reports.material import Material
 from app.pages.result_parts import findings_parts
 from app.pages.wording import words
 
-PICTURES = ("amplitude", "orbit")
+_PICTURES = {"amplitude": "limit_cycles", "orbit": "limit_cycles", "remedies": "remedies"}
 _MOST_ROWS = 60  # of each table; the downloads have the rest
 
 
@@ -23,7 +24,7 @@ def report_html(material: Material, units: Units, picture: Callable[[str], str],
     units : Units
         Units of the reader.
     picture : callable
-        Returns the address of a picture, by its name in `PICTURES`.
+        Returns the address of a picture, by its name among the `pictures`.
     style : str
         Address of the style sheet.
     """
@@ -35,12 +36,17 @@ def report_html(material: Material, units: Units, picture: Callable[[str], str],
         units=units,
         words=words(),
         style=style,
-        pictures=[(name, picture(name)) for name in PICTURES] if found.rows("limit_cycles") else [],
+        pictures=[(name, picture(name)) for name in pictures(found)],
         span=_span(material, units),
         given=list(_given(found.line_here)) if not found.rows("assumptions") else [],
         most_rows=_MOST_ROWS,
         **findings_parts(found, units, material.motions),
     )
+
+
+def pictures(found: Findings) -> list[str]:
+    """Return the names of the pictures that a report shows: those with rows to draw."""
+    return [name for name, table in _PICTURES.items() if found.rows(table)]
 
 
 def _span(material: Material, units: Units) -> Any:

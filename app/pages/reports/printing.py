@@ -7,7 +7,7 @@ from typing import Any
 
 from app import plots
 from app.pages.measures import Units
-from app.pages.reports.document import PICTURES, report_html
+from app.pages.reports.document import pictures, report_html
 from app.pages.reports.material import Material
 from app.pages.wording import words
 
@@ -75,7 +75,7 @@ def _sources(material: Material) -> dict[str, tuple[bytes, str]]:
     for weight, content in fonts.items():
         made[f"report:{weight}"] = content, "ttf"
     found = {**material.found.tables, "orbits": material.orbits}
-    for name in PICTURES if found["limit_cycles"] else ():
+    for name in pictures(material.found):
         made[f"report:{name}"] = plots.draw(name, found, _facts(material, name), plots.Options()), "svg"
     return made
 
