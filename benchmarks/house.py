@@ -1,4 +1,4 @@
-"""How the source tree keeps its house rules: sizes of files and functions, and the names that files share.
+"""How the source tree keeps its house rules: sizes, names that files share, and no `next()` that may have nothing.
 
 `python -m benchmarks.house` prints the figures of engine, app and worker, and exits with 1 over a bound. It reads the
 sources without importing them. The bounds are those of the house rules in docs/decisions/0022-rooms.md.
@@ -21,6 +21,7 @@ LONG_LINES = 40.0  # 95 % of the functions are no longer
 FILE_LINES = 300
 ARGUMENTS = 6
 PACKAGE_FILES = 15
+ENDS_CAUGHT = Path("engine/progress.py")  # the only place that drives generators by hand
 UNBOUNDED = {Path("app/routes")}  # an address is a file: their number follows the interface
 
 # Names that files shared, and the files that had them, before the packages of decision 0022.
@@ -39,12 +40,17 @@ class Function:
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """A source file by its path from the root: its lines, its functions, and the files of ours that it imports."""
+    """A source file by its path from the root: its lines, its functions, and the files of ours that it imports.
+
+    nexts: lines where `next(...)` has no default, or `.send(...)` or `StopIteration` takes its place. Inside a
+    generator an end without a value becomes a RuntimeError, far from where something was missing.
+    """
 
     path: Path
     lines: int
     functions: tuple[Function, ...]
     imports: tuple[Path, ...]
+    nexts: tuple[int, ...] = ()
 
 
 def modules(root: Path, tops: Iterable[str] = TOPS) -> list[Module]:
@@ -79,6 +85,7 @@ def offences(found: list[Module]) -> list[str]:
         *_offences_of_files(found),
         *_offences_of_functions(found),
         *_offences_of_names(found),
+        *_offences_of_ends(found),
     ]
 
 
@@ -120,6 +127,13 @@ def _offences_of_names(found: list[Module]) -> Iterator[str]:
                 yield f"{module.path}: imports {number} files of one name: {paths}"
 
 
+def _offences_of_ends(found: list[Module]) -> Iterator[str]:
+    for module in found:
+        if _top(module) == "engine" and module.path != ENDS_CAUGHT:
+            for line in module.nexts:
+                yield f"{module.path}:{line}: next() without a default, or the protocol of generators by hand"
+
+
 def _top(module: Module) -> str:
     return module.path.parts[0]
 
@@ -133,7 +147,17 @@ def _module(root: Path, path: Path) -> Module:
         for node in ast.walk(tree)
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
     )
-    return Module(relative, len(text.splitlines()), functions, tuple(sorted(set(_imports(root, tree)))))
+    imports, nexts = tuple(sorted(set(_imports(root, tree)))), tuple(_nexts(tree))
+    return Module(relative, len(text.splitlines()), functions, imports, nexts)
+
+
+def _nexts(tree: ast.Module) -> Iterator[int]:
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(func=ast.Name(id="next"), args=[_]):
+                yield node.lineno
+            case ast.Name(id="StopIteration") | ast.Call(func=ast.Attribute(attr="send" | "__next__")):
+                yield node.lineno
 
 
 def _lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:

@@ -6,7 +6,7 @@ from itertools import chain
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray, merge_axes
+from engine.arrays import FloatArray, IntArray, merge_axes, placed
 from engine.cycles.harmonic_balance import Orbits, resized
 from engine.cycles.known_cycles import Starts, stacked
 from engine.cycles.search import Cycles
@@ -88,28 +88,27 @@ def analyse_stack(lines: Sequence[Line], analysis: Analysis) -> Generator[Progre
         return (yield from analyse_lines(lines, analysis, _analyse))
     bare = [replace(line, devices=()) for line in lines if line.devices]
     results = yield from analyse_lines([*lines, *bare], analysis, _analyse)
-    without = iter(results[len(lines) :])
-    pairs = [(next(without) if line.devices else own, own) for line, own in zip(lines, results, strict=False)]
-    return [replace(own, device_effects=device_effects(other, own)) for other, own in pairs]
+    own, without = results[: len(lines)], placed(results[len(lines) :], [bool(line.devices) for line in lines])
+    pairs = zip(own, without, strict=True)
+    return [replace(one, device_effects=device_effects(other or one, one)) for one, other in pairs]
 
 
 def _analyse(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
     """Analyse lines, each in its one static state: single spans as one stack, every assembly by itself."""
-    together = iter((yield from _analyse_spans(spans, analysis)) if (spans := _single_spans(lines)) else [])
+    spans = [line for line in lines if _is_single_span(line)]
+    together = (yield from _analyse_spans(spans, analysis)) if spans else []
     results = []
-    for line in lines:
-        if line.section is not None:
-            result = yield from analyse_section(line, analysis)
-        elif line.interphase_spacers:
-            result = yield from analyse_phases(line, analysis)
+    for line, result in zip(lines, placed(together, [_is_single_span(line) for line in lines]), strict=True):
+        if result is not None:
+            results.append(result)
         else:
-            result = next(together)
-        results.append(result)
+            alone = analyse_phases if line.section is None else analyse_section
+            results.append((yield from alone(line, analysis)))
     return results
 
 
-def _single_spans(lines: Sequence[Line]) -> list[Line]:
-    return [line for line in lines if line.section is None and not line.interphase_spacers]
+def _is_single_span(line: Line) -> bool:
+    return line.section is None and not line.interphase_spacers
 
 
 def _analyse_spans(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:

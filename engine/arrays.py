@@ -1,8 +1,9 @@
 """Array types of the engine, and the few array operations that several packages share."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ IntArray = NDArray[np.intp]
 BoolArray = NDArray[np.bool_]
 ObjectArray = NDArray[np.object_]
 AnyArray = NDArray[Any]
+Value = TypeVar("Value")
 
 
 def eigenvalues(matrices: FloatArray) -> ComplexArray:
@@ -43,3 +45,16 @@ def filled(count: int, value: object) -> ObjectArray:
     result = np.empty(count, dtype=np.object_)
     result.fill(value)
     return result
+
+
+def placed(values: Sequence[Value], wanted: Sequence[bool]) -> list[Value | None]:
+    """Return values in their order where they are wanted, None elsewhere.
+
+    Raises
+    ------
+    ValueError
+        If there are more or fewer values than places for them.
+    """
+    places = [place for place, here in enumerate(wanted) if here]
+    found = dict(zip(places, values, strict=True))
+    return [found.get(place) for place in range(len(wanted))]

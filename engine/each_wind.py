@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from engine.arrays import placed
 from engine.progress import Progress, finished
 from engine.report.phases.clearances import with_clearances
 from engine.report.verdict import verdict
@@ -75,10 +76,10 @@ def analyse_lines(
     list of Result
     """
     steady = [line for line in lines if not line.follows_wind]
-    together = iter((yield from in_one_state(steady, analysis)) if steady else [])
+    together = (yield from in_one_state(steady, analysis)) if steady else []
     results = []
-    for line in lines:
-        result = (yield from _at_each_wind(line, analysis, in_one_state)) if line.follows_wind else next(together)
+    for line, own in zip(lines, placed(together, [not line.follows_wind for line in lines]), strict=True):
+        result = (yield from _at_each_wind(line, analysis, in_one_state)) if own is None else own
         result = with_clearances(result, line)
         found = replace(result, verdict=(verdict(result, line, analysis),))
         results.append(replace(found, risk=risk_rows(found, line, analysis)))

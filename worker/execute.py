@@ -27,6 +27,7 @@ from app.tables import FailureKind
 from engine.outcome import InvalidSpec
 
 _logger = logging.getLogger(__name__)
+_STOPS = (SoftTimeLimitExceeded,)  # raised wherever the computation is
 
 
 def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, owner: str) -> None:
@@ -113,14 +114,14 @@ def _steps(session: Session, held: Claim) -> Iterator[Advance | PointResult]:
     """Return the computation of a job or a chunk, not yet started."""
     if held.batch_id is None:
         line_hash = reuse.hash_of(held.owner, held.document)
-        steps = convert.run(held.document)
+        steps = convert.run(held.document, _STOPS)
         return steps if line_hash is None else _with_hashes(steps, {0: line_hash})
     analysis, lines = batch_records.lines_of_chunk(session, held.job_id, held.batch_id)
     hashes = reuse.hashes(held.owner, analysis, lines)
     known = [] if held.document.get("anew") else reuse.stored(session, hashes, convert.ENGINE_VERSION)
     known_numbers = {point.point for point in known}
     unknown = [line for line in lines if line.number not in known_numbers]
-    return itertools.chain(known, _with_hashes(convert.run_stack(analysis, unknown), hashes))
+    return itertools.chain(known, _with_hashes(convert.run_stack(analysis, unknown, _STOPS), hashes))
 
 
 def _with_hashes(steps: Iterator[Advance | PointResult], hashes: Mapping[int, str]) -> Iterator[Advance | PointResult]:
@@ -144,7 +145,8 @@ def _compute(
         return Failure(FailureKind.INTERNAL, sentence)
     failures = [point.failure for point in points if point.failure is not None]
     if failures and len(failures) == len(points):
-        return Failure(FailureKind.NO_CONVERGENCE, failures[0])
+        internal = any(point.failed_internally for point in points)
+        return Failure(FailureKind.INTERNAL if internal else FailureKind.NO_CONVERGENCE, failures[0])
     return None
 
 

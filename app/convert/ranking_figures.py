@@ -21,23 +21,24 @@ _Room = tuple[float, float]
 def ranking_figures(lines: Sequence[spec.Line], results: Sequence[Result]) -> list[dict[str, float | None]]:
     """Return the lowest critical wind speed of each line, and its largest stable motion at the analysis' wind speeds.
 
-    Height and width [m] bound the space that the sub-conductors sweep at the observation point. A line with a motion
-    without numbers at any wind speed, because it is not known or nothing bounds it, has infinite figures, so that it
+    Height and width [m] bound the space that the sub-conductors sweep at the observation point. A motion of unknown
+    stability counts as stable. A line with a motion without numbers at any wind speed, because it is not known or
+    nothing bounds it, or with a wind speed at which nothing is known to be stable, has infinite figures, so that it
     ranks before all others. A line that is unstable without wind has the critical wind speed 0 besides. None: no
     crossing up to the limit, or no wind speed asked for. Hours of which nothing is known count as galloping;
     None without a climate.
     """
-    lasting = [_lasting(result) for result in results]
+    lasting = [_may_last(result) for result in results]
     moving = [place for place, motions in enumerate(lasting) if motions]
     rooms = dict(zip(moving, _rooms([(lines[i], lasting[i]) for i in moving]), strict=True))
     return [_figures(result, lasting[i], rooms.get(i)) for i, result in enumerate(results)]
 
 
-def _lasting(result: Result) -> list[_Motion]:
-    """Return the stable motions, with their orbits where these are known."""
+def _may_last(result: Result) -> list[_Motion]:
+    """Return the motions that are not known to be unstable, with their orbits where these are known."""
     orbits = {orbit.cycle: orbit for orbit in result.orbits}
     cycles = enumerate(result.limit_cycles)
-    stable = [(i, row) for i, row in cycles if row.stability is Stability.STABLE]
+    stable = [(i, row) for i, row in cycles if row.stability is not Stability.UNSTABLE]
     return [(row, orbits.get(i) if row.kind == "periodic" else None) for i, row in stable]
 
 
@@ -46,7 +47,7 @@ def _figures(result: Result, lasting: Sequence[_Motion], room: _Room | None) -> 
     winds += [0.0 for row in result.frequencies if row.outcome is Outcome.STATICALLY_UNSTABLE]
     amplitudes = [row.vertical_m for row, _ in lasting if row.vertical_m is not None]
     height, width = room or (None, None)
-    if any(row.vertical_m is None for row in result.limit_cycles):
+    if _has_unknown_motion(result):
         amplitudes, height, width = [math.inf], math.inf, math.inf
     return {
         "lowest_critical_wind_speed_m_per_s": min(winds, default=None),
@@ -57,6 +58,14 @@ def _figures(result: Result, lasting: Sequence[_Motion], room: _Room | None) -> 
             (row.hours_a_year + row.unknown_hours_a_year for row in result.risk), default=None
         ),
     }
+
+
+def _has_unknown_motion(result: Result) -> bool:
+    """Return whether a motion has no numbers, or a model nothing that is known to be stable at some wind speed."""
+    rows = result.limit_cycles
+    places = {(row.model, row.wind_speed_m_per_s) for row in rows}
+    stable = {(row.model, row.wind_speed_m_per_s) for row in rows if row.stability is Stability.STABLE}
+    return places != stable or any(row.vertical_m is None for row in rows)
 
 
 def _rooms(moving: Sequence[tuple[spec.Line, Sequence[_Motion]]]) -> list[_Room]:

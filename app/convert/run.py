@@ -1,5 +1,6 @@
 """Run a validated request in the engine and return plain rows, one point of the study after another."""
 
+import logging
 import math
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -21,6 +22,11 @@ from engine.outcome import InvalidSpec
 from engine.progress import Progress, translated
 from engine.result import TABLES, AssumptionRow, Result
 
+Stops = tuple[type[Exception], ...]
+"""Exceptions that end a whole computation, such as its time limit; any other one fails the point that met it."""
+INTERNAL = "the computation stopped on an internal error; the log has the details"
+
+_logger = logging.getLogger(__name__)
 _NO_ROWS = orjson.dumps({name: [] for name in TABLES})
 
 
@@ -56,6 +62,11 @@ class PointResult:
     reused: bool = False
     verdict: dict[str, Any] | None = None
 
+    @property
+    def failed_internally(self) -> bool:
+        """Whether a defect of ours is why there is nothing."""
+        return self.failure is not None and self.failure.endswith(INTERNAL)
+
     @cached_property
     def tables(self) -> dict[str, list[dict[str, Any]]]:
         """Rows by the name of their table."""
@@ -69,13 +80,15 @@ class PointResult:
         return found
 
 
-def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
+def run(document: Mapping[str, object], stops: Stops = ()) -> Iterator[Advance | PointResult]:
     """Run a whole job.
 
     Parameters
     ----------
     document : mapping
         A request as `app.convert.read` takes it.
+    stops : tuple of exception types
+        What ends a study as a whole; whatever else is raised fails the point of the study that raised it.
 
     Yields
     ------
@@ -95,7 +108,7 @@ def run(document: Mapping[str, object]) -> Iterator[Advance | PointResult]:
     held: list[_Solved] = []
     for number, values in enumerate(study.points(request.study)):
         prefix = f"point {number + 1} of {total}: " if request.study else ""
-        for item in _point(request, number, values):
+        for item in _point(request, number, values, stops):
             if isinstance(item, Advance):
                 yield Advance((number + item.fraction) / (total + follows), prefix + item.step)
             elif isinstance(item, PointResult):
@@ -149,7 +162,7 @@ def _followed(request: schemas.JobRequest, held: list[_Solved]) -> Iterator[Poin
 
 
 def _point(
-    request: schemas.JobRequest, number: int, values: dict[str, Any]
+    request: schemas.JobRequest, number: int, values: dict[str, Any], stops: Stops
 ) -> Iterator[Advance | _Solved | PointResult]:
     try:
         line, analysis = specification(request, values)
@@ -157,10 +170,20 @@ def _point(
         result = yield from translated(steps, lambda step: Advance(step.fraction, step.step))
         result = replace(result, assumptions=_assumptions(request))
         yield _Solved(number, values, line, result)
-    except (ArithmeticError, ValueError) as error:  # both also cover numpy's, and what a specification raises
+    except stops:
+        raise
+    except Exception as error:
         if request.study is None:
             raise
-        yield failed_point(error, number, values)
+        yield failed_point(for_owner(error), number, values)
+
+
+def for_owner(error: Exception) -> Exception:
+    """Return a numerical error or a refusal unchanged, and hide the details of an internal error, which is logged."""
+    if isinstance(error, ArithmeticError | ValueError):  # both also cover numpy's, and what a specification raises
+        return error
+    _logger.error("a line failed on an internal error", exc_info=error)
+    return RuntimeError(INTERNAL)
 
 
 def _assumptions(request: schemas.JobRequest) -> tuple[AssumptionRow, ...]:

@@ -1,6 +1,5 @@
 """Run many lines under one analysis, in stacks of the engine, with one point for each line."""
 
-import logging
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -13,7 +12,7 @@ from app.convert import parts
 from app.convert.assemble import SoundParts, gather
 from app.convert.check import request_faults, with_further_faults
 from app.convert.known import known_of_document
-from app.convert.run import Advance, PointResult, failed_point, point_results
+from app.convert.run import Advance, PointResult, Stops, failed_point, for_owner, point_results
 from app.schemas.faults import BadInput, Fault, faults_of
 from engine import spec
 from engine.outcome import InvalidSpec
@@ -44,8 +43,6 @@ _FULL_MODES_SECONDS = 0.003
 _STATIC_TWIST_SECONDS = 0.003
 _COMPETITION_SECONDS = 0.001  # a cycle
 _ENDS_OF_RANGES = 30  # lines beside the samples of a line: two for each value that is assumed
-
-_logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +134,9 @@ def _load(analysis: schemas.Analysis) -> str:
     return "source" if source and not own else "full"
 
 
-def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> Iterator[Advance | PointResult]:
+def run_stack(
+    analysis: Mapping[str, object], lines: Sequence[NumberedLine], stops: Stops = ()
+) -> Iterator[Advance | PointResult]:
     """Run many lines, those with equal numbers of elements and equal physics together.
 
     Parameters
@@ -145,11 +144,14 @@ def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> 
     analysis : mapping
         An analysis document that `read_analysis` accepts.
     lines : sequence of NumberedLine
+    stops : tuple of exception types
+        As `run` takes them.
 
     Yields
     ------
     Advance or PointResult
-        Progress, and one result for each line, whose point is the line's number; a failed line has its failure.
+        Progress, and one result for each line, whose point is the line's number; a failed line has its failure,
+        whatever it failed of.
 
     Raises
     ------
@@ -169,10 +171,9 @@ def run_stack(analysis: Mapping[str, object], lines: Sequence[NumberedLine]) -> 
     for stack in _stacks(made):
         place = f"lines {done + 1} to {done + len(stack)} of {len(lines)}"
         yield Advance(done / len(lines), place)
-        solved = _solved(stack)
-        told = _told(stack, solved, said, options)
+        told = _told(stack, _solved(stack, stops), _Said(said, options, stops))
         solved = yield from translated(told, partial(_within, place, done / len(lines), len(stack) / len(lines)))
-        yield from _as_points(stack, solved)
+        yield from _as_points(stack, solved, stops)
         done += len(stack)
     yield Advance(1.0, "done")
 
@@ -202,45 +203,57 @@ def _specification(line: NumberedLine, options: schemas.Analysis) -> tuple[spec.
     return made, analysis
 
 
-def _solved(stack: Sequence[_Made]) -> list[Result | Exception]:
-    """Run a stack; if it fails, run its lines one by one, so that only the wrong line fails."""
+def _solved(stack: Sequence[_Made], stops: Stops) -> list[Result | Exception]:
+    """Run a stack; if it fails of anything, run its halves, so that only the wrong line fails, by itself."""
     from engine.analysis import analyse_stack  # noqa: PLC0415 - the API and `galloping --help` need no solver
 
     try:
         return list(finished(analyse_stack([line for _, line, _ in stack], stack[0][2])))
-    except (ArithmeticError, ValueError, LookupError, TypeError) as error:
-        if len(stack) > 1:
-            return [result for single in stack for result in _solved([single])]
-        return [_for_owner(error)]
+    except stops:
+        raise
+    except Exception as error:
+        if len(stack) == 1:
+            return [for_owner(error)]
+    middle = len(stack) // 2
+    return [*_solved(stack[:middle], stops), *_solved(stack[middle:], stops)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Said:
+    """What was said of lines in an engineer's form, by their numbers, the options, and what stops all lines."""
+
+    of_line: Mapping[int, Mapping[str, Any]]
+    options: schemas.Analysis
+    stops: Stops
 
 
 def _told(
-    stack: Sequence[_Made],
-    solved: Sequence[Result | Exception],
-    said: Mapping[int, Mapping[str, Any]],
-    options: schemas.Analysis,
+    stack: Sequence[_Made], solved: Sequence[Result | Exception], said: _Said
 ) -> Generator[Progress, None, list[Result | Exception]]:
     """Return results with what is assumed of lines in engineers' forms, and with samples of it if these are asked."""
     told = list(solved)
-    places = [i for i, (number, _, _) in enumerate(stack) if number in said and isinstance(solved[i], Result)]
+    places = [i for i, (number, _, _) in enumerate(stack) if number in said.of_line and isinstance(solved[i], Result)]
     if not places:
         return told
     # Explicit lines need no estimates.
     from app.convert.known.samples import Analysed, with_what_is_known  # noqa: PLC0415
     from engine.known.resolve import end_stiffnesses  # noqa: PLC0415
 
-    asked = None if options.uncertainty is None else parts.uncertainty(options.uncertainty)
+    uncertainty = said.options.uncertainty
+    asked = None if uncertainty is None else parts.uncertainty(uncertainty)
     ends = end_stiffnesses([stack[i][1] for i in places])
     for i, own_ends in zip(places, ends, strict=True):
         number, line, analysis = stack[i]
-        result, known = told[i], known_of_document(said[number])
+        result, known = told[i], known_of_document(said.of_line[number])
         assert isinstance(result, Result), "only lines with a result are told more of"
         steps = with_what_is_known(result, Analysed(line, analysis, own_ends), known, asked)
         into = partial(_share_of_stack, i, len(stack))
         try:
             told[i] = yield from translated(steps, into)
-        except (ArithmeticError, ValueError, LookupError, TypeError) as error:
-            told[i] = _for_owner(error)
+        except said.stops:
+            raise
+        except Exception as error:
+            told[i] = for_owner(error)
     return told
 
 
@@ -248,24 +261,29 @@ def _share_of_stack(place: int, lines: int, step: Progress) -> Progress:
     return Progress((place + step.fraction) / lines, step.step)
 
 
-def _as_points(stack: Sequence[_Made], solved: Sequence[Result | Exception]) -> Iterator[PointResult]:
+def _as_points(stack: Sequence[_Made], solved: Sequence[Result | Exception], stops: Stops) -> Iterator[PointResult]:
     good: list[tuple[_Made, Result]] = []
     for made, result in zip(stack, solved, strict=True):
         if isinstance(result, Exception):
             yield failed_point(result, made[0], _axes(made[0]))
         else:
             good.append((made, result))
+    yield from _packed(good, stops)
+
+
+def _packed(good: Sequence[tuple[_Made, Result]], stops: Stops) -> list[PointResult]:
+    """Return lines with their results as points; if that fails, each line by itself."""
+    if not good:
+        return []
     points = [(number, _axes(number)) for (number, _, _), _ in good]
-    if points:
-        yield from point_results(points, [line for (_, line, _), _ in good], [result for _, result in good])
-
-
-def _for_owner(error: Exception) -> Exception:
-    """Return a numerical error unchanged, and hide the details of an internal error."""
-    if isinstance(error, ArithmeticError | ValueError):
-        return error
-    _logger.error("a line of a batch failed", exc_info=error)
-    return RuntimeError("the computation stopped on an internal error; the log has the details")
+    try:
+        return list(point_results(points, [line for (_, line, _), _ in good], [result for _, result in good]))
+    except stops:
+        raise
+    except Exception as error:
+        if len(good) > 1:
+            return [point for single in good for point in _packed([single], stops)]
+        return [failed_point(for_owner(error), *points[0])]
 
 
 def _axes(number: int) -> dict[str, Any]:

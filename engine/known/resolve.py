@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from engine.arrays import placed
 from engine.known import estimators
 from engine.known.bare_conductor import bare_conductor
 from engine.known.borrowed_coefficients import coefficients
@@ -195,8 +196,8 @@ def end_stiffnesses(lines: Sequence[Line]) -> list[list[Assumption]]:
     """
     sought = [line.supports.longitudinal_stiffness is None and line.section is None for line in lines]
     computing = [line for line, wanted in zip(lines, sought, strict=True) if wanted]
-    found = iter(static_profile(computing).end_stiffness.tolist() if computing else ())
-    return [list(_ends(line, next(found))) if wanted else [] for line, wanted in zip(lines, sought, strict=True)]
+    found = placed(static_profile(computing).end_stiffness.tolist() if computing else [], sought)
+    return [[] if own is None else list(_ends(line, own)) for line, own in zip(lines, found, strict=True)]
 
 
 def _ends(line: Line, stiffnesses: Sequence[float]) -> Iterator[Assumption]:

@@ -125,15 +125,17 @@ def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[tuple[int, Moti
         "outcome": [_UNSTABLE if missing else Outcome.CONVERGED for missing in static[member].tolist()],
     }
     yield from _rows(seen, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
-    # One row, with the loops of the first coordinate, stands for all unstable modes of a member.
-    shown = np.isin(findings.loops[:, :1], loops) & ~static[:, None]
-    yield from _without_motion(seen, missing_motions(findings, growing & shown))
+    yield from _without_motion(seen, missing_motions(findings, growing & ~static[:, None]), loops)
 
 
-def _without_motion(seen: _Seen, missing: MissingMotions) -> Iterator[tuple[int, Motion]]:
-    """Yield a row for each wind speed where a stable motion must exist but none is known."""
+def _without_motion(seen: _Seen, missing: MissingMotions, asked: tuple[int, ...]) -> Iterator[tuple[int, Motion]]:
+    """Yield a row for each wind speed where a stable motion must exist but none is known.
+
+    One row, with the first of the member's loops that was asked for, stands for all of its unstable modes.
+    """
     findings, member = seen.findings, missing.member
-    loops = findings.loops[member, 0]
+    first = np.isin(findings.loops, asked).argmax(axis=-1)
+    loops = findings.loops[member, first[member]]
     observed = seen.observer.resting(findings, member, loops)
     keys = _RowKeys(findings.line[member], loops, findings.winds[missing.wind], observed)
     labels: dict[str, Iterable[Any]] = {

@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from engine.arrays import placed
 from engine.result import Result
 from engine.spec import Analysis, Device, IceSegment, Line, PointDevice, StretchDevice
 from engine.uncertainty.outcomes import SampleOutcome, State
@@ -41,12 +42,12 @@ def is_symmetric(line: Line) -> bool:
 
 def views(lines: Sequence[Line], analysis: Analysis) -> list[Views | State]:
     """Analyse lines, and the mirror images of those that are not symmetric, as one stack."""
-    images = [mirrored(line) for line in lines if not is_symmetric(line)]
+    seen_twice = [not is_symmetric(line) for line in lines]
+    images = [mirrored(line) for line, twice in zip(lines, seen_twice, strict=True) if twice]
     results = analysed([*lines, *images], analysis)
-    others = iter(results[len(lines) :])
     found: list[Views | State] = []
-    for line, own in zip(lines, results, strict=False):
-        pair = (own,) if is_symmetric(line) else (own, next(others))
+    for own, other in zip(results[: len(lines)], placed(results[len(lines) :], seen_twice), strict=True):
+        pair = (own,) if other is None else (own, other)
         both = tuple(one for one in pair if isinstance(one, Result))
         found.append(both if len(both) == len(pair) else State.UNKNOWN)
     return found

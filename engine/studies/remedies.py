@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from engine.arrays import placed
 from engine.progress import Progress, translated
 from engine.result import Result
 from engine.spec import (
@@ -175,9 +176,8 @@ class _Study:
         found = views([*images, *firsts], self.analysis)
         image = found[0] if images else ()
         without: Views = (self.weighed.result, *(() if isinstance(image, State) else image[:1]))
-        results = iter(found[len(images) :])
-        tried = [self._tried(one, without, next(results) if one.places else None) for one in proposals]
-        return without, tried
+        results = placed(found[len(images) :], [bool(one.places) for one in proposals])
+        return without, [self._tried(one, without, own) for one, own in zip(proposals, results, strict=True)]
 
     def _tried(self, proposal: _Proposal, without: Views, first: Views | State | None) -> Tried:
         tried = Tried(proposal.remedy, arrangements=proposal.arrangements)

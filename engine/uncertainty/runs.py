@@ -4,6 +4,7 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import replace
 
 from engine.analysis import analyse_stack
+from engine.arrays import placed
 from engine.outcome import InvalidSpec
 from engine.progress import Progress, finished
 from engine.result import Result
@@ -73,10 +74,10 @@ def outcomes(
 
 def _outcomes(chosen: Sequence[Mapping[str, float]], line_of: LineOf, asked: Analysis) -> list[SampleOutcome]:
     lines = [_line(values, line_of) for values in chosen]
-    results = iter(analysed([line for line in lines if isinstance(line, Line)], asked))
+    results = analysed([line for line in lines if isinstance(line, Line)], asked)
     answers: list[SampleOutcome] = []
-    for line in lines:
-        answer = next(results) if isinstance(line, Line) else line
+    for line, result in zip(lines, placed(results, [isinstance(line, Line) for line in lines]), strict=True):
+        answer = line if result is None else result
         if isinstance(line, Line) and isinstance(answer, Result):
             ranges = ranges_across(answer, line, asked) if asked.risk else None
             answers.append(replace(sample_outcome(answer, asked.wind_speeds), ranges=ranges))

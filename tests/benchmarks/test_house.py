@@ -85,3 +85,21 @@ def test_no_module_imports_two_files_of_one_name(tmp_path: Path, text: str) -> N
 def test_one_file_may_be_imported_twice(tmp_path: Path) -> None:
     files = {"one/a.py": "", "b.py": "from engine.one import a\nfrom engine.one.a import f\nimport numpy\n"}
     assert house.offences(written(tmp_path, files)) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "next(found)",
+        "next(x for x in found)",
+        "found.send(1)",
+        "found.__next__()",
+        "try: ...\nexcept StopIteration: ...",
+    ],
+)
+def test_no_end_of_a_generator_is_met_unawares(tmp_path: Path, text: str) -> None:
+    line = text.count("\n") + 1
+    expected = [f"engine/a.py:{line}: next() without a default, or the protocol of generators by hand"]
+    assert house.offences(written(tmp_path, {"a.py": text + "\n"})) == expected
+    caught = {"progress.py": text + "\n", "b.py": "next(found, None)\n"}
+    assert house.offences(written(tmp_path / "other", caught)) == []

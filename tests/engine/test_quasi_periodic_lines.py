@@ -1,6 +1,8 @@
-"""Three lines whose motion stays quasi-periodic, from the search of docs/validation.md.
+"""Lines whose motion stays quasi-periodic.
 
-There direct integration keeps both spectral lines over 10^4 cycles; here it follows each torus over some of its beats.
+Three are from the search of docs/validation.md: there direct integration keeps both spectral lines over 10^4 cycles;
+here it follows each torus over some of its beats. Of the others a multiple of another line is the strongest of the
+spectrum: they are long quad bundles with light damping.
 """
 
 from dataclasses import replace
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 
 from benchmarks.validation.quasi_periodic import SEED, drawn
+from engine.arrays import FloatArray, IntArray
 from engine.cycles.bifurcations import bifurcations
 from engine.cycles.search import find_cycles
 from engine.cycles.starts import energy_starts
@@ -17,9 +20,11 @@ from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Stability
 from engine.result import Result
-from engine.spec import Line, Model, Phase, TorusSearch
+from engine.spec import Aerodynamics, Damping, Ice, Line, Model, Phase, Span, TorusSearch
+from engine.tori import spectrum
 from engine.tori.quasi_periodic import QuasiPeriodicMotions, quasi_periodic_motions
-from tests.builders import hybrid, only, run
+from engine.tori.spectrum import base_lines
+from tests.builders import ICE_AT_40, hybrid, only, run, source_line
 from tests.engine.integrated_tori import followed
 
 # number in the generator, wind speed [m/s], both frequencies [Hz]
@@ -69,3 +74,37 @@ def test_a_line_that_stays_quasi_periodic(number: int, wind: float, frequencies:
     integrated = 0.5 * np.ptp(reached[:, :3], axis=0)
     balanced = 0.5 * np.ptp(expected[:, :3], axis=0)
     assert integrated == pytest.approx(balanced, rel=5e-3)
+
+
+def long_quad(seed: int) -> Line:
+    generator = np.random.default_rng(seed)
+    length, tension, vertical, horizontal = generator.uniform(0.98, 1.02, 4) * (347.7, 37738.0, 2.968e-3, 1.22e-4)
+    line = source_line(4)
+    lift, drag, moment = (
+        (first, *cubic[1:])
+        for first, cubic in zip(
+            (-1.2406, -0.8634, 1.8938), (ICE_AT_40.vertical, ICE_AT_40.horizontal, ICE_AT_40.torsional), strict=True
+        )
+    )
+    return replace(
+        line,
+        span=Span(length=float(length), horizontal_tension=float(tension)),
+        conductor=replace(line.conductor, torsional_rigidity=303.0),
+        ice=Ice(Aerodynamics(lift, drag, moment), 9.492e-5, -1.5505e-3),
+        damping=Damping(float(vertical), float(horizontal), 4.044e-3),
+    )
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_strongest_line_that_is_a_multiple_of_another_is_no_base(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    multiples: list[bool] = []
+
+    def noted(strengths: FloatArray, pairs: IntArray) -> IntArray:
+        multiples.append(bool(np.gcd(*pairs[1 + strengths[1:].argmax()]) != 1))
+        return base_lines(strengths, pairs)
+
+    monkeypatch.setattr(spectrum, "base_lines", noted)
+    result = run(long_quad(seed), only(Model.HYBRID, loops=(1,), wind_speeds=(13.4, 18.0)))
+    assert any(multiples)
+    told = (row for row in result.limit_cycles if row.stability is Stability.STABLE or row.vertical_m is None)
+    assert {row.wind_speed_m_per_s for row in told} == {13.4, 18.0}

@@ -1,5 +1,5 @@
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from uuid import UUID
 
@@ -7,6 +7,7 @@ import pytest
 from sqlalchemy import update
 from sqlalchemy.orm import Session, sessionmaker
 
+import engine.analysis
 from app import convert
 from app.convert import Advance, PointResult
 from app.jobs import job_records, leases
@@ -113,7 +114,7 @@ def test_job_taken_away_stores_nothing(sessions: sessionmaker[Session], settings
 def test_fault_of_our_own_fails_the_job_without_showing_its_inside(
     sessions: sessionmaker[Session], settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def broken(_: Mapping[str, object]) -> Iterator[Advance | PointResult]:
+    def broken(*_: object) -> Iterator[Advance | PointResult]:
         yield point_result(0)
         raise RuntimeError("secret path")
 
@@ -130,7 +131,7 @@ def test_all_points_failed_is_a_failed_job(
     sessions: sessionmaker[Session], settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     points = [point_result(0, failure="It overflowed."), point_result(1, failure="Again.")]
-    monkeypatch.setattr(convert, "run", lambda _: iter(points))
+    monkeypatch.setattr(convert, "run", lambda *_: iter(points))
     failed, mixed = add_job(sessions), add_job(sessions)
     run_job(settings, failed)
     points[1] = point_result(1)
@@ -146,7 +147,7 @@ def test_long_step_does_not_lose_the_lease(
 ) -> None:
     released: list[int] = []
 
-    def slow(_: Mapping[str, object]) -> Iterator[Advance | PointResult]:
+    def slow(*_: object) -> Iterator[Advance | PointResult]:
         for _step in range(6):
             time.sleep(0.2)  # a step without news that is longer than the lease
             with sessions.begin() as session:
@@ -166,7 +167,7 @@ def test_missed_heartbeats_do_not_end_the_job(
 ) -> None:
     job_id = add_job(sessions)
 
-    def outage(_: Mapping[str, object]) -> Iterator[Advance | PointResult]:
+    def outage(*_: object) -> Iterator[Advance | PointResult]:
         with sessions.begin() as session:  # a holder of the row makes heartbeats wait, as a slow database does
             session.execute(update(Job).where(Job.id == job_id).values(name="held"))
             time.sleep(0.5)
@@ -175,3 +176,19 @@ def test_missed_heartbeats_do_not_end_the_job(
     monkeypatch.setattr(convert, "run", outage)
     run_job(settings, job_id)
     assert look(sessions, job_id).status is JobStatus.SUCCESSFUL
+
+
+def test_a_point_that_a_defect_took_says_so(
+    sessions: sessionmaker[Session], settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> Iterator[object]:
+        raise RuntimeError("generator raised StopIteration")
+        yield
+
+    monkeypatch.setattr(engine.analysis, "analyse", broken)
+    document = short_request() | {"study": {"axes": [{"parameter": "span.length_m", "values": [100.0, 120.0]}]}}
+    job_id = add_job(sessions, document)
+    run_job(settings, job_id)
+    job = look(sessions, job_id)
+    assert (job.status, job.failure_kind) == (JobStatus.FAILED, FailureKind.INTERNAL)
+    assert count_points(sessions, job_id) == 2

@@ -1,5 +1,6 @@
 import copy
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,11 @@ import pytest
 
 from app import convert
 from app.convert import PointResult, ranking_figures
+from app.convert.run import specification_of_point
 from app.reference.source_lines import example
+from engine.analysis import analyse
+from engine.outcome import Stability
+from engine.progress import finished
 from tests.app.lines import changed
 
 TWIN = example("c11-twin")
@@ -112,3 +117,37 @@ def test_hours_of_galloping_hold_those_of_which_nothing_is_known() -> None:
     expected = 40.0 * math.exp(-((onset / 6.0) ** 2))  # above 30 m/s nothing is known
     assert point.ranking_figures["galloping_hours_a_year"] == pytest.approx(expected, rel=1e-12)
     assert found(TWIN, [4.0]).ranking_figures["galloping_hours_a_year"] is None
+
+
+def test_full_modes_whose_first_loops_are_not_asked_for_rank_an_unbounded_motion_first() -> None:
+    line = copy.deepcopy(TWIN)
+    line["ice"]["aerodynamics"]["vertical"][2] = -8.3581
+    asked = {
+        "models": ["finite_element"],
+        "loops": [2],
+        "finite_element_loops": [1, 2],
+        "wind_speeds_m_per_s": [1.0, 4.0],
+    }
+    (point,) = (i for i in convert.run({"line": line, "analysis": asked}) if isinstance(i, PointResult))
+    unknown = [row for row in point.tables["limit_cycles"] if row["vertical_m"] is None]
+    assert [(row["loops"], row["wind_speed_m_per_s"], row["outcome"]) for row in unknown] == [
+        (2, 4.0, "no_bounded_motion")
+    ]
+    assert point.ranking_figures["largest_vertical_m"] == math.inf
+    assert "nothing in the equations bounds the motion" in point.tables["verdict"][0]["sentence"]
+
+
+@pytest.mark.parametrize("lasting", [Stability.STABLE, Stability.UNKNOWN])
+def test_what_is_not_known_to_be_stable_is_not_taken_for_safe(lasting: Stability) -> None:
+    document = {"line": TWIN, "analysis": {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0]}}
+    line, analysis = specification_of_point(document, 0)
+    result = finished(analyse(line, analysis))
+    rows = [replace(row, stability=lasting) if row.kind == "periodic" else row for row in result.limit_cycles]
+    (resting,) = (i for i, row in enumerate(rows) if row.kind == "equilibrium")
+    (figures,) = ranking_figures.ranking_figures([line], [replace(result, limit_cycles=tuple(rows))])
+    largest = max(row.vertical_m or 0.0 for row in rows)
+    assert figures["largest_vertical_m"] == (largest if lasting is Stability.STABLE else math.inf)
+    # A span that rests for sure may also move: what is known of its size counts.
+    rows[resting] = replace(rows[resting], stability=Stability.STABLE)
+    (figures,) = ranking_figures.ranking_figures([line], [replace(result, limit_cycles=tuple(rows))])
+    assert figures["largest_vertical_m"] == largest

@@ -5,7 +5,8 @@ import pytest
 
 import engine.analysis
 from app import convert, schemas
-from app.convert import NumberedLine, PointResult, read_analysis, read_line, run_stack, seconds_a_line
+from app.convert import NumberedLine, PointResult, read_analysis, read_line, run_stack, seconds_a_line, stack
+from app.convert.run import point_results
 from app.reference.source_lines import example
 from app.schemas.faults import BadInput
 from engine import spec
@@ -104,6 +105,36 @@ def test_a_defect_fails_its_line_without_showing_its_inside(monkeypatch: pytest.
     monkeypatch.setattr(engine.analysis, "analyse_stack", breaking(125.88, IndexError("secret path")))
     (point,) = results([NumberedLine(7, TWIN)]).values()
     assert point.failure == "RuntimeError: the computation stopped on an internal error; the log has the details"
+    assert point.failed_internally
+
+
+@pytest.mark.parametrize(
+    "error", [RuntimeError("generator raised StopIteration"), AttributeError("x"), MemoryError(), AssertionError()]
+)
+def test_a_line_that_breaks_in_any_way_leaves_its_chunk_going(
+    monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    lines = [NumberedLine(n, changed("span.length_m", 100.0 + n, TWIN)) for n in range(1, 8)]
+    monkeypatch.setattr(engine.analysis, "analyse_stack", breaking(104.0, error))
+    assert [number for number, point in results(lines).items() if point.failure is not None] == [4]
+
+
+def test_a_line_whose_rows_cannot_be_packed_fails_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    def packed(points: Any, lines: Sequence[spec.Line], found: Sequence[Result]) -> Any:
+        if any(line.span.length == 104.0 for line in lines):
+            raise AttributeError("x")
+        return point_results(points, lines, found)
+
+    lines = [NumberedLine(n, changed("span.length_m", 100.0 + n, TWIN)) for n in range(1, 8)]
+    monkeypatch.setattr(stack, "point_results", packed)
+    assert [number for number, point in results(lines).items() if point.failure is not None] == [4]
+
+
+def test_what_stops_a_computation_stops_all_of_its_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = [NumberedLine(n, changed("span.length_m", 100.0 + n, TWIN)) for n in range(1, 8)]
+    monkeypatch.setattr(engine.analysis, "analyse_stack", breaking(104.0, TimeoutError()))
+    with pytest.raises(TimeoutError):
+        list(run_stack(SHORT, lines, stops=(TimeoutError,)))
 
 
 def test_progress_rises_to_the_end() -> None:
