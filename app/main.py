@@ -11,7 +11,6 @@ from starlette.types import ASGIApp
 
 from app.coalescing.grouped_calls import GroupedCalls, committed_together
 from app.coalescing.shared_watch import SharedWatch
-from app.convert import ENGINE_VERSION
 from app.http import problems
 from app.http.head_as_get import HeadAsGet
 from app.http.request_log import RequestLog
@@ -21,6 +20,7 @@ from app.jobs import submissions
 from app.jobs.dispatch import Sender, celery_application
 from app.jobs.job_records import look_up
 from app.jobs.watched_states import batches_seen, jobs_seen
+from app.openapi import about, finished
 from app.operation import metrics
 from app.pages import assets, frame, views
 from app.routes import (
@@ -39,7 +39,6 @@ from app.routes import (
     lines,
     own_aerodynamics,
     own_conductors,
-    own_documentation,
     pictures,
     previews,
     reference,
@@ -55,20 +54,15 @@ from app.storage.database import make_engine, session_factory
 _INBOX_PAUSE_SECONDS = 0.006  # about as long as one group of posts takes
 _MESSAGES_PAUSE_SECONDS = 0.05  # nobody waits for a message to leave; each group costs a transaction
 _REPORTS_OF_OWNER, _REPORTS = 4, 16  # under way at once; each takes a second or two
-_DESCRIPTION = """Tells whether an iced transmission-line span gallops, from which wind speed, and how far.
-
-Post a line to `/v1/jobs`, follow `Location` until the status is `successful`, then read `/results`.
-Units stand in the names of the fields. Faults are `application/problem+json` and name every field at once."""
 
 
 class Service(FastAPI):
-    """The FastAPI application. Its OpenAPI document keeps the nulls in its examples."""
+    """The FastAPI application. Its OpenAPI document is finished by `app.openapi`."""
 
     def openapi(self) -> dict[str, Any]:
         """Return the OpenAPI document, built once."""
         if not self.openapi_schema:
-            made = documentation.as_sent(documentation.with_nulls(super().openapi()))
-            self.openapi_schema = documentation.guarded(own_documentation.with_both_forms(made))
+            self.openapi_schema = finished(super().openapi())
         return self.openapi_schema
 
     def build_middleware_stack(self) -> ASGIApp:
@@ -103,9 +97,7 @@ def create_app(settings: Settings | None = None) -> Service:
         telemetry.finish()
 
     app = Service(
-        title="Galloping of iced conductors",
-        version=ENGINE_VERSION,
-        description=_DESCRIPTION,
+        **about(settings),
         lifespan=lifespan,
         docs_url=None,
         redoc_url=None,
@@ -117,7 +109,7 @@ def create_app(settings: Settings | None = None) -> Service:
     _equip(app, settings, database)
     app.state.meter = meter = Meter(settings)
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
-    limits = {"": settings.max_body_bytes, batches.router.prefix: settings.max_batch_bytes}
+    limits = {"": settings.max_body_bytes, **dict.fromkeys(batch_intake.ADDRESSES, settings.max_batch_bytes)}
     problems.install(app, limits, frame.shown_problem)
     app.add_middleware(HeadAsGet)
     _add_addresses(app)

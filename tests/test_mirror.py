@@ -38,6 +38,7 @@ WITHOUT_A_TEST_FILE = {
     "app.convert.study": "tests/app/convert/test_check.py holds its faults, tests/app/convert/test_run.py its points.",
     "app.convert.tables": "tests/app/export/test_exported_columns.py and tests/app/test_result_tables.py hold it.",
     "app.http.security_headers": "tests/app/security/test_gate.py finds its headers on every kind of answer.",
+    "app.openapi.line_forms": "tests/app/test_main.py finds both forms in the document.",
     "app.operation.workers": "tests/worker/test_presence.py and tests/app/operation/test_service_status.py hold it.",
     "app.pages.submitting": "tests/app/pages/views/test_start.py and test_line_form.py submit and are refused by it.",
     "app.pages.views.__init__": "It lists the routers; tests/app/pages/views/test_start.py opens their pages.",

@@ -138,6 +138,7 @@ class BatchCheck(Answer):
 
     total: Count = described("Lines read [1]", 3)
     rejected: Count = described("Lines that would be rejected because of faults [1]", 1)
+    seconds: float = described("Computing time of the other lines on one core, estimated [s]", 1.3)
     errors: list[LineFault] = described("Faults of the first lines that would be rejected", [example_of(LineFault)])
     notes: list[str] = described(
         "How the body was read, where that is not plain", ["Row 4 is not UTF-8; read as Windows-1252."]

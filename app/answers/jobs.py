@@ -54,10 +54,14 @@ class JobDocument(Answer):
     links: list[Link] = described("Links to related addresses", [example_of(Link)])
 
 
-class Validity(Answer):
-    """That a request may be submitted as it is."""
+class JobEstimate(Answer):
+    """What a valid request would cost as a job; nothing was stored."""
 
     valid: Literal[True] = described("Always true: a request with faults gets a problem that lists them", True)
+    points: int = described("Points of the study; 1 without a study [1]", 1)
+    seconds: float | None = described(
+        "Computing time on one core, estimated; null for a placement or remedies, where searches decide it [s]", 0.65
+    )
 
 
 class JobPage(Answer):

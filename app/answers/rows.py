@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model, model_validator
 
-from app import convert
+from app import convert, schemas
 from app.convert import Column, Table
 from app.schemas.fields import Answer, described
 
@@ -42,9 +42,9 @@ def row_schema(row: type[Any], *, nullable: bool = False) -> type[Row]:
         for name, (kind, column) in convert.columns_of(row).items()
     }
     sentence = cleandoc(row.__doc__ or "").partition("\n\n")[0]
-    return create_model(
-        row.__name__.removesuffix("Row"), __base__=Row, __doc__=sentence, __module__=__name__, **columns
-    )
+    name = row.__name__.removesuffix("Row")
+    name = row.__name__ if hasattr(schemas, name) else name  # no two schemas of the API have the same name
+    return create_model(name, __base__=Row, __doc__=sentence, __module__=__name__, **columns)
 
 
 def with_tables(head: type[BaseModel], tables: Mapping[str, Table]) -> type[BaseModel]:
@@ -62,7 +62,7 @@ def _field(column: Column) -> Any:
     return Field(
         description=f"{column.description} [{column.unit}]",
         examples=[column.example],
-        json_schema_extra={"unit": column.unit},
+        json_schema_extra={"x-unit": column.unit},
     )
 
 

@@ -1,5 +1,7 @@
 """The border to the engine: JSON documents in, plain rows out. Units change here and nowhere else."""
 
+from app.convert.batches.costs import estimate, seconds_a_line
+from app.convert.batches.stack import STACK, NumberedLine, kept_analysis, read_analysis, read_line, run_stack
 from app.convert.check import read, request_faults, with_further_faults
 from app.convert.clearance import EllipseMethodName, clearances, ellipse
 from app.convert.fit import fit
@@ -16,7 +18,6 @@ from app.convert.known import (
 from app.convert.mode_shapes import mode_shapes
 from app.convert.remedies import remedies
 from app.convert.run import Advance, PointResult, run
-from app.convert.stack import STACK, NumberedLine, kept_analysis, read_analysis, read_line, run_stack, seconds_a_line
 from app.convert.tables import TABLES_BY_ADDRESS, columns, example_row, example_tables
 from engine import ENGINE_VERSION
 from engine.result import TABLES, Column, DenHartog, StaticState, Table, Tables, columns_of
@@ -40,6 +41,7 @@ __all__ = [
     "columns",
     "columns_of",
     "ellipse",
+    "estimate",
     "example_row",
     "example_tables",
     "explicit_line",

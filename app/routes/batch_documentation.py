@@ -8,7 +8,6 @@ from app.answers.batches import RankedLine
 from app.export.formats import GEOJSON, PARQUET, RDF_XML, XLSX
 from app.reference.source_lines import example
 from app.routes import documentation
-from app.schemas.batch import BatchRequest
 from app.schemas.fields import example_of
 
 _BATCH = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8f"
@@ -69,7 +68,7 @@ FINISHED: dict[str, Any] = {
     "errors": [FAULT],
     "links": [{"rel": "self", "href": _ADDRESS}, {"rel": "results", "href": f"{_ADDRESS}/results"}],
 }
-CHECKED: dict[str, Any] = {"total": 3, "rejected": 1, "errors": [FAULT], "notes": []}
+CHECKED: dict[str, Any] = {"total": 3, "rejected": 1, "seconds": 1.3, "errors": [FAULT], "notes": []}
 DISMISSED: dict[str, Any] = {**ACCEPTED, "status": "dismissed", "lines": {**_COUNTS, "accepted": 0, "dismissed": 2}}
 STOPPING: dict[str, Any] = {**ACCEPTED, "status": "running", "lines": {**_COUNTS, "accepted": 0, "running": 2}}
 ACCEPTED_ANSWER: dict[str, Any] = {
@@ -175,9 +174,7 @@ _CIM = """<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns
 def request_body() -> dict[str, Any]:
     """Return the OpenAPI entry for the body of a batch; Python reads it as a stream and cannot declare it."""
     ndjson = "".join(json.dumps(item) + "\n" for item in ({"analysis": _ANALYSIS}, *_LINES))
-    schema = BatchRequest.model_json_schema(by_alias=True, ref_template="#/components/schemas/{model}")
-    own = schema.pop("$defs")
-    schema["properties"]["lines"]["items"] = own["BatchLine"]
+    schema = {"$ref": "#/components/schemas/BatchRequest"}  # `app.openapi` writes it, with both forms of a line
     return {
         "requestBody": {
             "required": True,

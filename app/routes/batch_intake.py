@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
@@ -26,7 +26,7 @@ from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import BATCHES, accepted_batch
-from app.routes.dependencies import CallerOf, MayReuse, SenderOf, Writers, vet_webhook
+from app.routes.dependencies import CallerOf, MayReuse, Readers, SenderOf, Writers, vet_webhook
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_holding_key, stored_answer
 from app.runtime.settings import Settings
 from app.schemas.faults import BadInput, Fault, parse_json
@@ -37,9 +37,13 @@ if TYPE_CHECKING:
 
 router = APIRouter(prefix=BATCHES, tags=["batches"], route_class=KnownParametersRoute)
 
+ADDRESSES = (BATCHES, f"{BATCHES}/estimate")
+"""Where the bodies of batches come in."""
+
 _SILENT_SECONDS = 60.0
 # Bodies that have no room for an analysis and for defaults, or need not have it.
 _ADDRESSED = ("text/csv", XLSX, GEOJSON, RDF_XML)
+_BODY_PROBLEMS = (ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT)
 _TYPES = ("application/json", "application/x-ndjson", *_ADDRESSED)
 
 
@@ -98,13 +102,7 @@ PostedBatch = Annotated[_Posted, Depends(_posted)]
     response_model=BatchDocument,
     responses={
         202: batch_documentation.ACCEPTED_ANSWER,
-        200: {
-            **documentation.body("Checked (`validate_only`)", ("application/json", batch_documentation.CHECKED)),
-            "model": BatchCheck,
-        },
-        **documentation.problems(
-            *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
-        ),
+        **documentation.problems(*KEY_PROBLEMS, *_BODY_PROBLEMS),
     },
     openapi_extra=batch_documentation.request_body(),
 )
@@ -119,7 +117,7 @@ async def submit_batch(
 
     Each line may have a `reference` beside its own fields; the results repeat it, as they repeat `asset_id`. If the
     service has stored results of a line's input, the line gets those, unless `Cache-Control: no-cache` requests a new
-    computation.
+    computation. `?validate_only=true` answers as `POST /v1/batches/estimate` does, and stores nothing.
     """
     made = await to_thread.run_sync(partial(_receive, writers, caller, key, posted), limiter=_limiter(posted.request))
     if made.job_ids:
@@ -127,12 +125,34 @@ async def submit_batch(
     return made.answer
 
 
+@router.post(
+    "/estimate",
+    summary="Check a batch and estimate its cost",
+    response_model=BatchCheck,
+    responses={
+        200: documentation.body("What would become of it", ("application/json", batch_documentation.CHECKED)),
+        **documentation.problems(*_BODY_PROBLEMS),
+    },
+    openapi_extra=batch_documentation.request_body(),
+)
+async def estimate_batch(posted: PostedBatch, caller: CallerOf, readers: Readers) -> Response:
+    """Check every line of what would be a batch, and estimate the computing time. Nothing is stored."""
+    return await to_thread.run_sync(partial(_checked, readers, caller, posted), limiter=_limiter(posted.request))
+
+
 def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> PostOutcome:
     take_in, lease_seconds = partial(_take_in, writers, caller, key, posted), posted.settings.key_lease_seconds
-    try:
-        if posted.how.validate_only:
-            return PostOutcome(_examined(writers, caller, posted))
+    if posted.how.validate_only:
+        return PostOutcome(_checked(writers, caller, posted))
+    with _refusals():
         return run_holding_key(writers, key, partial(_fingerprint, posted), take_in, lease_seconds)
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Answer what a body can be refused for with its problem."""
+    try:
+        yield
     except BodyTooLarge as error:
         raise ProblemError(ProblemKind.TOO_LARGE, str(error), headers={"Connection": "close"}) from error
     except BadInput as error:
@@ -155,8 +175,8 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
     return PostOutcome(answers[0], receipt.chunk_ids)
 
 
-def _examined(sessions: sessionmaker[Session], caller: Caller, posted: _Posted) -> JSONResponse:
-    with closing(_incoming(posted)) as incoming:
+def _checked(sessions: sessionmaker[Session], caller: Caller, posted: _Posted) -> JSONResponse:
+    with _refusals(), closing(_incoming(posted)) as incoming:
         _webhook_url(posted, incoming)
         found = intake.examine(sessions, posted.settings, caller, incoming, atomic=posted.how.atomic)
     return JSONResponse(asdict(found))

@@ -13,23 +13,12 @@ from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document
 from app.reference.source_lines import EXAMPLE_NAMES, example
 from app.schemas.devices.tried_remedies import EXAMPLE as REMEDIES
 from app.schemas.faults import Fault
-from app.schemas.fields import example_of
+from app.schemas.fields import example_of, with_marks
 from app.schemas.placement import EXAMPLE as PLACEMENT
-from app.security.gate import is_open
 
-_NULL = "\0null"
 _JOB = "0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e"
 _ADDRESS = f"/v1/jobs/{_JOB}"
 _PROBLEM_SCHEMA = {"$ref": "#/components/schemas/Problem"}
-
-
-def _marked(value: Any) -> Any:
-    """Put a mark in the place of every null of an example, since FastAPI drops nulls when it writes the document."""
-    if isinstance(value, dict):
-        return {key: _marked(inner) for key, inner in value.items()}
-    if isinstance(value, list):
-        return [_marked(inner) for inner in value]
-    return _NULL if value is None else value
 
 
 DIALECT = (
@@ -91,7 +80,7 @@ TABLE_ANSWER: dict[str, Any] = {
     "content": {
         "application/json": {
             "schema": {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "object"}}},
-            "examples": {name: {"value": _marked({name: rows})} for name, rows in convert.example_tables().items()},
+            "examples": {name: {"value": with_marks({name: rows})} for name, rows in convert.example_tables().items()},
         },
         "text/csv": {
             "schema": {"type": "string"},
@@ -172,9 +161,9 @@ UNCHANGED: dict[int | str, dict[str, Any]] = {
         "headers": {"ETag": {"description": "Strong tag of the answer", "schema": {"type": "string"}}},
     }
 }
-# FastAPI adds the model's schema under its own media type, which `as_sent` corrects.
+# FastAPI adds the model's schema under its own media type, which `app.openapi` corrects.
 ANY_PROBLEM: dict[str, Any] = {"model": Problem}
-_ANY_PROBLEM_AS_SENT: dict[str, Any] = {
+ANY_PROBLEM_AS_SENT: dict[str, Any] = {
     "description": "Problem details (RFC 9457), as application/problem+json",
     "content": {
         MEDIA_TYPE: {
@@ -196,42 +185,9 @@ def problems(*kinds: ProblemKind) -> dict[int | str, dict[str, Any]]:
     }
 
 
-def with_nulls(document: Any) -> Any:
-    """Return a document in which nulls replace the null marks."""
-    if isinstance(document, dict):
-        return {key: with_nulls(value) for key, value in document.items()}
-    if isinstance(document, list):
-        return [with_nulls(value) for value in document]
-    return None if document == _NULL else document
-
-
-def as_sent(document: dict[str, Any]) -> dict[str, Any]:
-    """Return an OpenAPI document in which every unnamed problem has the media type that the service sends."""
-    for operations in document["paths"].values():
-        for operation in operations.values():
-            operation["responses"]["default"] = _ANY_PROBLEM_AS_SENT
-    return document
-
-
-def guarded(document: dict[str, Any]) -> dict[str, Any]:
-    """Return an OpenAPI document that requires a key where the service does, and lists the refusals."""
-    scheme = {
-        "type": "http",
-        "scheme": "bearer",
-        "description": "A key from `galloping keys create`; not needed while no key exists",
-    }
-    document["components"]["securitySchemes"] = {"key": scheme}
-    refusals = problems(ProblemKind.UNAUTHENTICATED, ProblemKind.FORBIDDEN, ProblemKind.TOO_MANY_REQUESTS)
-    for path, operations in document["paths"].items():
-        for operation in () if is_open(path) else operations.values():
-            operation["security"] = [{"key": []}]
-            operation["responses"] |= {str(status): answer for status, answer in refusals.items()}
-    return document
-
-
 def body(description: str, *media_types: tuple[str, Any]) -> dict[str, Any]:
     """Return the OpenAPI entry for a successful answer, with an example for each media type."""
-    content = {name: {"example": _marked(value)} for name, value in media_types}
+    content = {name: {"example": with_marks(value)} for name, value in media_types}
     return {"description": description, "content": content}
 
 

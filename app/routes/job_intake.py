@@ -1,5 +1,6 @@
 """Check requests that become jobs, store them, and answer with their status."""
 
+from dataclasses import asdict
 from functools import partial
 
 from anyio import to_thread
@@ -56,6 +57,18 @@ def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may
 def _accepted(job: Job) -> JSONResponse:
     headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
     return JSONResponse(job_document(job), 202, headers)
+
+
+async def estimate(request: Request, document: schemas.JobRequest) -> Response:
+    """Check a request and answer with what it would cost as a job.
+
+    Raises
+    ------
+    ProblemError
+        422 with every fault of the document.
+    """
+    await check_request(request, document)
+    return JSONResponse({"valid": True, **asdict(convert.estimate(document))})
 
 
 async def check_request(request: Request, document: schemas.JobRequest) -> None:

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from sqlalchemy.orm import Session
 
 from app import schemas
-from app.answers.jobs import JobDocument, JobPage, Validity
+from app.answers.jobs import JobDocument, JobEstimate, JobPage
 from app.http import paging
 from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.jobs import idempotency, job_records
@@ -20,12 +20,12 @@ from app.jobs.job_records import CancelOutcome, JobFilters
 from app.routes import documentation, own_documentation
 from app.routes.dependencies import PREFIX, RETRY_SECONDS, CallerOf, MayReuse, Readers, SettingsOf, Writers
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
-from app.routes.job_intake import JOBS, accepted_job, check_request
+from app.routes.job_intake import JOBS, accepted_job, estimate
 from app.routes.job_status import find_job, find_status, job_address, job_document
 from app.routes.known_lines import KnownLineRoute
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import signing_key
-from app.schemas.fields import Label
+from app.schemas.fields import Label, example_of
 from app.security.caller import Owned
 from app.tables import ENDED, JobStatus
 
@@ -98,10 +98,6 @@ class ListQuery(BaseModel):
             ),
             "headers": documentation.ACCEPTED_HEADERS,
         },
-        200: {
-            **documentation.body("Valid, and not submitted (`validate_only`)", ("application/json", {"valid": True})),
-            "model": Validity,
-        },
         **documentation.problems(
             *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
         ),
@@ -112,7 +108,7 @@ async def submit_job(
     document: Annotated[schemas.JobRequest, Body(openapi_examples=_REQUESTS)],
     key: KeyOf,
     may_reuse: MayReuse,
-    validate_only: Annotated[bool, Query(description="Check the document, and submit nothing")] = False,
+    validate_only: Annotated[bool, Query(include_in_schema=False)] = False,
 ) -> Response:
     """Accept a line for analysis. The service stores the job before it answers, whether or not a worker is running.
 
@@ -121,12 +117,29 @@ async def submit_job(
 
     If the owner has stored results of the same input by this engine version, from a job or a line of a batch, the job
     ends at once with a copy of them, and `reused_from` names their source. `Cache-Control: no-cache` requests a new
-    computation.
+    computation. `?validate_only=true` answers as `POST /v1/jobs/estimate` does, and submits nothing.
     """
     if validate_only:
-        await check_request(request, document)
-        return JSONResponse({"valid": True})
+        return await estimate(request, document)
     return await accepted_job(request, document, key, may_reuse=may_reuse)
+
+
+@router.post(
+    "/estimate",
+    summary="Check a job and estimate its cost",
+    response_model=JobEstimate,
+    responses={
+        200: documentation.body("The estimate", ("application/json", example_of(JobEstimate))),
+        **documentation.problems(
+            ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
+        ),
+    },
+)
+async def estimate_job(
+    request: Request, document: Annotated[schemas.JobRequest, Body(openapi_examples=_REQUESTS)]
+) -> Response:
+    """Check what would be a job, and estimate its computing time from measured costs. Nothing is stored."""
+    return await estimate(request, document)
 
 
 @router.get(

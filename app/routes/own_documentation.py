@@ -5,7 +5,6 @@ from typing import Any
 from app.answers.lines import ResolvedLine
 from app.answers.owned import OwnConductorRow, OwnTableRow
 from app.answers.reference import ConductorRow
-from app.reference.source_lines import example
 from app.schemas.fields import example_of
 
 _CONDUCTOR = example_of(ConductorRow) | {"source": "own row", "source_address": None, "licence": None, "own": True}
@@ -34,7 +33,7 @@ KNOWN_LINE: dict[str, Any] = {
     "conductor": {"catalogue": "Drake"},
     "bundle": {"subconductors": 2, "spacing_m": 0.457, "arrangement": "horizontal"},
     "span": {
-        "length_m": {"value": 1000.0, "unit": "ft"},
+        "length_m": 304.8,
         "temperature_c": -5.0,
         "everyday": {"temperature_c": 15.0, "share_of_rated_strength": 0.2},
     },
@@ -60,36 +59,3 @@ KNOWN_REQUESTS: dict[str, Any] = {
     }
 }
 RESOLVED: dict[str, Any] = example_of(ResolvedLine)
-
-_FORMS = (
-    ("Line, spelled out", "Line", example("c11-twin")),
-    ("Line as an engineer knows it", "KnownLine", KNOWN_LINE),
-)
-
-
-def with_both_forms(document: dict[str, Any]) -> dict[str, Any]:
-    """Return an OpenAPI document in which jobs and batches take a line in either form.
-
-    Python resolves the one form before it reads the other, so that no schema of it says so.
-    """
-    schemas = document["components"]["schemas"]
-    request = schemas["JobRequest"]["properties"]
-    request["line"] = {
-        "title": "Line",
-        "description": "The line: spelled out, or as an engineer knows it, which is then resolved",
-        "anyOf": [{"title": title, "$ref": f"#/components/schemas/{name}"} for title, name, _ in _FORMS],
-        "examples": [line for _, _, line in _FORMS],
-    }
-    batch = document["paths"]["/v1/batches"]["post"]["requestBody"]["content"]["application/json"]["schema"]
-    spelled = batch["properties"]["lines"]["items"]
-    known = {**schemas["KnownLine"], "properties": {**schemas["KnownLine"]["properties"], **_beside(spelled)}}
-    forms = (spelled, known)
-    batch["properties"]["lines"]["items"] = {
-        "anyOf": [{**form, "title": title} for form, (title, _, _) in zip(forms, _FORMS, strict=True)]
-    }
-    return document
-
-
-def _beside(line: dict[str, Any]) -> dict[str, Any]:
-    """Return what a line of a batch has beside its own fields."""
-    return {"reference": line["properties"]["reference"]}

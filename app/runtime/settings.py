@@ -83,6 +83,13 @@ class Settings(BaseSettings):
     webhook_retry_seconds: Seconds = Field(default=5.0, description="First pause between attempts; later ones grow")
     webhook_attempts: Count = Field(default=8, description="Attempts to send a webhook, over some 27 hours")
 
+    contact_name: str = Field(default="The operator of this service", description="Whom the OpenAPI document names")
+    contact_email: str | None = Field(
+        default=None,
+        pattern=r"^[^@\s]+@[^@\s]+$",
+        description="E-mail address of the operator, for the same",
+    )
+
     log_level: Literal["debug", "info", "warning", "error"] = Field(default="info", description="Lowest level to log")
     log_format: Literal["json", "text"] = Field(default="json", description="Log format for machines or for people")
 

@@ -19,7 +19,7 @@ class WindSpeedRange(Document):
     start: float = quantity("start", "First wind speed", "m/s", (0.01, _FASTEST_WIND), 4.0)
     stop: float = quantity("stop", "Last wind speed", "m/s", (0.01, _FASTEST_WIND), 6.0)
     count: int = Field(
-        ge=2, le=1000, description="Number of wind speeds [1]", examples=[21], json_schema_extra={"unit": "1"}
+        ge=2, le=1000, description="Number of wind speeds [1]", examples=[21], json_schema_extra={"x-unit": "1"}
     )
 
     @model_validator(mode="after")
@@ -48,7 +48,7 @@ class Uncertainty(Document):
         le=16_384,
         description="Number of samples, best a power of two; 0 for none [1]",
         examples=[64],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     seed: int = Field(
         default=1,
@@ -56,7 +56,7 @@ class Uncertainty(Document):
         le=2**31 - 1,
         description="Seed of the samples; the same one draws the same samples [1]",
         examples=[1],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
 
 
@@ -69,7 +69,7 @@ class Analysis(Document):
         max_length=10,
         description="Numbers of loops per span [1]",
         examples=[[1, 2]],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     models: list[Literal["hybrid", "finite_element"]] = Field(
         default=["hybrid", "finite_element"],
@@ -84,7 +84,7 @@ class Analysis(Document):
         description="Wind speeds for limit cycles: a list, or start, stop and count; if absent, the line's design "
         "wind as well [m/s]",
         examples=[[4.0, 5.0, 6.0], {"start": 4.0, "stop": 6.0, "count": 21}],
-        json_schema_extra={"unit": "m/s"},
+        json_schema_extra={"x-unit": "m/s"},
     )
     closure: Literal["exact", "published"] = Field(
         default="exact", description="How the angle of attack varies along the span", examples=["exact"]
@@ -135,14 +135,14 @@ class Analysis(Document):
         le=20,
         description="Harmonics of the harmonic balance [1]",
         examples=[5],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     finite_element_loops: list[Loops] = Field(
         default=[1, 2, 3],
         max_length=10,
         description="Loops of the modes in the finite element model; an empty list gives its frequencies only [1]",
         examples=[[1, 2, 3]],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
 
     static_twist: Literal["neglected", "where_large", "solved"] | None = Field(

@@ -95,7 +95,7 @@ class IcedRecord(Document):
         Field(
             description="For each event of icing, the wind across the line in each of its hours [m/s]",
             examples=[[[4.1, 5.2, 3.9], [7.7]]],
-            json_schema_extra={"unit": "m/s"},
+            json_schema_extra={"x-unit": "m/s"},
         )
     )
 

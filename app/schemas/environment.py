@@ -24,17 +24,17 @@ class Aerodynamics(Document):
     vertical: Cubic = Field(
         description="a_y1, a_y2, a_y3 [1/rad, 1/rad2, 1/rad3]",
         examples=[[-0.1667, -4.0547, 8.3581]],
-        json_schema_extra={"unit": "1/rad^j"},
+        json_schema_extra={"x-unit": "1/rad^j"},
     )
     horizontal: Cubic = Field(
         description="a_z1, a_z2, a_z3 [1/rad, 1/rad2, 1/rad3]",
         examples=[[0.8605, 0.8325, 1.7815]],
-        json_schema_extra={"unit": "1/rad^j"},
+        json_schema_extra={"x-unit": "1/rad^j"},
     )
     torsional: Cubic = Field(
         description="a_theta1, a_theta2, a_theta3 [1/rad, 1/rad2, 1/rad3]",
         examples=[[-0.7272, 0.2935, 5.9704]],
-        json_schema_extra={"unit": "1/rad^j"},
+        json_schema_extra={"x-unit": "1/rad^j"},
     )
     fitted_range: float | None = quantity(
         "fitted_range_deg", "Largest angle of attack for which the coefficients hold", "deg", (1e-3, 180.0), 20.0, None

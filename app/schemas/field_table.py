@@ -80,7 +80,7 @@ def _row(path: str, field: _Schema, *, required: bool) -> dict[str, Any]:
     return {
         "name": path,
         "type": " or ".join(dict.fromkeys(form["type"] for form in forms)),
-        "unit": field.get("unit"),
+        "unit": field.get("x-unit"),
         "required": required,
         "nullable": {"type": "null"} in field.get("anyOf", ()),
         "default": field.get("default"),

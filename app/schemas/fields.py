@@ -13,6 +13,8 @@ LENGTH_LIMIT_M = 5000.0
 ON_SPAN = (0.0, LENGTH_LIMIT_M)
 ICED_MASS = (0.01, 100.0)
 
+_NULL = "\0null"
+
 # Names contain no control characters, and PostgreSQL cannot store NUL.
 _PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 
@@ -45,15 +47,39 @@ def _units_of(model: type[Document]) -> dict[str, str]:
     found = {}
     for name, field in model.model_fields.items():
         extra = field.json_schema_extra
-        if isinstance(extra, dict) and isinstance(extra.get("unit"), str):
-            found[field.alias or name] = str(extra["unit"])
+        if isinstance(extra, dict) and isinstance(extra.get("x-unit"), str):
+            found[field.alias or name] = str(extra["x-unit"])
     return {name: unit for name, unit in found.items() if "^j" not in unit}
+
+
+def with_marks(value: Any) -> Any:
+    """Put a mark in the place of every null of an example, since FastAPI drops nulls when it writes its document."""
+    if isinstance(value, dict):
+        return {key: with_marks(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [with_marks(inner) for inner in value]
+    return _NULL if value is None else value
+
+
+def with_nulls(document: Any) -> Any:
+    """Return a document in which nulls replace the marks."""
+    if isinstance(document, dict):
+        return {key: with_nulls(value) for key, value in document.items()}
+    if isinstance(document, list):
+        return [with_nulls(value) for value in document]
+    return None if document == _NULL else document
+
+
+def _with_marks_in_examples(schema: dict[str, Any]) -> None:
+    for field in schema.get("properties", {}).values():
+        if "examples" in field:
+            field["examples"] = with_marks(field["examples"])
 
 
 class Answer(BaseModel):
     """A part of an answer."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_with_marks_in_examples)
 
 
 def described(description: str, example: Any) -> Any:
@@ -91,5 +117,5 @@ def quantity(
         ge=bounds[0],
         le=bounds[1],
         examples=[example],
-        json_schema_extra={"unit": unit},
+        json_schema_extra={"x-unit": unit},
     )

@@ -91,7 +91,7 @@ class Bundle(Document):
         le=12,
         description="Number of sub-conductors on the circle [1]",
         examples=[2],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     radius: float | None = quantity(
         "radius_m", "Radius of the circle; 0 or absent for one sub-conductor", "m", (0.0, 5.0), 0.2355, None
@@ -111,7 +111,7 @@ class Bundle(Document):
         max_length=32,
         description="Alternatively, positions (y up, z downwind) of the centres about the reference curve [m]",
         examples=[[[0.0, -0.2], [0.0, 0.2]]],
-        json_schema_extra={"unit": "m"},
+        json_schema_extra={"x-unit": "m"},
     )
     section: Literal["rigid", "free"] | None = Field(
         default=None,
@@ -159,7 +159,7 @@ class Span(Document):
         0.0,
     )
     elements: int = Field(
-        default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"unit": "1"}
+        default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"x-unit": "1"}
     )
 
     @model_validator(mode="after")

@@ -59,7 +59,7 @@ class PendulumChoice(Document):
 
     type: Literal["detuning_pendulum"] = Field(description="Kind of device", examples=["detuning_pendulum"])
     count: int = Field(
-        ge=1, le=20, description="Number of pendulums [1]", examples=[2], json_schema_extra={"unit": "1"}
+        ge=1, le=20, description="Number of pendulums [1]", examples=[2], json_schema_extra={"x-unit": "1"}
     )
     position: PositionRange = Field(
         alias="position_m", description="Range of their positions [m]", examples=[_POSITIONS]
@@ -111,7 +111,7 @@ class Placement(Document):
         le=200,
         description="Most generations of the search [1]",
         examples=[20],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     population: int = Field(
         default=24,
@@ -119,7 +119,7 @@ class Placement(Document):
         le=200,
         description="Candidates a generation [1]",
         examples=[24],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     seed: int = Field(
         default=0,
@@ -127,7 +127,7 @@ class Placement(Document):
         le=2**31,
         description="Seed of the random search; equal seeds give equal results [1]",
         examples=[0],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     separation: float | None = quantity(
         "separation_m",

@@ -62,7 +62,7 @@ class Section(Document):
         le=20,
         description="Number of the span that the line describes, from 1 at the left [1]",
         examples=[2],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
     strings: list[SuspensionString] = Field(
         max_length=19,

@@ -103,7 +103,7 @@ def test_the_schema_follows_with_description_unit_and_example(sways: Table) -> N
         "description": "Sway; null at rest [m]",
         "examples": [0.25],
         "title": "Sway M",
-        "unit": "m",
+        "x-unit": "m",
     }
     assert row["properties"]["stability"]["enum"] == ["stable", "unstable", "unknown"]
     read: Any = document.model_validate({"sways": found()})

@@ -107,10 +107,11 @@ def receive(
 
 @dataclass(frozen=True, slots=True)
 class Examined:
-    """What would become of a batch: its lines, those that would be rejected, the faults of the first, and notes."""
+    """What would become of a batch: its lines, those rejected, seconds of the others on one core, faults, and notes."""
 
     total: int
     rejected: int
+    seconds: float
     errors: list[dict[str, Any]]
     notes: list[str]
 
@@ -135,7 +136,8 @@ def examine(
         found = ({"number": number, "reference": reference, **fault} for number, reference, fault in named)
         errors += islice(found, _FAULTS_SHOWN - len(errors))
     _refuse_hopeless(draft)
-    return Examined(draft.taken, draft.rejected, errors, incoming.notes())
+    seconds = (draft.taken - draft.rejected) * convert.seconds_a_line(analysis)
+    return Examined(draft.taken, draft.rejected, seconds, errors, incoming.notes())
 
 
 def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:

@@ -21,7 +21,7 @@ def _count(example: int) -> Any:
         le=_MOST,
         description="Number of devices whose places are searched; absent where positions_m are given [1]",
         examples=[example],
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"x-unit": "1"},
     )
 
 
@@ -33,7 +33,7 @@ def _positions(example: list[float]) -> Any:
         max_length=_MOST,
         description="Distances from the left support; null: searched for [m]",
         examples=[example],
-        json_schema_extra={"unit": "m"},
+        json_schema_extra={"x-unit": "m"},
     )
 
 

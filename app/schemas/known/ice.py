@@ -43,7 +43,7 @@ class Accretion(Document):
         max_length=1000,
         description="Outline of a profile: points (y up, z downwind) about the centre of the conductor [m]",
         examples=[[[0.02, 0.0], [0.0, 0.02], [-0.02, 0.0], [0.0, -0.02]]],
-        json_schema_extra={"unit": "m"},
+        json_schema_extra={"x-unit": "m"},
     )
 
 

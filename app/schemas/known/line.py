@@ -56,7 +56,7 @@ class KnownLine(Document):
         description="Ice on the span", examples=[{"accretion": ACCRETION, "aerodynamics": {"catalogue": "c11-40"}}]
     )
     wind: Wind | None = Field(
-        default=None, description="The wind, except its speed", examples=[Line.model_fields["wind"].examples]
+        default=None, description="The wind, except its speed", examples=Line.model_fields["wind"].examples
     )
     damping: KnownDamping = Field(
         default=KnownDamping(), description="Structural damping, assumed if absent", examples=[{"torsional_ratio": 0.1}]

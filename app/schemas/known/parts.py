@@ -76,7 +76,7 @@ class KnownBundle(Document):
         max_length=32,
         description=Bundle.model_fields["positions"].description,
         examples=Bundle.model_fields["positions"].examples,
-        json_schema_extra={"unit": "m"},
+        json_schema_extra={"x-unit": "m"},
     )
     spacing: float | None = quantity("spacing_m", "Distance of neighbours on the circle", "m", (0.01, 5.0), 0.457, None)
     arrangement: (
@@ -155,7 +155,7 @@ class KnownSpan(Document):
         default=None, description="The bare span on an ordinary day", examples=[_EVERYDAY]
     )
     elements: int = Field(
-        default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"unit": "1"}
+        default=10, ge=2, le=100, description="Finite elements [1]", examples=[10], json_schema_extra={"x-unit": "1"}
     )
 
     @property

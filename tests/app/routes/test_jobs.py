@@ -49,10 +49,13 @@ def test_a_job_runs_to_its_end(client: httpx.Client, settings: Settings) -> None
 
 
 def test_a_request_may_be_checked_without_a_job(client: httpx.Client) -> None:
-    answer = client.post("/v1/jobs?validate_only=true", json=short_request())
-    assert (answer.status_code, answer.json()) == (200, {"valid": True})
-    wrong = client.post("/v1/jobs?validate_only=true", json=labelled(span={}))
-    assert (wrong.status_code, wrong.json()["errors"][0]["code"]) == (422, "missing")
+    for address in ("/v1/jobs?validate_only=true", "/v1/jobs/estimate"):
+        answer = client.post(address, json=short_request())
+        estimate = answer.json()
+        assert (answer.status_code, estimate["valid"], estimate["points"]) == (200, True, 1)
+        assert 0.0 < estimate["seconds"] < 1.0
+        wrong = client.post(address, json=labelled(span={}))
+        assert (wrong.status_code, wrong.json()["errors"][0]["code"]) == (422, "missing")
     assert client.get("/v1/jobs").json()["jobs"] == []
 
 

@@ -5,7 +5,8 @@ import pytest
 
 import engine.analysis
 from app import convert, schemas
-from app.convert import NumberedLine, PointResult, read_analysis, read_line, run_stack, seconds_a_line, stack
+from app.convert import NumberedLine, PointResult, read_analysis, read_line, run_stack
+from app.convert.batches import stack
 from app.convert.run import point_results
 from app.reference.source_lines import example
 from app.schemas.faults import BadInput
@@ -180,42 +181,6 @@ def test_a_line_comes_back_as_it_was_read() -> None:
     assert line.span.length == 125.88
 
 
-def test_estimated_cost_grows_with_what_is_asked() -> None:
-    asked = [
-        {"loops": [1], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0]},
-        {"loops": [1, 2], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 5.0]},
-        {"loops": [1, 2], "models": ["hybrid", "finite_element"], "finite_element_loops": []},
-        {"loops": [1, 2]},
-        {"loops": [1, 2], "static_twist": "solved"},
-        {"loops": [1, 2], "static_twist": "solved", "loop_competition": "checked"},
-        {"loops": [1, 2], "static_twist": "solved", "loop_competition": "checked", "device_effect": "reported"},
-        {"loops": [1, 2], "models": ["hybrid"], "check": "direct"},
-        {"loops": [1, 2], "check": "direct"},
-    ]
-    costs = [seconds_a_line(read_analysis(document)) for document in asked]
-    assert costs == sorted(set(costs))
-    assert costs[3] > 10.0 * costs[1]
-
-
-def test_estimated_cost_knows_what_physics_costs() -> None:
-    asked = {"loops": [1, 2], "models": ["hybrid"], "wind_speeds_m_per_s": [4.0, 5.0]}
-    source, unsaid, full, unexpanded, table = (
-        seconds_a_line(read_analysis({**asked, **physics}))
-        for physics in (
-            {"physics": "source"},
-            {},
-            {"physics": "full"},
-            {"physics": "full", "aerodynamic_load": "unexpanded"},
-            {"aerodynamic_model": "table"},
-        )
-    )
-    assert source < unsaid == full  # whose lines may or may not have the data for it
-    assert unexpanded > 10.0 * full
-    assert table > unexpanded
-    assert seconds_a_line(read_analysis({**asked, "physics": "source", "stretching": "included"})) == full
-    assert seconds_a_line(read_analysis({**asked, "closure": "published"})) == source
-
-
 def numbered(number: int, line: dict[str, Any]) -> NumberedLine:
     explicit, known = convert.explicit_line(line)
     return NumberedLine(number, read_line(explicit, read_analysis(SHORT)).model_dump(by_alias=True), known)
@@ -240,12 +205,6 @@ def test_samples_that_a_batch_asks_for_are_those_of_the_line_alone() -> None:
         assert found[1].verdict == expected.verdict
     assert found[1].tables["uncertainty"][0]["samples"] == 16
     assert found[2].tables["uncertainty"] == []
-
-
-def test_samples_cost_as_many_lines_more() -> None:
-    few, many = (seconds_a_line(read_analysis({**SHORT, "uncertainty": {"samples": samples}})) for samples in (0, 128))
-    assert few == seconds_a_line(read_analysis(SHORT))
-    assert many > 128 * few
 
 
 def test_each_line_of_a_batch_has_its_own_design_wind_where_no_wind_speeds_are_named() -> None:
