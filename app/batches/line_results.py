@@ -1,6 +1,6 @@
 """Results of a batch's lines, streamed in the order of their numbers with few lines in memory at a time."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from typing import Any
 from uuid import UUID
 
@@ -34,9 +34,12 @@ def columns(table: str) -> list[str]:
     return [*_LABELS, *convert.columns(table)]
 
 
-def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a table: one for every line in the summary, otherwise the rows of each line's results."""
-    for item in _lines(session, batch_id, in_short=table == "summary"):
+def rows(session: Session, batch_id: UUID, table: str, only: Container[int] | None = None) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a table: one for every line in the summary, otherwise the rows of each line's results.
+
+    only: the numbers of the lines that are wanted, None for all.
+    """
+    for item in _lines(session, batch_id, in_short=table == "summary", only=only):
         if table == "summary":
             yield _summary(item)
         elif _is_solved(item):
@@ -46,16 +49,21 @@ def rows(session: Session, batch_id: UUID, table: str) -> Iterator[dict[str, Any
                 yield {**labels, **row}
 
 
-def features(session: Session, batch_id: UUID) -> Iterator[dict[str, Any]]:
+def features(session: Session, batch_id: UUID, only: Container[int] | None = None) -> Iterator[dict[str, Any]]:
     """Yield the summary of each line as a GeoJSON feature with the coordinates of the line, null if it has none."""
+    for item in _lines(session, batch_id, in_short=True, only=only):
+        yield _feature(item)
+
+
+def tagged_features(session: Session, batch_id: UUID) -> Iterator[dict[str, Any]]:
+    """Yield the features of all lines, each with the tags of its line beside its properties."""
     for item in _lines(session, batch_id, in_short=True):
-        summary = _summary(item)
-        yield {"type": "Feature", "id": item.number, "geometry": item.geometry, "properties": summary}
+        yield {**_feature(item), "tags": item.tags or {}}
 
 
-def documents(session: Session, batch_id: UUID) -> Iterator[bytes]:
+def documents(session: Session, batch_id: UUID, only: Container[int] | None = None) -> Iterator[bytes]:
     """Yield for each line a JSON object, with a line end, that holds all its results or its failure."""
-    for item in _lines(session, batch_id, in_short=False):
+    for item in _lines(session, batch_id, in_short=False, only=only):
         # The packed tables are JSON already; splice them into the object without parsing.
         head = orjson.dumps({**_labels(item), **_state(item), **_point(item)})
         yield b"%b,%b\n" % (head[:-1], _tables(item)[1:])
@@ -85,16 +93,19 @@ def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterato
             yield {"number": number, "reference": reference, "row": None, "place": None, **fault}
 
 
-def _lines(session: Session, batch_id: UUID, *, in_short: bool) -> Iterator[Row[Any]]:
+def _lines(
+    session: Session, batch_id: UUID, *, in_short: bool, only: Container[int] | None = None
+) -> Iterator[Row[Any]]:
     """Yield the lines with the state of their chunk and their result, reading a page at a time.
 
-    In short, they have their name and verdict, and their tables only if these were stored without the verdict.
+    In short, they have name, tags and verdict, and their tables only if these were stored without the verdict.
     """
     of_line = and_(PointRow.job_id == BatchItem.chunk_id, PointRow.point == BatchItem.number)
     names = (*STATIC, *_HARTOG, *RANKING_FIGURES, "warnings", "engine_version", "failure")
     older = case((PointRow.verdict.is_(None), PointRow.tables), else_=None).label("tables")
     name = BatchItem.document["name"].as_string().label("name")
-    short, whole = (PointRow.verdict, older, name, BatchItem.geometry), (PointRow.tables, BatchItem.computed)
+    tags = BatchItem.document["tags"].label("tags")
+    short, whole = (PointRow.verdict, older, name, tags, BatchItem.geometry), (PointRow.tables, BatchItem.computed)
     statement = (
         select(BatchItem.number, BatchItem.reference, BatchItem.asset_id, BatchItem.chunk_id, BatchItem.faults)
         .add_columns(Job.status, Job.failure_kind, Job.failure_detail, PointRow.point)
@@ -107,8 +118,12 @@ def _lines(session: Session, batch_id: UUID, *, in_short: bool) -> Iterator[Row[
     )
     last = 0
     while page := session.execute(statement.where(BatchItem.number > last)).all():
-        yield from page
+        yield from (item for item in page if only is None or item.number in only)
         last = page[-1].number
+
+
+def _feature(item: Row[Any]) -> dict[str, Any]:
+    return {"type": "Feature", "id": item.number, "geometry": item.geometry, "properties": _summary(item)}
 
 
 def _summary(item: Row[Any]) -> dict[str, Any]:

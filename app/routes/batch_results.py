@@ -1,6 +1,6 @@
 """Results of a batch, streamed as NDJSON, JSON, CSV, Parquet, XLSX or GeoJSON, and the faults of rejected lines."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import Annotated, Literal
 from uuid import UUID
 
@@ -26,7 +26,7 @@ from app.routes.streaming import streamed
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
 
 BatchFormat = Literal["ndjson", "json", "csv", "parquet", "xlsx", "geojson"]
-_MEDIA_TYPES: dict[BatchFormat, str] = {
+MEDIA_TYPES: dict[BatchFormat, str] = {
     "ndjson": "application/x-ndjson",
     "json": formats.MEDIA_TYPES["json"],
     "csv": "text/csv",
@@ -73,9 +73,9 @@ def batch_results(
     Every row has `number`, `reference` and `asset_id`. A line without results has its failure. GeoJSON has a feature
     for each line: the coordinates with which it was sent, or null, and the summary as properties.
     """
-    form = asked.format or formats.preferred(request.headers.get("accept", ""), _MEDIA_TYPES)
+    form = asked.format or formats.preferred(request.headers.get("accept", ""), MEDIA_TYPES)
     if form is None:
-        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Results are {', '.join(_MEDIA_TYPES.values())}.")
+        raise ProblemError(ProblemKind.NOT_ACCEPTABLE, f"Results are {', '.join(MEDIA_TYPES.values())}.")
     if asked.dialect != "plain" and form != "csv":
         raise query_fault("dialect", "is for CSV only")
     if form == "geojson" and asked.table not in {None, "summary"}:
@@ -83,27 +83,45 @@ def batch_results(
     state = require_results(readers, caller, batch_id, partial=asked.partial)
     # Results that may still change get no tag: it would have to be known before the last row is read.
     headers = unless_known(known, strong_tag(state, form, asked.dialect)) if state else {"Vary": "Accept"}
-    name = convert.TABLES_BY_ADDRESS.get(asked.table or "summary", "summary")
+    name = None if asked.table is None else convert.TABLES_BY_ADDRESS.get(asked.table, "summary")
 
-    def pieces(session: Session) -> Iterator[str] | Iterator[bytes]:
-        if form == "geojson":
-            return formats.in_blocks(formats.geojson_text(line_results.features(session, batch_id)))
-        if form == "ndjson" and asked.table is None:
-            return formats.in_blocks(line_results.documents(session, batch_id))
-        rows = line_results.rows(session, batch_id, name)
-        if form == "parquet":
-            from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
+    return streamed(
+        readers,
+        lambda session: result_pieces(session, batch_id, (form, asked.dialect), name),
+        MEDIA_TYPES[form],
+        headers,
+    )
 
-            return parquet.parquet_bytes(exported_columns(name, line_results.columns(name)), rows)
-        if form == "xlsx":
-            from app.export import workbook  # noqa: PLC0415 - openpyxl loads slowly, and only workbooks need it
 
-            return workbook.xlsx_bytes(name, exported_columns(name, line_results.columns(name)), rows)
-        if form == "csv":
-            return formats.in_blocks(formats.csv_text(line_results.columns(name), rows, asked.dialect))
-        return formats.in_blocks(formats.json_text(name, rows) if form == "json" else formats.ndjson_text(rows))
+def result_pieces(
+    session: Session,
+    batch_id: UUID,
+    form: tuple[BatchFormat, Dialect],
+    table: str | None,
+    only: Container[int] | None = None,
+) -> Iterator[str] | Iterator[bytes]:
+    """Return the results of a batch's lines in a format and dialect, of one table or, with None, all of them.
 
-    return streamed(readers, pieces, _MEDIA_TYPES[form], headers)
+    only: the numbers of the lines that are wanted, None for all.
+    """
+    kind, dialect = form
+    if kind == "geojson":
+        return formats.in_blocks(formats.geojson_text(line_results.features(session, batch_id, only)))
+    if kind == "ndjson" and table is None:
+        return formats.in_blocks(line_results.documents(session, batch_id, only))
+    name = table or "summary"
+    rows = line_results.rows(session, batch_id, name, only)
+    if kind == "parquet":
+        from app.export import parquet  # noqa: PLC0415 - pyarrow loads slowly, and only Parquet needs it
+
+        return parquet.parquet_bytes(exported_columns(name, line_results.columns(name)), rows)
+    if kind == "xlsx":
+        from app.export import workbook  # noqa: PLC0415 - openpyxl loads slowly, and only workbooks need it
+
+        return workbook.xlsx_bytes(name, exported_columns(name, line_results.columns(name)), rows)
+    if kind == "csv":
+        return formats.in_blocks(formats.csv_text(line_results.columns(name), rows, dialect))
+    return formats.in_blocks(formats.json_text(name, rows) if kind == "json" else formats.ndjson_text(rows))
 
 
 @router.get(

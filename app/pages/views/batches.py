@@ -19,8 +19,10 @@ from app.pages.forms import Fields
 from app.pages.frame import address, check_form, moved, page, units_of
 from app.pages.wording import words
 from app.routes.batch_intake import PostedBatch, submit_batch
-from app.routes.batch_status import batch_document, batch_summary, find_batch
+from app.routes.batch_results import MEDIA_TYPES, BatchFormat, result_pieces
+from app.routes.batch_status import batch_document, batch_summary, find_batch, require_results
 from app.routes.dependencies import CallerOf, Readers, SenderOf, Writers
+from app.routes.streaming import streamed
 from app.runtime.settings import signing_key
 from app.security.caller import Scope
 from app.tables import ENDED
@@ -34,6 +36,18 @@ _MOST_LINES = 200  # the downloads have all of them
 async def _marked(request: Request, mark: Annotated[str, Header(alias="X-Form-Mark")] = "") -> None:
     """Check that a page of this service sends a file; a header cannot come from the form of another site."""
     check_form(request, {"mark": mark})
+
+
+def _wanted(
+    gallops: Annotated[str, Query(max_length=20)] = "",
+    name: Annotated[str, Query(max_length=200)] = "",
+    tag: Annotated[str, Query(max_length=400)] = "",
+) -> Wanted:
+    """Return which lines the address of a page asks for; the filters stay in it, so that it can be kept and sent."""
+    return Wanted(gallops if gallops in ANSWERS else "", name.strip(), tag.strip())
+
+
+WantedLines = Annotated[Wanted, Depends(_wanted)]
 
 
 @router.get("")
@@ -77,16 +91,15 @@ def batch_page(
     batch_id: UUID,
     caller: CallerOf,
     readers: Readers,
-    gallops: Annotated[str, Query(max_length=20)] = "",
-    name: Annotated[str, Query(max_length=200)] = "",
+    wanted: WantedLines,
 ) -> Response:
     """Return a batch: its counts, and its lines as far as they are computed."""
-    wanted, units = Wanted(gallops if gallops in ANSWERS else "", name.strip()), units_of(request)
+    units = units_of(request)
     with readers() as session:
         batch = find_batch(session, caller, batch_id)
         counts = batch_progress.counts(session, [batch_id])[batch_id]
         document = batch_document(session, batch, counts)
-        seen = overview(line_results.features(session, batch_id), wanted)
+        seen = overview(line_results.tagged_features(session, batch_id), wanted)
     said = words().batch
     place = address(request)
     return page(
@@ -96,6 +109,7 @@ def batch_page(
         ended=counts.status in ENDED,
         wanted=wanted,
         answers=seen.answers,
+        tags=seen.tags,
         lines=seen.lines[:_MOST_LINES],
         count=len(seen.lines),
         spreads=[
@@ -103,6 +117,23 @@ def batch_page(
             histogram(said.onset, seen.values("onset_m_per_s"), "m/s", units),
         ],
         map=batch_map(seen.features, units, lambda number: place(f"/pages/batches/{batch_id}/lines/{number}")),
+    )
+
+
+@router.get("/{batch_id}/results")
+def wanted_results(
+    batch_id: UUID,
+    caller: CallerOf,
+    readers: Readers,
+    wanted: WantedLines,
+    form: Annotated[BatchFormat, Query(alias="format")],
+) -> Response:
+    """Return the results of the wanted lines as a file, as `GET /v1/batches/{id}/results` does of all lines."""
+    require_results(readers, caller, batch_id, partial=False)
+    with readers() as session:
+        numbers = overview(line_results.tagged_features(session, batch_id), wanted).numbers
+    return streamed(
+        readers, lambda session: result_pieces(session, batch_id, (form, "plain"), None, numbers), MEDIA_TYPES[form], {}
     )
 
 

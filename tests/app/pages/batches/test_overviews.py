@@ -3,7 +3,7 @@ from typing import Any
 from app.pages.batches.overviews import Wanted, overview
 
 
-def feature(number: int, **said: Any) -> dict[str, Any]:
+def feature(number: int, *, tags: dict[str, str] | None = None, **said: Any) -> dict[str, Any]:
     line = {
         "number": number,
         "name": f"span {number}",
@@ -14,17 +14,17 @@ def feature(number: int, **said: Any) -> dict[str, Any]:
         "unknown_motions": False,
         "vertical_peak_to_peak_m": float(number),
     }
-    return {"geometry": None, "properties": {**line, **said}}
+    return {"geometry": None, "properties": {**line, **said}, "tags": tags or {}}
 
 
 FEATURES = [
-    feature(1),
-    feature(2),
+    feature(1, tags={"region": "north", "voltage": "400"}),
+    feature(2, tags={"region": "south"}),
     feature(3, gallops="undecided", vertical_peak_to_peak_m=None),
     feature(4, status="rejected", gallops=None, vertical_peak_to_peak_m=None, name=None),
     feature(5, status="accepted", gallops=None, vertical_peak_to_peak_m=None),
     feature(6, unknown_motions=True),
-    feature(7, gallops="no", vertical_peak_to_peak_m=None),
+    feature(7, tags={"region": "north"}, gallops="no", vertical_peak_to_peak_m=None),
 ]
 
 
@@ -40,3 +40,15 @@ def test_lines_are_wanted_by_their_answer_and_by_any_of_their_names() -> None:
     assert [line["number"] for line in overview(FEATURES, Wanted(name="SPAN 2")).lines] == [2]
     assert len(overview(FEATURES, Wanted("yes", "l204")).lines) == 3
     assert overview(FEATURES, Wanted(name="nowhere")).lines == []
+
+
+def test_lines_are_wanted_by_a_tag_or_by_its_key() -> None:
+    assert overview(FEATURES, Wanted()).tags == {"region:north": 2, "voltage:400": 1, "region:south": 1}
+    assert overview(FEATURES, Wanted(tag="region:north")).numbers == {1, 7}
+    assert overview(FEATURES, Wanted("yes", tag="region")).numbers == {1, 2}
+    assert overview(FEATURES, Wanted(tag="region:nor")).numbers == set()
+
+
+def test_what_is_wanted_stays_in_the_address() -> None:
+    assert Wanted().query == ""
+    assert Wanted("yes", "a&b", "region:north").query == "gallops=yes&name=a%26b&tag=region%3Anorth"

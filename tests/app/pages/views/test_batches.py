@@ -11,7 +11,10 @@ from tests.app.lines import SHORT, changed
 from tests.app.pages.reading import read, send
 
 TWIN = example("c11-twin")
-LINES = [{**changed("span.length_m", length, TWIN), "name": f"span of {length:g}"} for length in (100.0, 140.0, -5.0)]
+LINES = [
+    {**changed("span.length_m", length, TWIN), "name": f"span of {length:g}", "tags": {"half": half}}
+    for length, half in ((100.0, "west"), (140.0, "east"), (-5.0, "east"))
+]
 PLACES = [[[10.0, 60.0], [10.002, 60.0]], [[10.002, 60.0], [10.004, 60.001]], [[10.0, 60.0], [10.0, 60.1]]]
 FILE = {
     "type": "FeatureCollection",
@@ -64,6 +67,23 @@ def test_lines_are_filtered_by_answer_and_name(shared_client: httpx.Client, batc
     assert "1 of 1 lines are shown" in read(shared_client, f"{batch}?name=of+140").text
     assert "2 of 2 lines are shown" in read(shared_client, f"{batch}?gallops=yes").text
     assert "0 of 0 lines are shown" in read(shared_client, f"{batch}?gallops=undecided").text
+
+
+def test_lines_are_filtered_by_a_tag_and_only_they_are_exported(shared_client: httpx.Client, batch: str) -> None:
+    page = read(shared_client, f"{batch}?tag=half:west")
+    assert "1 of 1 lines are shown" in page.text
+    assert page.fields["tag"] == "half:west"
+    assert "Rejected lines are kept without their tags" in page.text
+    files = [address for address in page.addresses if address.startswith(f"{batch}/results?")]
+    assert len(files) == 5
+    for address in files:
+        assert "tag=half%3Awest" in address
+        assert shared_client.get(address).status_code == 200, address
+    names = {line.split(",")[3] for line in shared_client.get(files[0]).text.splitlines()}
+    assert names == {"name", "span of 100"}
+    rest = shared_client.get(f"{batch}/results?format=ndjson&tag=half:east").text.splitlines()
+    assert [json.loads(line)["number"] for line in rest] == [2]
+    assert shared_client.get(f"{batch}/results?format=doc").status_code == 400
 
 
 def test_a_line_leads_to_its_result(shared_client: httpx.Client, batch: str) -> None:
