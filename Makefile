@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: setup demo test test-processes test-pages page-pictures test-faults reliability check bench capacity validation
+.PHONY: setup demo test test-processes test-clients test-pages page-pictures test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -29,6 +29,20 @@ test: setup
 
 test-processes: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal $(PROCESSES)
+
+# Generates clients from the OpenAPI document and runs them. The generators have an environment of their own; those that
+# run with node or Java are skipped where these are not installed.
+CLIENTS := .clients
+
+$(CLIENTS)/.ready: tests/clients/generators.txt tests/clients/package.json tests/clients/package-lock.json
+	$(PYTHON) -m venv $(CLIENTS)
+	$(CLIENTS)/bin/pip install --quiet --disable-pip-version-check --requirement tests/clients/generators.txt
+	cp tests/clients/package.json tests/clients/package-lock.json $(CLIENTS)/
+	! command -v npm >/dev/null || npm ci --prefix $(CLIENTS) --ignore-scripts --no-audit --no-fund --silent
+	touch $@
+
+test-clients: setup $(CLIENTS)/.ready
+	$(BIN)/python -m pytest tests/clients
 
 # Opens every page in the chromium of the system; CHROMIUM names another one.
 test-pages: setup

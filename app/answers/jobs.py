@@ -57,7 +57,7 @@ class JobDocument(Answer):
 class JobEstimate(Answer):
     """What a valid request would cost as a job; nothing was stored."""
 
-    valid: Literal[True] = described("Always true: a request with faults gets a problem that lists them", True)
+    valid: bool = described("Always true: a request with faults gets a problem that lists them", True)
     points: int = described("Points of the study; 1 without a study [1]", 1)
     seconds: float | None = described(
         "Computing time on one core, estimated; null for a placement or remedies, where searches decide it [s]", 0.65
