@@ -4,7 +4,7 @@ FROM python:3.11-slim-bookworm AS build
 # This stage compiles the engine's kernels, so the final image needs no compiler.
 RUN apt-get update && apt-get install --yes --no-install-recommends gcc libc6-dev
 WORKDIR /source
-COPY pyproject.toml README.md ./
+COPY pyproject.toml setup.py README.md ./
 COPY engine engine
 COPY app app
 COPY worker worker
@@ -29,7 +29,7 @@ RUN useradd --system --uid 10001 --home-dir /data --create-home galloping
 WORKDIR /opt/galloping
 COPY constraints.txt ./
 COPY --from=build /wheels /wheels
-RUN pip install --no-cache-dir --constraint constraints.txt /wheels/*.whl
+RUN pip install --no-cache-dir --constraint constraints.txt "$(echo /wheels/*.whl)[all]"
 
 USER galloping
 WORKDIR /data

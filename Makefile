@@ -11,7 +11,7 @@ export MKL_NUM_THREADS := 1
 
 setup: $(VENV)/.ready
 
-$(VENV)/.ready: pyproject.toml constraints.txt $(wildcard engine/kernels/*)
+$(VENV)/.ready: pyproject.toml setup.py constraints.txt $(wildcard engine/kernels/*)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	touch $@

@@ -26,9 +26,10 @@ from app.storage.migration import migrate
 if TYPE_CHECKING:
     from app.main import Service
 
-HTTP = "app.http.bounded_heads:BoundedHeads"
+HTTP = f"{__package__}.http.bounded_heads:BoundedHeads"
 """The protocol class that uvicorn loads for each connection."""
 
+_WORKER = f"{__package__.removesuffix('app')}worker"  # in a distribution all our packages lie in `galloping`
 _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # prometheus_client reads this variable when it is imported
 _METRICS_BYTES = 1 << 20  # far more than the metrics of all routes need
 _STOP_SECONDS = 10.0
@@ -42,9 +43,13 @@ class Unguarded(Exception):
     """Raised when the service would be open to other machines without any key."""
 
 
-def worker(settings: Settings) -> NoReturn:
-    """Replace this process by a worker program; BLAS reads its settings only when a program loads it."""
-    os.execve(sys.executable, [sys.executable, "-m", "worker"], processes.environment(settings))
+def worker(settings: Settings, *, check: bool = False) -> NoReturn:
+    """Replace this process by a worker program, or by one that ends with 0 if the worker here is alive.
+
+    BLAS reads its settings only when a program loads it.
+    """
+    module = f"{_WORKER}.health" if check else _WORKER
+    os.execve(sys.executable, [sys.executable, "-m", module], processes.environment(settings))
 
 
 def api(settings: Settings, host: str, port: int) -> int:
@@ -56,10 +61,10 @@ def api(settings: Settings, host: str, port: int) -> int:
     os.environ.update(settings.environment())  # the application reads them here, and in the child processes of uvicorn
     os.environ[_SHARED_METRICS] = str(_empty_folder(settings.data_dir / f"metrics-{port}"))
     uvicorn.run(
-        "app.serve:_application",
+        f"{__package__}.serve:_application",
         factory=True,
         http=HTTP,
-        loop="uvloop",
+        loop="auto",
         host=host,
         port=port,
         workers=settings.api_processes,
@@ -88,12 +93,12 @@ def serve(settings: Settings, host: str, port: int) -> int:
     if not is_loopback(host) and not _has_keys(settings):
         raise Unguarded(f"other machines can reach {host}, and no key exists: create one with `galloping keys create`")
     with processes.until_stopped() as wait:
-        api_process = processes.start(settings, "app.serve", host, str(port))
-        worker_process = processes.start(settings, "worker")
+        api_process = processes.start(settings, f"{__package__}.serve", host, str(port))
+        worker_process = processes.start(settings, _WORKER)
         while not wait(_POLL_SECONDS) and api_process.poll() is None:
             if worker_process.poll() is not None:
                 _logger.warning("the worker exited with code %s; starting it again", worker_process.returncode)
-                worker_process = processes.start(settings, "worker")
+                worker_process = processes.start(settings, _WORKER)
         code = api_process.poll()
         processes.stop([api_process, worker_process], signal.SIGTERM, settings.shutdown_seconds + _STOP_SECONDS)
     return code or 0

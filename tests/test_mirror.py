@@ -32,6 +32,7 @@ WITHOUT_A_TEST_FILE = {
     "app.cli.options": "It declares options; tests/app/cli/test_lines.py gives them.",
     "app.cli.keys": "tests/app/cli/test_operate.py makes, lists and revokes keys with it.",
     "app.cli.service": "tests/app/cli/test_lines.py submits and migrates with it, tests/e2e/test_serve.py serves.",
+    "app.distribution": "tests/e2e/test_wheel.py installs it, and calls it by both its names.",
     "app.convert.clearance": "tests/app/routes/test_clearance.py holds its figures.",
     "app.convert.known.own_rows": "It declares a dataclass; tests/app/convert/known/test_to_engine.py names its rows.",
     "app.convert.parts": "Every field that it converts is compared in tests/app/convert/test_assemble.py.",

@@ -80,7 +80,7 @@ def _holds_jobs(sessions: sessionmaker[Session], owner: str) -> bool:
 
 
 def _start_pool(settings: Settings, owner: str) -> processes.Child:
-    return processes.start(settings, "worker.tasks", extra={OWNER: owner})
+    return processes.start(settings, f"{__package__}.tasks", extra={OWNER: owner})
 
 
 def _repair(sessions: sessionmaker[Session], settings: Settings, owner: str | None = None) -> None:

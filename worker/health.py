@@ -1,4 +1,4 @@
-"""A sign of life: the worker touches a file after every sweep, and `python -m worker.health` fails if it is old."""
+"""A sign of life: the worker touches a file after every sweep, and `galloping worker --check` fails if it is old."""
 
 import sys
 import time

@@ -3,7 +3,6 @@
 import gc
 import os
 from functools import cache
-from importlib import import_module
 from uuid import UUID
 
 from celery import Celery
@@ -53,7 +52,7 @@ def _worker_options(settings: Settings) -> dict[str, object]:
         "worker_cancel_long_running_tasks_on_connection_loss": False,
         "worker_concurrency": settings.worker_processes,
         "worker_max_tasks_per_child": settings.max_jobs_per_process,
-        "worker_pool": "worker.pool:EmbeddedPool" if settings.has_embedded_broker else "prefork",
+        "worker_pool": f"{__package__}.pool:EmbeddedPool" if settings.has_embedded_broker else "prefork",
         "worker_prefetch_multiplier": 1,
         "worker_send_task_events": False,
         "worker_soft_shutdown_timeout": settings.shutdown_seconds,
@@ -66,8 +65,8 @@ def _leave_logs(**_: object) -> None:
 
 def load() -> None:
     """Load what every job needs before the fork: once for all processes, so that a replacement is ready at once."""
-    for name in ("engine.analysis", "engine.clearance"):
-        import_module(name)
+    from engine import analysis, clearance  # noqa: F401, PLC0415
+
     configure_mappers()
 
 

@@ -10,6 +10,9 @@ from app.answers.rows import DenHartog, StaticState, with_tables
 from app.reference.source_lines import example
 from app.schemas.fields import Answer, described, example_of
 
+Extension = Literal["svg", "png", "pdf"]
+"""Formats of the pictures of a result."""
+
 
 class PointFailure(Answer):
     """The failure of a point of a study, after the values of the axes."""

@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+import app
 from app import client
 from app.answers.jobs import JobDocument
 from app.client import Client
@@ -77,7 +78,7 @@ def _service(output: Path) -> Iterator[str]:
         If the service does not start in time.
     """
     port = _free_port()
-    command = [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--data-dir", str(output / "service")]
+    command = [sys.executable, "-m", __package__, "serve", "--port", str(port), "--data-dir", str(output / "service")]
     log = output / "service.log"
     # Drop variables of the shell that would point the demo at another database or broker.
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GALLOPING_")}
@@ -145,7 +146,7 @@ def _progress(console: Console) -> Iterator[Callable[[str, str], client.Show]]:
 
 def _frequency_table(jobs: Mapping[str, JobDocument], service: Client) -> Table:
     """Show the computed frequencies beside Table 2 of the source."""
-    source = json.loads((files("app") / "data" / "table2.json").read_text(encoding="utf-8"))
+    source = json.loads((files(app) / "data" / "table2.json").read_text(encoding="utf-8"))
     printed = {(row["subconductors"], row["model"]): row["loops"] for row in source["rows"]}
     table = _table("Natural frequencies [Hz]: computed, Table 2 of the source, difference in %", *_DIRECTIONS)
     for subconductors, (name, job) in enumerate(jobs.items(), start=1):

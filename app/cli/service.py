@@ -55,11 +55,16 @@ def _with_processes(settings: "Settings", count: int | None) -> "Settings":
     return settings if count is None else settings.model_copy(update={"api_processes": count})
 
 
-def worker(data_dir: DataDirectory = None) -> None:
+def worker(
+    data_dir: DataDirectory = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Only check that the worker of this directory is alive.")
+    ] = False,
+) -> None:
     """Run a worker that takes jobs from the configured broker."""
     from app.serve import worker as run
 
-    run(read_settings(data_dir))
+    run(read_settings(data_dir), check=check)
 
 
 def migrate(data_dir: DataDirectory = None) -> None:

@@ -12,12 +12,11 @@ from pydantic import BaseModel
 
 from app.answers.batches import BatchDocument, BatchTableName, RankedLine, RankingPage
 from app.answers.jobs import JobDocument, JobPage
-from app.answers.results import ResultDocument, TableName
+from app.answers.results import Extension, ResultDocument, TableName
 from app.client import uploads
 from app.client.connection import Connection, ServiceError, Show
 from app.client.known_lines import KnownLines
 from app.client.uploads import Lines, Upload, as_json
-from app.plots import Extension
 from app.schemas import Analysis, Line, Remedies, Study
 from app.schemas.known import KnownLine
 

@@ -1,5 +1,6 @@
 """Run a validated request in the engine and return plain rows, one point of the study after another."""
 
+import json
 import logging
 import math
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
@@ -7,8 +8,6 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import islice
 from typing import Any
-
-import orjson
 
 from app import schemas
 from app.convert import parts, study
@@ -27,7 +26,7 @@ Stops = tuple[type[Exception], ...]
 INTERNAL = "the computation stopped on an internal error; the log has the details"
 
 _logger = logging.getLogger(__name__)
-_NO_ROWS = orjson.dumps({name: [] for name in TABLES})
+_NO_ROWS = json.dumps({name: [] for name in TABLES}, separators=(",", ":")).encode()
 
 
 @dataclass(frozen=True)
@@ -70,13 +69,13 @@ class PointResult:
     @cached_property
     def tables(self) -> dict[str, list[dict[str, Any]]]:
         """Rows by the name of their table."""
-        found: dict[str, list[dict[str, Any]]] = orjson.loads(self.tables_json)
+        found: dict[str, list[dict[str, Any]]] = json.loads(self.tables_json)
         return found
 
     @cached_property
     def orbits(self) -> list[dict[str, Any]]:
         """Fourier coefficients of the cycles, each with its row number among the limit cycles."""
-        found: list[dict[str, Any]] = orjson.loads(self.orbits_json)
+        found: list[dict[str, Any]] = json.loads(self.orbits_json)
         return found
 
 
@@ -265,7 +264,7 @@ def point_results(
             warnings=[*(f"The line: {doubt}." for doubt in doubts_of(line.ice.aerodynamics)), *result.warnings],
             engine_version=result.engine_version,
             failure=None,
-            verdict=next(iter(orjson.loads(_json(result.verdict))), None),
+            verdict=next(iter(json.loads(_json(result.verdict))), None),
         )
 
 
@@ -287,6 +286,8 @@ def failed_point(error: Exception, number: int, values: dict[str, Any]) -> Point
 
 def _json(found: object) -> bytes:
     """Return dataclasses, enums and numpy scalars as JSON."""
+    import orjson  # noqa: PLC0415 - clients of the service need not have it
+
     return orjson.dumps(found, option=orjson.OPT_SERIALIZE_NUMPY)
 
 

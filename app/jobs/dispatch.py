@@ -130,7 +130,7 @@ def _send(application: Celery, job_id: UUID, queue: Any, **by: Any) -> None:
 def _broker(settings: Settings) -> dict[str, str]:
     """Return what names the broker; Kombu takes a transport class only where the address has no scheme."""
     if settings.has_embedded_broker:
-        return {"broker_url": "localhost", "broker_transport": "app.jobs.folder_broker:Transport"}
+        return {"broker_url": "localhost", "broker_transport": f"{__package__}.folder_broker:Transport"}
     return {"broker_url": settings.broker_url}
 
 

@@ -11,6 +11,8 @@ from starlette.responses import Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
+import app
+
 ADDRESS = "/pages/assets"
 _FOLDERS = {"own": "pages/static", "htmx": "vendor/htmx", "uplot": "vendor/uplot"}
 _FOR_EVER = "public, max-age=31536000, immutable"
@@ -30,7 +32,7 @@ class _Lasting(StaticFiles):
 
 def folders() -> dict[str, StaticFiles]:
     """Return the applications that serve the folders, by their addresses."""
-    return {f"{ADDRESS}/{name}": _Lasting(packages=[("app", folder)]) for name, folder in _FOLDERS.items()}
+    return {f"{ADDRESS}/{name}": _Lasting(packages=[(app.__name__, folder)]) for name, folder in _FOLDERS.items()}
 
 
 @cache
@@ -47,10 +49,10 @@ def address(name: str) -> str:
 
 def script_bytes() -> int:
     """Return the size of all scripts that pages may load [bytes]."""
-    folders_of_files = (Path(str(resources.files("app"))) / folder for folder in _FOLDERS.values())
+    folders_of_files = (Path(str(resources.files(app))) / folder for folder in _FOLDERS.values())
     return sum(path.stat().st_size for folder in folders_of_files for path in folder.glob("*.js"))
 
 
 def _path(name: str) -> Path:
     folder, _, file = name.partition("/")
-    return Path(str(resources.files("app"))) / _FOLDERS[folder] / file
+    return Path(str(resources.files(app))) / _FOLDERS[folder] / file

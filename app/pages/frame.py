@@ -126,7 +126,7 @@ def _whose(request: Request) -> str:
 @cache
 def _templates() -> Environment:
     found = Environment(
-        loader=PackageLoader("app.pages"),
+        loader=PackageLoader(__package__),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

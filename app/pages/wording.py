@@ -15,7 +15,7 @@ def words() -> Any:
 
     A name that is not there raises AttributeError, in a template as well as here.
     """
-    return _named(tomllib.loads((resources.files("app.pages") / FILE).read_text(encoding="utf-8")))
+    return _named(tomllib.loads((resources.files(__package__) / FILE).read_text(encoding="utf-8")))
 
 
 def word_for(section: Any, name: str) -> str:

@@ -4,8 +4,9 @@
 Figures are created as objects, without pyplot and its global state.
 """
 
+from app.answers.results import Extension
 from app.plots.facts import Facts, Found, facts_of
-from app.plots.options import LARGEST_PX, MEDIA_TYPES, SMALLEST_PX, Abscissa, Extension, Options, Theme
+from app.plots.options import LARGEST_PX, MEDIA_TYPES, SMALLEST_PX, Abscissa, Options, Theme
 from app.plots.registry import EDITION, PICTURES, Picture, draw, drawable, fonts
 
 __all__ = [

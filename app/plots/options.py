@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-Extension = Literal["svg", "png", "pdf"]
+from app.answers.results import Extension
+
 Theme = Literal["light", "dark"]
 Abscissa = Literal["reduced", "parameter"]
 MEDIA_TYPES: Mapping[Extension, str] = {"svg": "image/svg+xml", "png": "image/png", "pdf": "application/pdf"}

@@ -75,7 +75,7 @@ def draw(name: str, found: Found, facts: Facts, options: Options) -> bytes:
     from app.plots.canvas.drawing import About, drawn  # noqa: PLC0415 - matplotlib loads slowly, and the API starts without it
 
     picture = PICTURES[name]
-    make = cast("Maker", import_module(f"app.plots.{picture.module}").picture)
+    make = cast("Maker", import_module(f"{__package__}.{picture.module}").picture)
     names = " ".join(phase.name for phase in facts.phases)
     about = About(f"{facts.title}: {picture.title}", " ".join(filter(None, facts.footer)), names)
     return drawn(lambda: make(found, facts, options), options, about)

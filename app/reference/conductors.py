@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
+import app
 from app.reference.catalogue_row import CatalogueRow, name_key
 
 # Field -> published column and factor to SI.
@@ -88,7 +89,7 @@ def shipped() -> tuple[CatalogueRow, ...]:
 
 
 def _table(name: str) -> list[dict[str, str]]:
-    text = (files("app") / "data" / name).read_text(encoding="utf-8")
+    text = (files(app) / "data" / name).read_text(encoding="utf-8")
     return list(csv.DictReader(text.splitlines()))
 
 

@@ -5,6 +5,8 @@ from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse
 from starlette.staticfiles import StaticFiles
 
+import app
+
 ASSETS = "/docs/assets"
 
 router = APIRouter(include_in_schema=False)
@@ -26,4 +28,4 @@ def docs(request: Request) -> HTMLResponse:
 
 def assets() -> StaticFiles:
     """Return the application that serves the page's files."""
-    return StaticFiles(packages=[("app", "vendor/swagger-ui")])
+    return StaticFiles(packages=[(app.__name__, "vendor/swagger-ui")])

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from types import FrameType
 from typing import IO, TYPE_CHECKING
@@ -22,8 +23,19 @@ ONE_BLAS_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL
 
 
 def environment(settings: "Settings") -> dict[str, str]:
-    """Return this process's environment with the settings added and BLAS limited to one thread."""
-    return {**os.environ, **ONE_BLAS_THREAD, **settings.environment()}
+    """Return this process's environment with the settings added and BLAS limited to one thread.
+
+    A child imports nothing from the folder that it is started in, where a file may be called `worker.py` or `redis.py`.
+    """
+    return {**os.environ, **ONE_BLAS_THREAD, **_import_paths(), **settings.environment()}
+
+
+def _import_paths() -> dict[str, str]:
+    safe = {"PYTHONSAFEPATH": "1"}
+    if not __name__.startswith("app."):
+        return safe  # installed: Python finds us in its own folders
+    paths = [str(Path(__file__).parents[2]), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return safe | {"PYTHONPATH": os.pathsep.join(paths)}
 
 
 def start(

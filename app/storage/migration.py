@@ -33,7 +33,7 @@ def migrate(settings: Settings) -> int:
 def alembic_config(connection: Connection) -> Config:
     """Return Alembic's configuration for our migrations on an open connection."""
     config = Config()
-    config.set_main_option("script_location", "migrations:")
+    config.set_main_option("script_location", f"{__package__.removesuffix('app.storage')}migrations:")
     config.attributes["connection"] = connection
     return config
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Generator, Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from app import schemas
 from app.convert import parts
@@ -10,11 +11,13 @@ from app.convert.pointers import json_names
 from app.schemas.devices import tried_remedies as said
 from app.schemas.faults import Fault, json_pointer
 from engine import spec
-from engine.known.description import KnownLine
 from engine.outcome import Fault as EngineFault
 from engine.outcome import InvalidSpec
 from engine.progress import Progress
 from engine.result import Result
+
+if TYPE_CHECKING:
+    from engine.known.description import KnownLine  # it loads numpy, which clients of the service need not have
 
 _MOVED: Mapping[str, type[spec.PointDevice]] = {
     "spacer": spec.Spacer,
@@ -76,7 +79,7 @@ def _places(positions: list[float] | None) -> tuple[float, ...] | None:
 
 
 def remedies_faults(
-    part: schemas.Remedies, line: spec.Line, analysis: spec.Analysis, known: KnownLine | None
+    part: schemas.Remedies, line: spec.Line, analysis: spec.Analysis, known: "KnownLine | None"
 ) -> list[Fault]:
     """Return the faults of remedies on a line that is valid without them."""
     try:
@@ -88,7 +91,7 @@ def remedies_faults(
     return [_to_pointer(fault, part) for fault in tensions]
 
 
-def _tension_faults(line: spec.Line, known: KnownLine | None, asked: spec.Remedies) -> list[EngineFault]:
+def _tension_faults(line: spec.Line, known: "KnownLine | None", asked: spec.Remedies) -> list[EngineFault]:
     """Return the faults of other tensions, which only the changed line shows."""
     found: list[EngineFault] = []
     for number, remedy in enumerate(asked.tried or ()):
@@ -109,7 +112,7 @@ def _to_pointer(fault: EngineFault, part: schemas.Remedies) -> Fault:
 
 
 def _restrung(
-    line: spec.Line, known: KnownLine | None, tension: spec.ChangedTension, chosen: Mapping[str, float]
+    line: spec.Line, known: "KnownLine | None", tension: spec.ChangedTension, chosen: Mapping[str, float]
 ) -> spec.Line:
     from engine.known.resolve import resolve_with_tension, with_tension  # noqa: PLC0415 - checking needs no numerics
 
@@ -117,7 +120,7 @@ def _restrung(
 
 
 def compared(
-    request: schemas.JobRequest, line: spec.Line, analysis: spec.Analysis, known: KnownLine | None
+    request: schemas.JobRequest, line: spec.Line, analysis: spec.Analysis, known: "KnownLine | None"
 ) -> Generator[Progress, None, Result]:
     """Return the comparison of a line with its remedies, not yet started; samples belong to a known line."""
     from app.convert.known.samples import in_document_names  # noqa: PLC0415 - the API needs no numerics to start

@@ -5,7 +5,7 @@ from importlib import resources
 from io import BytesIO
 from typing import Any
 
-from app import plots
+from app import pages, plots
 from app.pages.measures import Units
 from app.pages.reports.document import pictures, report_html
 from app.pages.reports.material import Material
@@ -89,4 +89,4 @@ def _facts(material: Material, picture: str) -> plots.Facts:
 
 
 def _sheet() -> bytes:
-    return (resources.files("app.pages") / "static" / "report.css").read_bytes()
+    return (resources.files(pages) / "static" / "report.css").read_bytes()
