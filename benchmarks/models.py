@@ -22,7 +22,8 @@ def discretized(lines: Sequence[Line]) -> Discretization:
     """Return the discretization from which the reduced models of lines are built."""
     profile = static_profile(lines)
     sections_of_lines = sections(lines, profile)
-    return Discretization(tuple(lines), profile, sections_of_lines, matrices(lines, profile, sections_of_lines))
+    system = matrices(lines, profile, sections_of_lines)
+    return Discretization(tuple(lines), profile, sections_of_lines, system, sections_of_lines)
 
 
 def hybrid_models(

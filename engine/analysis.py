@@ -12,6 +12,7 @@ from engine.cycles.known_cycles import Starts, stacked
 from engine.cycles.search import Cycles
 from engine.cycles.starts import explicit_starts
 from engine.each_wind import analyse_lines
+from engine.mechanics.cross_sections import FEWER_POINTS, PIECE_POINTS
 from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.model_findings import ModelStack, findings_of
@@ -158,7 +159,8 @@ def _with_smallest_range(prepared: _Discretized, parts: list[tuple[_Discretized,
 
 
 def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
-    discretization = discretize(lines, analysis.static_twist)
+    points = FEWER_POINTS if analysis.load_stands else PIECE_POINTS
+    discretization = discretize(lines, analysis.static_twist, points)
     twisted = analysis.static_twist is not StaticTwist.NEGLECTED and any(line.has_table for line in lines)
     if twisted or analysis.follows_twist:
         discretization = with_wind_twist(discretization, _winds(analysis))

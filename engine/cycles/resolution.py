@@ -9,8 +9,7 @@ from engine.cycles.branch_set import BranchSet
 from engine.cycles.floquet import Floquet, floquet
 from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.cycles.refinement import crowded
-from engine.models.aerodynamic_load import force_gradient
-from engine.models.reduced_model import ReducedModel, diagonals, lowest_frequency
+from engine.models.reduced_model import ReducedModel, diagonals, gradient_at_rest, lowest_frequency
 
 LARGEST_TAIL = 1e-4  # share of the last harmonics, or relative error of the multipliers, above which a cycle is refined
 MOST_HARMONICS = 12
@@ -36,8 +35,8 @@ def harmonics_needed(model: ReducedModel, wind_speeds: FloatArray, asked: int) -
     asked : int
         The least number.
     """
-    members, m = model.modal_masses.shape
-    slope = force_gradient(model.load, np.zeros((members, 1, 2 * m)))[:, 0, :, :m]
+    m = model.mass.shape[-1]
+    slope = gradient_at_rest(model)[..., :m]
     by_wind = wind_speeds[-1] ** 2 * diagonals(slope) / model.modal_masses
     square = np.maximum(model.uncoupled_squares, model.uncoupled_squares - by_wind)
     lowest = lowest_frequency(model)[:, None]

@@ -17,6 +17,7 @@ from engine.mechanics.static_profile import StaticProfile, arc_position, horizon
 from engine.spec import Aerodynamics, Line, ice_properties
 
 PIECE_POINTS = 5  # exact to degree 9: cubic loads of quadratic shapes, times a shape
+FEWER_POINTS = 4  # for loads that are no polynomials: five leave 1e-7 of the amplitudes as well
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class Sections:
     twist: FloatArray
 
 
-def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
+def sections(lines: Sequence[Line], profile: StaticProfile, points: int = PIECE_POINTS) -> Sections:
     """Place quadrature points between all boundaries of each line and evaluate the properties there.
 
     Parameters
@@ -49,6 +50,8 @@ def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
         All with the same number of elements.
     profile : StaticProfile
         Of the same lines.
+    points : int
+        Of the piece of an element between two boundaries.
 
     Returns
     -------
@@ -56,7 +59,7 @@ def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
     """
     elements = lines[0].span.elements
     edges = _piece_edges(lines, profile, elements)
-    abscissae, weights = gauss_rule(PIECE_POINTS)
+    abscissae, weights = gauss_rule(points)
     width = np.diff(edges, axis=-1)[..., None]
     local = edges[..., :-1, None] + 0.5 * width * (abscissae + 1.0)
     shape = (len(lines), elements, -1)
@@ -65,7 +68,7 @@ def sections(lines: Sequence[Line], profile: StaticProfile) -> Sections:
     values = [_line_properties(line, x) for line, x in zip(lines, position, strict=True)]
     return Sections(
         local=local,
-        local_weight=np.broadcast_to(0.5 * width * weights, (*width.shape[:-1], PIECE_POINTS)).reshape(shape),
+        local_weight=np.broadcast_to(0.5 * width * weights, (*width.shape[:-1], points)).reshape(shape),
         mass=np.stack([v[0] for v in values]),
         first_moment=np.stack([v[1] for v in values]),
         wind_factor=np.stack([v[2] for v in values]),

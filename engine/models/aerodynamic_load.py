@@ -47,11 +47,11 @@ def polynomial_load(forms: FloatArray, table: FloatArray, angle: FloatArray) -> 
     return PolynomialLoad(forms, table, polynomial.slopes(table), angle)
 
 
-def no_load(shape: tuple[int, ...]) -> PolynomialLoad:
-    """Return the load without any point of models whose matrices have a shape (..., m, m)."""
+def no_load(shape: tuple[int, ...], angle: FloatArray | None = None) -> PolynomialLoad:
+    """Return the load without any point of models whose matrices have a shape (..., m, m), with their angle if any."""
     leading, m = shape[:-2], shape[-1]
-    none = (np.zeros((*leading, 0, *own)) for own in ((0, 2 * m), (m, 0), (m, 0, 0), (2 * m,)))
-    return PolynomialLoad(*none)
+    none = (np.zeros((*leading, 0, *own)) for own in ((0, 2 * m), (m, 0), (m, 0, 0)))
+    return PolynomialLoad(*none, np.zeros((*leading, 0, 2 * m)) if angle is None else angle)
 
 
 def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
@@ -116,7 +116,7 @@ def span_load(
     diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
     factor = sections_of_lines.wind_factor.reshape(len(lines), 1, -1)
     coefficients = sections_of_lines.aerodynamics.reshape(len(lines), -1, 3, 4)
-    angle = angle_forms(points, diameter, factor)
+    angle = span_angles(lines, sections_of_lines, fields)
     if model is AerodynamicModel.PUBLISHED:
         forms, local = angle[..., None, :], coefficients[..., 1:]
     else:
@@ -129,6 +129,12 @@ def span_load(
     arm = np.concatenate([np.ones((len(lines), 1, 1, 2)), diameter[..., None]], axis=-1)
     outputs = np.moveaxis(points, -1, 2) * (strength[..., None] * arm)[..., None, :]
     return polynomial_load(forms, outputs @ local[:, None], angle)
+
+
+def span_angles(lines: Sequence[Line], sections_of_lines: Sections, fields: FloatArray) -> FloatArray:
+    """Return the linear form of alpha at the quadrature points: (lines, groups, points, 2 m); as `span_load`."""
+    diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
+    return angle_forms(merge_axes(fields, -2), diameter, sections_of_lines.wind_factor.reshape(len(lines), 1, -1))
 
 
 def angle_forms(fields: FloatArray, diameter: FloatArray, factor: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy as np
 from engine.arrays import FloatArray, IntArray, merge_axes, take_rows
 from engine.mechanics.along_span import wind_factor
 from engine.mechanics.coefficient_curves import cubics_about, local_curves, reach
-from engine.mechanics.cross_sections import Sections, sections
+from engine.mechanics.cross_sections import PIECE_POINTS, Sections, sections
 from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, matrices
 from engine.mechanics.interpolation import shape_functions
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
@@ -29,14 +29,15 @@ FIT_RANGE = np.radians(20.0)  # of the cubics that stand for curves in starts
 class Discretization:
     """Static profile, sections and matrices of a stack of lines.
 
-    matrices: in the axes of the plane of the sag; twist: in still air, None if it is neglected; wind_twist: in the
-    wind, from the state in still air on, None if it is not followed.
+    matrices: in the axes of the plane of the sag; untwisted: the sections without static twist; twist: in still air,
+    None if it is neglected; wind_twist: in the wind, from the state in still air on, None if it is not followed.
     """
 
     lines: tuple[Line, ...]
     profile: StaticProfile
     sections: Sections
     matrices: Matrices
+    untwisted: Sections
     twist: TwistedState | None = None
     wind_twist: WindTwist | None = None
 
@@ -46,8 +47,12 @@ class Discretization:
         return self.lines, self.profile, self.sections, self.matrices
 
 
-def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NEGLECTED) -> Discretization:
+def discretize(
+    lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NEGLECTED, points: int = PIECE_POINTS
+) -> Discretization:
     """Discretize lines with equal numbers of elements, about the twisted static state if that is to be solved.
+
+    points: as for `sections`.
 
     Raises
     ------
@@ -55,18 +60,19 @@ def discretize(lines: Sequence[Line], static_twist: StaticTwist = StaticTwist.NE
         If a table of coefficients has too few rows around the angle to which its section is twisted.
     """
     profile = static_profile(lines)
-    sections_of_lines = sections(lines, profile)
+    sections_of_lines = sections(lines, profile, points)
     if static_twist is StaticTwist.SOLVED:
         state = twisted_state(lines, profile, sections_of_lines)
     else:
         system = matrices(lines, profile, sections_of_lines)
-        plain = Discretization(tuple(lines), profile, sections_of_lines, _in_plane(profile, system))
+        flat = _in_plane(profile, system)
+        plain = Discretization(tuple(lines), profile, sections_of_lines, flat, sections_of_lines)
         large = None if static_twist is StaticTwist.NEGLECTED else twisted_where_large(*plain.parts)
         if large is None:
             return plain
         state = large
     turned, system = twisted_matrices(lines, profile, sections_of_lines, state)
-    return Discretization(tuple(lines), profile, turned, _in_plane(profile, system), state)
+    return Discretization(tuple(lines), profile, turned, _in_plane(profile, system), sections_of_lines, state)
 
 
 def fields_in_space(profile: StaticProfile, fields: FloatArray) -> FloatArray:
@@ -137,10 +143,10 @@ def states_in_wind(discretization: Discretization, winds: IntArray) -> Discretiz
         displacement += np.nan_to_num(discretization.twist.displacement)[line]
     displacement[:, THETA::FIELDS] += merge_axes(np.nan_to_num(found.angle[:, winds]).swapaxes(0, 1), -3, -2)
     lines, profile = discretization.lines * winds.size, take_rows(discretization.profile, line)
-    untwisted = take_rows(sections(discretization.lines, discretization.profile), line)
+    untwisted = take_rows(discretization.untwisted, line)
     state = TwistedState(displacement, found.outcome[:, winds].T.ravel())
     here, system = twisted_matrices(lines, profile, untwisted, state, fit=False)
-    return Discretization(lines, profile, here, _in_plane(profile, system), state)
+    return Discretization(lines, profile, here, _in_plane(profile, system), untwisted, state)
 
 
 def with_wind_twist(discretization: Discretization, wind_speeds: FloatArray, *, further: bool = True) -> Discretization:

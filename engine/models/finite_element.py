@@ -5,7 +5,7 @@ import numpy as np
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W, device_damping
 from engine.mechanics.modes import DirectionalShapes, FullModes, at_points
-from engine.models.aerodynamic_load import PolynomialLoad, cheapest_load, no_load, span_load, take_load
+from engine.models.aerodynamic_load import PolynomialLoad, cheapest_load, no_load, span_angles, span_load, take_load
 from engine.models.discretization import Discretization, fields_in_space
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices
 from engine.models.relief import DAMPING_RATIO, relief_displacement
@@ -32,7 +32,7 @@ def finite_element_model(
     Damping is that of eq. (11) in the directional modes: C = sum over directions and loops of
     2 zeta omega (M psi)(M psi)^T / (psi^T M psi) with the directional shapes psi, and that of devices. Section 7.4.
 
-    whole: False leaves out stretching and the expanded load of a model whose unexpanded load stands.
+    whole: False leaves out what the linear equations of a model whose load stands do not hold.
     """
     modal = modes.vectors.reshape(modes.vectors.shape[0], -1, modes.vectors.shape[-1])
     values = modes.eigenvalues.reshape(modal.shape[:2])
@@ -63,6 +63,9 @@ def finite_element_model(
 
 
 def _load(discretization: Discretization, at: FloatArray, analysis: Analysis) -> PolynomialLoad:
+    if analysis.load_stands:  # nothing but the angle of attack is read
+        angle = span_angles(discretization.lines, discretization.sections, at[:, None])
+        return no_load((*at.shape[:2], at.shape[1]), angle[:, 0])
     load = span_load(
         discretization.lines,
         discretization.sections,
@@ -70,7 +73,7 @@ def _load(discretization: Discretization, at: FloatArray, analysis: Analysis) ->
         at[:, None],
         analysis.aerodynamic_model,
     )
-    return take_load(load if analysis.load_stands else cheapest_load(load), (slice(None), 0))
+    return take_load(cheapest_load(load), (slice(None), 0))
 
 
 def _unstable(values: FloatArray, shapes: DirectionalShapes) -> BoolArray:

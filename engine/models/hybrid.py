@@ -17,6 +17,7 @@ from engine.models.aerodynamic_load import (
     integrate_each,
     no_load,
     published_load,
+    span_angles,
     span_load,
     take_load,
 )
@@ -62,7 +63,7 @@ def hybrid_model(
     analysis : Analysis
         Its closure, aerodynamic model, longitudinal inertia and stretching are used.
     whole : bool
-        False leaves out stretching and the expanded load of a model whose unexpanded load stands.
+        False leaves out what the linear equations of a model whose load stands do not hold.
 
     Returns
     -------
@@ -240,6 +241,9 @@ def _stretching(discretization: Discretization, moving: FloatArray, analysis: An
 
 def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: Analysis) -> PolynomialLoad:
     values = at_points(discretization.matrices, nodal)
+    if analysis.load_stands:  # nothing but the angle of attack is read
+        shape = (*nodal.shape[:3], nodal.shape[2])
+        return no_load(shape, span_angles(discretization.lines, discretization.sections, values))
     if analysis.closure is Closure.PUBLISHED:
         return published_load(
             discretization.lines,

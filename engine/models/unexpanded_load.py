@@ -122,7 +122,7 @@ def unexpanded_load(discretization: Discretization, shapes: FloatArray) -> Unexp
             curves=local.curves,
         )
     )
-    wind = _relative_wind(load, np.zeros((*groups, 1, 2 * values.shape[-1])))
+    wind = _wind_at_rest(load)
     at_rest, gradient = _generalized(load, wind), _generalized_gradient(load, wind)
     return replace(load, at_rest=at_rest[..., 0, :], at_rest_gradient=gradient[..., 0, :, :])
 
@@ -184,8 +184,8 @@ def _generalized_gradient(load: UnexpandedLoad, wind: "_RelativeWind") -> FloatA
     reader = np.concatenate(
         [np.stack([theta, none, none, none], axis=-2), np.stack([none, v, w, theta], axis=-2)], axis=-1
     )
-    left = load.fields.swapaxes(-1, -2)[..., None, :, :, :]
-    return np.asarray((left @ (matrices @ reader[..., None, :, :, :])).sum(axis=-3))
+    left = merge_axes(load.fields, -3, -2).swapaxes(-1, -2)[..., None, :, :]
+    return np.asarray(left @ merge_axes(matrices @ reader[..., None, :, :, :], -3, -2))
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,6 +219,15 @@ def _relative_wind(load: UnexpandedLoad, state: FloatArray) -> _RelativeWind:
     values, slopes = evaluate(load.curves, which, angle)
     here = load.present[..., None, :, None, None]
     return _RelativeWind(rise, calm, np.hypot(rise, calm), values * here, slopes * here)
+
+
+def _wind_at_rest(load: UnexpandedLoad) -> _RelativeWind:
+    """Return the wind without motion, which is the same for all sub-conductors at a point."""
+    coefficients = evaluate(load.curves, load.which, load.rest_angle)
+    here = load.present[..., None, :, None, None]
+    values, slopes = (part[..., None, None, :] * here for part in coefficients)
+    calm = np.ones(values.shape[:-1])
+    return _RelativeWind(np.zeros(calm.shape), calm, calm, values, slopes)
 
 
 def _forces(load: UnexpandedLoad, wind: _RelativeWind) -> tuple[FloatArray, FloatArray, FloatArray]:
