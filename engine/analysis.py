@@ -17,7 +17,7 @@ from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.model_findings import ModelStack, findings_of
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
-from engine.models.discretization import Discretization, discretize, fields_in_space, in_wind, with_wind_twist
+from engine.models.discretization import Discretization, discretize, fields_in_space, in_wind, shapes_in_wind, with_wind_twist
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_published_load
 from engine.models.reduced_model import ReducedModel, take
@@ -147,7 +147,8 @@ def _in_each_wind(prepared: _Discretized, analysis: Analysis) -> list[tuple[_Dis
     parts = [(prepared, replace(analysis, wind_speeds=()))]
     for i, speed in enumerate(_winds(analysis).tolist()):
         here = in_wind(prepared.discretization, i)
-        parts.append((_with_modes(here, analysis), replace(analysis, wind_speeds=(speed,))))
+        own = _Discretized(here, shapes_in_wind(here, prepared.shapes), _modes(here, analysis))
+        parts.append((own, replace(analysis, wind_speeds=(speed,))))
     return parts
 
 
@@ -164,20 +165,17 @@ def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
     twisted = analysis.static_twist is not StaticTwist.NEGLECTED and any(line.has_table for line in lines)
     if twisted or analysis.follows_twist:
         discretization = with_wind_twist(discretization, _winds(analysis))
-    prepared = _with_modes(discretization, analysis)
-    if not analysis.follows_twist:
-        return prepared
-    return replace(prepared, scan=scan_of(discretization, analysis.critical_wind_limit, prepared.shapes.loops))
-
-
-def _with_modes(discretization: Discretization, analysis: Analysis) -> _Discretized:
-    system, arc_length = discretization.matrices, discretization.profile.arc_length
     finite_element = Model.FINITE_ELEMENT in analysis.models
-    loops = set(analysis.loops) | {1, 2}
     extra = set(analysis.finite_element_loops) if finite_element else set()
-    shapes = directional_shapes(system, arc_length, tuple(sorted(loops | extra)))
-    modes = full_modes(system, _loops_of_modes(analysis)) if finite_element else None
-    return _Discretized(discretization, shapes, modes)
+    loops = tuple(sorted({*analysis.loops, 1, 2} | extra))
+    shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, loops)
+    scan = scan_of(discretization, analysis.critical_wind_limit, shapes) if analysis.follows_twist else None
+    return _Discretized(discretization, shapes, _modes(discretization, analysis), scan)
+
+
+def _modes(discretization: Discretization, analysis: Analysis) -> FullModes | None:
+    asked = Model.FINITE_ELEMENT in analysis.models
+    return full_modes(discretization.matrices, _loops_of_modes(analysis)) if asked else None
 
 
 def _loops_of_modes(analysis: Analysis) -> tuple[int, ...]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.cross_sections import Sections
-from engine.mechanics.free_sections import differences
+from engine.mechanics.free_sections import Differences, differences
 from engine.mechanics.interpolation import StrainPoints, chords, element_nodes, shape_functions, strain_points
 from engine.mechanics.static_profile import StaticProfile, arc_position
 from engine.spec import GRAVITY, Line, PointDevice
@@ -64,22 +64,25 @@ def matrices(lines: Sequence[Line], profile: StaticProfile, section_points: Sect
     for line, here, values, device in mounted(lines, profile):
         stiffness[line, here, here] += np.kron(np.outer(values, values), device.stiffness())
     add_end_springs(lines, profile, stiffness)
-    mass = mass_matrix(lines, profile, section_points)
+    mass = mass_matrix(lines, profile, section_points, apart)
     return Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
 
 
 def mass_matrix(
-    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, twist: FloatArray | None = None
+    lines: Sequence[Line],
+    profile: StaticProfile,
+    section_points: Sections,
+    apart: Differences,
+    twist: FloatArray | None = None,
 ) -> FloatArray:
     """Assemble M: (lines, freedoms, freedoms).
 
     twist: (lines, nodes), static twist of cross-sections and devices [rad], None without. The sections must already be
-    turned by it.
+    turned by it; apart: the differences of sub-conductors at that twist.
     """
     interpolation, weight = mass_points(lines, profile, section_points)
     sums = bundle_sums(lines)[:, :, None, None] if twist is None else turned_sums(lines, section_points.twist)
     mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, section_points, sums)))
-    apart = differences(lines, profile, np.zeros((len(lines), mass.shape[-1] // FIELDS)) if twist is None else twist)
     along = mass[:, U::FIELDS, U::FIELDS] / bundle_sums(lines)[0][:, None, None]
     mass[:, THETA::FIELDS, THETA::FIELDS] += apart.inertia(along)
     for line, here, values, device in mounted(lines, profile):

@@ -3,7 +3,7 @@
 Theory section 4. All problems are symmetric generalized eigenproblems, solved on stacks of lines.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, U, V, W
 
 DIRECTIONS = (V, W, THETA)
+TORSIONAL = 2  # of the three directions
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,17 +56,41 @@ def directional_shapes(system: Matrices, arc_length: FloatArray, loops: tuple[in
     DirectionalShapes
     """
     nodes = system.stiffness.shape[-1] // FIELDS
-    nodal = np.zeros((system.stiffness.shape[0], len(loops), FIELDS, nodes))
-    frequency = np.empty((nodal.shape[0], len(loops), 3))
-    for i, fields in enumerate(((U, V), (W,), (THETA,))):
-        freedoms = _freedoms(fields, nodes)
-        vectors, values = _labelled(system, freedoms, (fields[-1],), loops)
-        whole = np.zeros((*vectors.shape[:2], FIELDS * nodes))
-        whole[..., freedoms] = vectors
-        shape = whole.reshape(*vectors.shape[:2], nodes, FIELDS).swapaxes(-1, -2)[:, :, list(fields)]
-        nodal[:, :, list(fields)] = _normalized(shape, system, arc_length)
-        frequency[:, :, i] = np.sqrt(np.where(values > 0.0, values, np.nan))
-    return DirectionalShapes(loops, nodal, frequency)
+    shapes = DirectionalShapes(
+        loops,
+        nodal=np.zeros((system.stiffness.shape[0], len(loops), FIELDS, nodes)),
+        angular_frequency=np.empty((system.stiffness.shape[0], len(loops), 3)),
+    )
+    for direction in range(3):
+        _solve_direction(shapes, direction, system, arc_length)
+    return shapes
+
+
+def turned_shapes(still: DirectionalShapes, system: Matrices, arc_length: FloatArray) -> DirectionalShapes:
+    """Return the shapes about a state of another static twist, which changes stiffness and mass of Theta alone.
+
+    Parameters
+    ----------
+    still : DirectionalShapes
+        Of the same lines at any twist.
+    system, arc_length : Matrices, (lines,)
+        As for `directional_shapes`, at the new twist.
+    """
+    shapes = replace(still, nodal=still.nodal.copy(), angular_frequency=still.angular_frequency.copy())
+    _solve_direction(shapes, TORSIONAL, system, arc_length)
+    return shapes
+
+
+def _solve_direction(shapes: DirectionalShapes, direction: int, system: Matrices, arc_length: FloatArray) -> None:
+    """Solve the eigenproblem of a direction, in place."""
+    fields, nodes = ((U, V), (W,), (THETA,))[direction], shapes.nodal.shape[-1]
+    freedoms = _freedoms(fields, nodes)
+    vectors, values = _labelled(system, freedoms, (fields[-1],), shapes.loops)
+    whole = np.zeros((*vectors.shape[:2], FIELDS * nodes))
+    whole[..., freedoms] = vectors
+    shape = whole.reshape(*vectors.shape[:2], nodes, FIELDS).swapaxes(-1, -2)[:, :, list(fields)]
+    shapes.nodal[:, :, list(fields)] = _normalized(shape, system, arc_length)
+    shapes.angular_frequency[:, :, direction] = np.sqrt(np.where(values > 0.0, values, np.nan))
 
 
 def longitudinal_share(system: Matrices, shapes: DirectionalShapes) -> FloatArray:

@@ -32,7 +32,7 @@ from engine.mechanics.finite_elements import (
     mounted,
     turned_sums,
 )
-from engine.mechanics.free_sections import differences
+from engine.mechanics.free_sections import Differences, differences
 from engine.mechanics.interpolation import strain_points
 from engine.mechanics.static_profile import StaticProfile
 from engine.numerics.newton import NewtonOptions, newton, solve_systems
@@ -119,8 +119,9 @@ def twisted_matrices(
     interpolation, weight = mass_points(lines, profile, section_points)
     twist = at_mass_points(interpolation, angle)
     here = turned(lines, profile, section_points, twist) if fit else turned_moments(section_points, twist)
-    _, stiffness = energy_derivatives(lines, profile, section_points, displacement)
-    mass = mass_matrix(lines, profile, here, angle)
+    apart = differences(lines, profile, angle)
+    _, stiffness = energy_derivatives(lines, profile, section_points, displacement, apart)
+    mass = mass_matrix(lines, profile, here, apart, angle)
     return here, Matrices(stiffness, mass, held_freedoms(profile, mass.shape[-1]), interpolation, weight)
 
 
@@ -164,7 +165,11 @@ def twisted_where_large(
 
 
 def energy_derivatives(
-    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, displacement: FloatArray
+    lines: Sequence[Line],
+    profile: StaticProfile,
+    section_points: Sections,
+    displacement: FloatArray,
+    apart: Differences | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the first and second derivatives of the energy Pi by the displacements.
 
@@ -177,6 +182,8 @@ def energy_derivatives(
         Without twist.
     displacement : (lines, freedoms)
         U, V, W [m] and Theta [rad] of each node.
+    apart : Differences, optional
+        Of the sub-conductors at this twist, where they are known.
 
     Returns
     -------
@@ -191,7 +198,8 @@ def energy_derivatives(
     moment, gravity = _ice_energy(lines, profile, section_points, displacement[:, THETA::FIELDS])
     gradient = (springs @ displacement[..., None])[..., 0] + force + moment
     tangent = springs + stiffness + gravity
-    apart = differences(lines, profile, displacement[:, THETA::FIELDS])
+    if apart is None:
+        apart = differences(lines, profile, displacement[:, THETA::FIELDS])
     gradient[:, THETA::FIELDS] += apart.gradient
     tangent[:, THETA::FIELDS, THETA::FIELDS] += apart.tangent
     for line, here, values, device in mounted(lines, profile):
@@ -280,6 +288,8 @@ def _held(tangent: FloatArray, held: BoolArray) -> FloatArray:
 
 def downhill(tangent: FloatArray) -> FloatArray:
     """Replace negative eigenvalues by their absolute values: (lines, freedoms, freedoms)."""
-    values, vectors = np.linalg.eigh(tangent)
-    absolute = (vectors * np.abs(values)[:, None, :]) @ vectors.swapaxes(-1, -2)
-    return np.where(values[:, :1, None] > 0.0, tangent, absolute)
+    upward = np.flatnonzero(~(np.linalg.eigvalsh(tangent)[:, 0] > 0.0))
+    values, vectors = np.linalg.eigh(tangent[upward])
+    result = tangent.copy()
+    result[upward] = (vectors * np.abs(values)[:, None, :]) @ vectors.swapaxes(-1, -2)
+    return result

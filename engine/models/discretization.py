@@ -15,6 +15,7 @@ from engine.mechanics.coefficient_curves import cubics_about, local_curves, reac
 from engine.mechanics.cross_sections import PIECE_POINTS, Sections, sections
 from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, matrices
 from engine.mechanics.interpolation import shape_functions
+from engine.mechanics.modes import DirectionalShapes, turned_shapes
 from engine.mechanics.static_profile import StaticProfile, horizontal_position, static_profile
 from engine.mechanics.static_twist import TwistedState, twisted_matrices, twisted_state, twisted_where_large
 from engine.mechanics.torsional_elements import torsional_elements
@@ -147,6 +148,13 @@ def states_in_wind(discretization: Discretization, winds: IntArray) -> Discretiz
     state = TwistedState(displacement, found.outcome[:, winds].T.ravel())
     here, system = twisted_matrices(lines, profile, untwisted, state, fit=False)
     return Discretization(lines, profile, here, _in_plane(profile, system), untwisted, state)
+
+
+def shapes_in_wind(states: Discretization, still: DirectionalShapes) -> DirectionalShapes:
+    """Return the shapes about the states of `states_in_wind`, given those of the same lines in still air."""
+    line = np.resize(np.arange(still.nodal.shape[0]), len(states.lines))
+    repeated = DirectionalShapes(still.loops, still.nodal[line], still.angular_frequency[line])
+    return turned_shapes(repeated, states.matrices, states.profile.arc_length)
 
 
 def with_wind_twist(discretization: Discretization, wind_speeds: FloatArray, *, further: bool = True) -> Discretization:

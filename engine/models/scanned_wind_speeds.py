@@ -10,15 +10,14 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
-from engine.mechanics.modes import DirectionalShapes, directional_shapes
+from engine.mechanics.modes import TORSIONAL, DirectionalShapes
 from engine.mechanics.wind_twist import WindTwist
 from engine.models.critical_wind_speeds import Crossings, StateMatrices, at_wind, state_matrices, unstable_pairs
-from engine.models.discretization import Discretization, states_in_wind, with_wind_twist
+from engine.models.discretization import Discretization, shapes_in_wind, states_in_wind, with_wind_twist
 from engine.models.reduced_model import ReducedModel
 
 STEPS = 30  # of the grid up to the limit
 BLOCK_LINES = 256  # largest number of lines and wind speeds whose matrices stand side by side
-TORSIONAL = 2
 CELLS = 8  # parts of a step of the grid that are searched for changes of stability
 HALVINGS = 40
 STATIC = 1e-9  # imaginary part over the largest eigenvalue, below which a growing motion does not oscillate
@@ -41,17 +40,17 @@ ModelOf = Callable[[Discretization, DirectionalShapes, IntArray], ReducedModel]
 """Makes the models about static states; lines (members,) are the indices of the lines of its members there."""
 
 
-def scan_of(discretization: Discretization, limit: float, loops: tuple[int, ...]) -> Scan:
+def scan_of(discretization: Discretization, limit: float, still: DirectionalShapes) -> Scan:
     """Follow the static state from still air to a wind speed [m/s], in steps of a thirtieth of it.
 
-    loops: numbers of loops whose shapes the models need.
+    still: the shapes in still air, of all numbers of loops that the models need.
     """
     winds = np.linspace(0.0, limit, STEPS + 1)[1:]
     followed = with_wind_twist(discretization, winds, further=False)
     assert followed.wind_twist is not None, "it was followed above"
     size = max(1, BLOCK_LINES // len(discretization.lines))
     blocks = (states_in_wind(followed, np.arange(i, min(i + size, winds.size))) for i in range(0, winds.size, size))
-    states = tuple((block, directional_shapes(block.matrices, block.profile.arc_length, loops)) for block in blocks)
+    states = tuple((block, shapes_in_wind(block, still)) for block in blocks)
     return Scan(winds, states, followed.wind_twist)
 
 

@@ -5,11 +5,19 @@ import pytest
 
 from engine.mechanics.finite_elements import matrices
 from engine.mechanics.modes import directional_shapes
-from engine.models.discretization import fields_in_space, observation
+from engine.models.discretization import (
+    discretize,
+    fields_in_space,
+    observation,
+    shapes_in_wind,
+    states_in_wind,
+    with_wind_twist,
+)
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import take
-from engine.spec import Analysis, BlowOut, DetuningPendulum, Span, Wind
+from engine.spec import Analysis, BlowOut, CrossSection, DetuningPendulum, Span, StaticTwist, Wind
 from tests.builders import discretized, source_line
+from tests.engine.synthetic_table import with_table
 
 STORM = Wind(1.2929, blow_out=BlowOut(25.0, 1.2))
 
@@ -65,3 +73,21 @@ def test_blow_out_does_not_turn_the_weight_of_ice() -> None:
     assert blown == pytest.approx(still, abs=3e-4 * size)
     upright = discretized(replace(line, ice=replace(line.ice, eccentricity_y=0.0))).matrices.stiffness[0, 3::4, 3::4]
     assert np.abs(upright - still).max() > 5e-3 * size
+
+
+def test_shapes_in_the_wind_are_those_of_the_eigenproblems_there() -> None:
+    span = Span(200.0, horizontal_tension=30_000.0, level_difference=20.0)
+    free = replace(source_line(3).bundle, section=CrossSection.FREE)
+    devices = (DetuningPendulum(40.0, 9.0, 0.4, 0.3),)
+    hung = replace(source_line(3), span=span, bundle=free, devices=devices, wind=STORM)
+    lines = [with_table(line, angle) for line, angle in ((source_line(1), -40.0), (hung, 20.0))]
+    still = discretize(lines, StaticTwist.SOLVED)
+    states = states_in_wind(with_wind_twist(still, np.array([8.0, 20.0])), np.arange(2))
+    assert np.abs(states.sections.twist).max() > 0.3
+    shapes = directional_shapes(still.matrices, still.profile.arc_length, (1, 2))
+    found = shapes_in_wind(states, shapes)
+    expected = directional_shapes(states.matrices, states.profile.arc_length, (1, 2))
+    assert found.angular_frequency == pytest.approx(expected.angular_frequency, rel=1e-10)
+    assert found.nodal == pytest.approx(expected.nodal, abs=1e-9)
+    turned = found.angular_frequency[..., 2].reshape(2, 2, 2)
+    assert (np.abs(turned[0] / turned[1] - 1.0) > 1e-3).any()

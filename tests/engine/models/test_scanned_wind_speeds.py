@@ -24,10 +24,12 @@ def one_loop(discretization: Discretization) -> ReducedModel:
 
 
 def scanned(*lines: Line) -> Crossings:
-    def model_of(states: Discretization, shapes: DirectionalShapes, lines: IntArray) -> ReducedModel:
-        return take(hybrid_model(states, shapes, (1,), TABLE, whole=False), (lines, 0))
+    def model_of(states: Discretization, own: DirectionalShapes, lines: IntArray) -> ReducedModel:
+        return take(hybrid_model(states, own, (1,), TABLE, whole=False), (lines, 0))
 
-    return crossings_in_wind(scan_of(discretize(lines), LIMIT, (1,)), np.arange(len(lines)), model_of)
+    still = discretize(lines)
+    shapes = directional_shapes(still.matrices, still.profile.arc_length, (1,))
+    return crossings_in_wind(scan_of(still, LIMIT, shapes), np.arange(len(lines)), model_of)
 
 
 @pytest.mark.parametrize("subconductors", [1, 2, 3])
