@@ -17,7 +17,14 @@ from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.model_findings import ModelStack, findings_of
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
-from engine.models.discretization import Discretization, discretize, fields_in_space, in_wind, shapes_in_wind, with_wind_twist
+from engine.models.discretization import (
+    Discretization,
+    discretize,
+    fields_in_space,
+    in_wind,
+    shapes_in_wind,
+    with_wind_twist,
+)
 from engine.models.finite_element import finite_element_model
 from engine.models.hybrid import hybrid_model, joint_model, loop_groups, with_published_load
 from engine.models.reduced_model import ReducedModel, take
