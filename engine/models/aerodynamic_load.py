@@ -6,7 +6,7 @@ computed once per line.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -50,8 +50,9 @@ def polynomial_load(forms: FloatArray, table: FloatArray, angle: FloatArray) -> 
 def no_load(shape: tuple[int, ...], angle: FloatArray | None = None) -> PolynomialLoad:
     """Return the load without any point of models whose matrices have a shape (..., m, m), with their angle if any."""
     leading, m = shape[:-2], shape[-1]
-    none = [np.zeros((*leading, 0, *own)) for own in ((0, 2 * m), (m, 0), (m, 0, 0), (2 * m,))]
-    return PolynomialLoad(*none[:3], none[3] if angle is None else angle)
+    none = (np.zeros((*leading, 0, *own)) for own in ((0, 2 * m), (m, 0), (m, 0, 0), (2 * m,)))
+    load = PolynomialLoad(*none)
+    return load if angle is None else replace(load, angle=angle)
 
 
 def force(load: PolynomialLoad, state: FloatArray) -> FloatArray:
