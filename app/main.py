@@ -12,6 +12,7 @@ from starlette.types import ASGIApp
 from app.coalescing.grouped_calls import GroupedCalls, committed_together
 from app.coalescing.shared_watch import SharedWatch
 from app.http import problems
+from app.http.compression import Compression
 from app.http.head_as_get import HeadAsGet
 from app.http.request_log import RequestLog
 from app.http.security_headers import SecurityHeaders
@@ -111,6 +112,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
     limits = {"": settings.max_body_bytes, **dict.fromkeys(batch_intake.ADDRESSES, settings.max_batch_bytes)}
     problems.install(app, limits, frame.shown_problem)
+    app.add_middleware(Compression)
     app.add_middleware(HeadAsGet)
     _add_addresses(app)
     return app

@@ -117,6 +117,7 @@ OF_NO_SINGLE_MODULE = {
     "tests/engine/test_costs.py": "Systems solved a line are counted over the whole analysis.",
     "tests/engine/test_imports.py": "Every module of the engine may import a few others only.",
     "tests/engine/test_quasi_periodic_lines.py": "Three lines whose motion stays quasi-periodic pass search and tori.",
+    "tests/clients": "Generators make clients of the whole API.",
     "tests/faults": "Processes, disks and networks fail under the whole service.",
     "tests/migrations": "Each revision is a step of one way up and down, which is tested as a whole.",
     "tests/test_documents.py": "It is about the documents of docs/.",

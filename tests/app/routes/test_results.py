@@ -101,7 +101,7 @@ def test_the_format_parameter_wins_over_the_header(shared_client: httpx.Client, 
     assert len(table(shared_client.get(f"{url}?format=csv", headers={"Accept": "application/json"}))) == 1
     answer = shared_client.get(f"{url}?format=json", headers={"Accept": "text/csv"})
     assert answer.headers["content-type"] == "application/json"
-    assert answer.headers["vary"] == "Accept, Authorization"
+    assert answer.headers["vary"] == "Accept, Authorization, Accept-Encoding"
 
 
 @pytest.mark.parametrize(
