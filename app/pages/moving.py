@@ -9,7 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from app import convert
-from app.pages.curves import label
+from app.pages.charts.curves import label
 from app.pages.drawings.bundles import positions
 from app.pages.drawings.orbits import Surroundings, orbit_picture, orbit_scale
 from app.pages.drawings.spans import positions_along, span_drawing

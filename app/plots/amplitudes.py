@@ -59,7 +59,9 @@ def picture(found: Found, facts: Facts, options: Options) -> Sheet:
     handles = list(_legend(found, models, lines, points, options))
     height = _PANEL_PX * rows + 20.0 + legend_height(handles, options)
     sheet = new_sheet(
-        Heading(facts.title, _subtitle(found), (_beyond(found, facts.of_section), *facts.footer)), options, height
+        Heading(facts.title, _subtitle(found), (_short(found), _beyond(found, facts.of_section), *facts.footer)),
+        options,
+        height,
     )
     panels = sheet.figure.subplots(rows, beside, squeeze=False, sharex=True)
     places = [(count, quantity) for count in loops for quantity in QUANTITIES]
@@ -85,6 +87,12 @@ def _subtitle(found: Found) -> str:
     if found.get("amplitude_curves"):
         return f"Amplitudes over wind speed: whole branches, symbols at the wind speeds asked for. {HALF}"
     return f"Amplitudes over wind speed, joined between the wind speeds asked for. {HALF}"
+
+
+def _short(found: Found) -> str:
+    """Say how to get what the picture lacks where the analysis asked for no branches."""
+    lacks = found.get("critical_wind_speeds") and not found.get("amplitude_curves")
+    return 'Whole branches from the onset on: "amplitude_curves": "reported" in the analysis.' if lacks else ""
 
 
 def reach(found: Found) -> float:

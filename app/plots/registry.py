@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 Maker = Callable[[Found, Facts, Options], "Sheet"]
 
-EDITION = 2
+EDITION = 3
 """Raised when equal rows make another picture than before, so that clients do not keep the old one."""
 
 

@@ -30,6 +30,7 @@
       this.reading = place.querySelector(".reading");
       this.families = this.familyNames();
       this.controls();
+      this.say(data.note);
       this.draw();
       new ResizeObserver(() => this.resize()).observe(this.canvas);
       window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
@@ -50,6 +51,14 @@
       const loops = [...new Set(this.families.map((name) => name.split(" ")[1]))];
       const hue = COLOURS[loops.indexOf(String(piece.loops)) % COLOURS.length];
       return { stroke: resolved(hue), width: (piece.model === "hybrid" ? 1.5 : 3) * (this.letter() / 16) };
+    }
+    // What the curves lack, where they lack something.
+    say(note) {
+      if (!note) return;
+      const said = document.createElement("p");
+      said.className = "note";
+      said.textContent = note;
+      this.reading.after(said);
     }
     button(text, action) {
       const made = document.createElement("button");

@@ -3,6 +3,7 @@
 from typing import Annotated, Any
 from uuid import UUID
 
+from anyio import to_thread
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
@@ -10,7 +11,8 @@ from sqlalchemy.orm import Session
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import job_records
 from app.jobs.job_records import CancelOutcome
-from app.pages.curves import curves
+from app.pages.charts.curves import curves
+from app.pages.charts.whole_curves import with_whole_curves
 from app.pages.findings import Findings, findings
 from app.pages.forms import Fields
 from app.pages.frame import moved, page, units_of
@@ -73,11 +75,19 @@ def motion_of_job(
 
 
 @router.get("/curves")
-def curves_of_job(request: Request, finished: FinishedJob, readers: Readers, point: Point = 0) -> Response:
-    """Return the curves that the page draws."""
-    with readers() as session:
-        found = _found(session, finished.job, point)
-    return JSONResponse(curves(found, units_of(request)))
+async def curves_of_job(
+    request: Request, finished: FinishedJob, caller: CallerOf, readers: Readers, point: Point = 0
+) -> Response:
+    """Return the curves that the page draws, from the onset on."""
+
+    def read() -> Findings:
+        with readers() as session:
+            return _found(session, finished.job, point)
+
+    stored, previews = await to_thread.run_sync(read), request.app.state.previews
+    found, note = await with_whole_curves(previews, caller.owner, finished.job.document, stored)
+    drawn = await to_thread.run_sync(curves, found, units_of(request))
+    return JSONResponse({**drawn, "note": note})
 
 
 @router.post("/cancel")

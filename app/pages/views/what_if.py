@@ -12,7 +12,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.http.problems import ProblemError, ProblemKind, invalid_document
-from app.pages.curves import curves
+from app.pages.charts.curves import curves
 from app.pages.findings import Findings, with_axes
 from app.pages.forms import Fields
 from app.pages.frame import moved, page, units_of

@@ -106,3 +106,11 @@ def test_narrow_pictures_stack_their_panels() -> None:
         axes.get_subplotspec() for axes in figure_of(picture(motions(loops=(1,)), FACTS, Options(width=400.0))).axes
     ]
     assert [spec.get_geometry()[:2] for spec in places if spec is not None] == [(3, 1)] * 3
+
+
+def test_the_footer_says_how_to_get_branches_that_were_not_asked_for() -> None:
+    def said(found: Tables) -> bool:
+        return any("Whole branches" in text.get_text() for text in figure_of(picture(found, FACTS, Options())).texts)
+
+    assert said({**motions(), "amplitude_curves": []})
+    assert not said({**motions(), "amplitude_curves": FOLDED})

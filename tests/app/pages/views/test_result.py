@@ -34,7 +34,17 @@ def test_every_download_of_the_page_is_there(shared_client: httpx.Client, known_
 def test_curves_are_those_of_the_job(shared_client: httpx.Client, known_job: str) -> None:
     drawn = shared_client.get(f"/pages/jobs/{known_job}/curves").json()
     assert drawn["pieces"]
+    assert drawn["note"] is None
     assert shared_client.get(f"/pages/jobs/{known_job}/curves?point=9").status_code == 404
+
+
+def test_curves_of_a_job_that_asked_for_none_begin_at_the_onset(
+    shared_client: httpx.Client, shared_settings: Settings
+) -> None:
+    address = service.finished(shared_client, shared_settings, short_request())
+    drawn = shared_client.get(f"{address.replace('/v1/', '/pages/')}/curves").json()
+    assert shared_client.get(f"{address}/results/amplitude-curves").json()["amplitude_curves"] == []
+    assert min(min(piece["wind"]) for piece in drawn["pieces"]) == pytest.approx(drawn["onset"])
 
 
 def test_a_waiting_job_shows_its_progress_and_can_be_cancelled(shared_client: httpx.Client) -> None:

@@ -3,7 +3,7 @@ from typing import Any
 
 import pytest
 
-from app.pages.curves import curves, pieces
+from app.pages.charts.curves import curves, pieces
 from app.pages.findings import Findings
 from app.pages.measures import FEET, SI
 
