@@ -9,7 +9,7 @@ from app.http.problems import ProblemError, ProblemKind
 from app.pages.frame import check_form
 
 _MEDIA_TYPE = "application/x-www-form-urlencoded"
-_MOST_FIELDS = 1000
+_MOST_FIELDS = 10_000  # the form of a line has as many rows as a line may have devices, and each some fields
 
 
 async def _fields(request: Request) -> dict[str, str]:

@@ -55,7 +55,11 @@ class Units:
         return plain(self.value(number, si), digits)
 
 
-_SPELLED = {"1": "", "degC": "°C", "deg": "°", "N m2": "N·m²", "N m": "N·m", "kg/m3": "kg/m³", "m2": "m²"}
+_SPELLED = {"1": "", "degC": "°C", "deg": "°", "N m2": "N·m²", "N m": "N·m", "kg/m3": "kg/m³", "m2": "m²"} | {
+    "kg m": "kg·m",
+    "kg m2": "kg·m²",
+    "N m s": "N·m·s",
+}
 SI = Units("si")
 FEET = Units(
     "feet",
@@ -67,6 +71,10 @@ FEET = Units(
         "kg": Unit("lb", 1 / 0.45359237),
         "kg/m": Unit("lb/ft", 0.3048 / 0.45359237),
         "kg/m3": Unit("lb/ft³", 0.3048**3 / 0.45359237, 0.0, "lb/ft3"),
+        "kg m": Unit("lb·ft", 1 / (0.45359237 * 0.3048), 0.0, "lb*ft"),
+        "kg m2": Unit("lb·ft²", 1 / (0.45359237 * 0.3048**2), 0.0, "lb*ft2"),
+        "N m2": Unit("lbf·ft²", 1 / (4.4482216152605 * 0.3048**2), 0.0, "lbf*ft2"),
+        "N m s": Unit("lbf·ft·s", 1 / (4.4482216152605 * 0.3048), 0.0, "lbf*ft*s"),
         "m/s": Unit("mph", 1 / 0.44704),
         "Pa": Unit("psi", 0.0254**2 / 4.4482216152605),
         "degC": Unit("°F", 1.8, 32.0, "degF"),

@@ -22,10 +22,13 @@ def input_fields() -> tuple[dict[str, Any], ...]:
 
 
 @cache
-def fields_of(model: type[BaseModel]) -> tuple[dict[str, Any], ...]:
-    """Return a row for every field of a document, as `input_fields` does for a request."""
+def fields_of(model: type[BaseModel], *, first_form: bool = False) -> tuple[dict[str, Any], ...]:
+    """Return a row for every field of a document, as `input_fields` does for a request.
+
+    With `first_form`, of a field that has several forms only the first one counts, so that its rows fit together.
+    """
     document = model.model_json_schema(by_alias=True)
-    return tuple(_fields("", _inlined(document, document["$defs"])))
+    return tuple(_fields("", _inlined(document, document["$defs"]), 1 if first_form else None))
 
 
 def field_names(model: type[BaseModel]) -> list[str]:
@@ -45,17 +48,17 @@ def _inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:
     return {**_inlined(definitions[node["$ref"].rpartition("/")[2]], definitions), **own}
 
 
-def _fields(prefix: str, schema: _Schema) -> Iterator[dict[str, Any]]:
-    """Yield the rows of an object's fields, each followed by the rows of its inner fields."""
+def _fields(prefix: str, schema: _Schema, forms: int | None = None) -> Iterator[dict[str, Any]]:
+    """Yield the rows of an object's fields, each followed by the rows of the inner fields of so many of its forms."""
     for name, field in schema.get("properties", {}).items():
         path = prefix + name
         yield _row(path, field, required=name in schema.get("required", ()))
-        for form in _forms(field):
+        for form in _forms(field)[:forms]:
             if form.get("type") == "array":
                 for item in _forms(form["items"]):
-                    yield from _fields(f"{path}[{_kind(item)}].", item)
+                    yield from _fields(f"{path}[{_kind(item)}].", item, forms)
             else:
-                yield from _fields(f"{path}[{_kind(form)}]." if _kind(form) else f"{path}.", form)
+                yield from _fields(f"{path}[{_kind(form)}]." if _kind(form) else f"{path}.", form, forms)
 
 
 def _kind(form: _Schema) -> str:

@@ -56,9 +56,10 @@ def open_page(browser: Browser, service: str) -> Iterator[Callable[..., Page]]:
         if message.type in {"error", "warning"}:
             complaints.append(f"{message.type}: {message.text}")
 
-    def opened(path: str, width: int = 1280, scheme: str = "light") -> Page:
+    def opened(path: str, width: int = 1280, scheme: str = "light", *, scripts: bool = True) -> Page:
         context = browser.new_context(
             base_url=service,
+            java_script_enabled=scripts,
             viewport={"width": width, "height": 900},
             color_scheme="dark" if scheme == "dark" else "light",
         )

@@ -7,7 +7,7 @@ from typing import Any
 from markupsafe import Markup
 
 from app.pages.drawings.bundles import positions
-from app.pages.drawings.scales import Scale, fitting, ticks
+from app.pages.drawings.scales import Scale, fitting, scale_bar
 from app.pages.drawings.svg import Point, element, path, picture
 from app.pages.measures import Units
 from app.pages.wording import words
@@ -54,7 +54,8 @@ def iced_bundle(
     reach = radius + thickness
     corners = [(x + dx, y + dy) for x, y in places for dx in (-reach, reach) for dy in (-reach, reach)]
     scale = fitting(corners, SIZE, _MARGIN, least=6.0 * radius)
-    parts = [*_grid(scale, units)]
+    unit = units.unit("mm")
+    parts = [*scale_bar(scale, unit.name, 1e3 * unit.factor)]
     for x, y in places:
         if outline:
             parts.append(
@@ -77,18 +78,6 @@ def _mass_centres(explicit: Mapping[str, Any], places: list[Point], scale: Scale
         for x, y in places:
             left, top = scale.place((x + downwind, y + up))
             yield element("circle", name, cx=left, cy=top, r=2.0, class_="mass")
-
-
-def _grid(scale: Scale, units: Units) -> Iterator[Markup]:
-    """Yield a bar of a round length with its figure."""
-    unit = units.unit("mm")
-    whole = SIZE[0] / scale.per_metre * 1e3 * unit.factor
-    length = ticks(0.0, 0.3 * whole, 3)[-1]
-    across = length / (1e3 * unit.factor) * scale.per_metre
-    bottom = SIZE[1] - 12.0
-    yield element("path", d=f"M{SIZE[0] - 12.0 - across:.2f} {bottom}h{across:.2f}", class_="bar")
-    text = f"{length:.4g} {unit.name}"
-    yield element("text", text, x=SIZE[0] - 12.0, y=bottom - 6.0, class_="note")
 
 
 def _at(distance: float, angle: float) -> Point:

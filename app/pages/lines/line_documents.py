@@ -1,28 +1,30 @@
 """From the document of a request to the texts of the form, and back; what the form lacks is kept beside it as JSON."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from app.pages.lines.line_fields import FormField, form_fields
+from app.pages.lines.numbers import as_number
+from app.pages.lines.row_lists import KIND, REST, RowList, row_lists
+from app.pages.lines.rows import Row, kind_of, rows_in
 from app.pages.measures import Units
+from app.pages.wording import words
 from app.schemas.faults import BadInput, Fault, parse_json
-
-REST = "rest"
-"""The field of the form that holds, as JSON, what has no field of its own."""
+from app.schemas.units import in_unit
 
 
 def to_texts(document: Mapping[str, Any], units: Units) -> dict[str, str]:
     """Return the texts of the form for a request, in the units of the reader."""
     rest = json.loads(json.dumps(document))
-    texts = {}
+    texts: dict[str, str] = {}
+    for row_list in row_lists().values():
+        texts |= _row_texts(rest, row_list, units)
     for name, field in form_fields().items():
-        value = _take(rest, name.split("."), field)
-        if value is not None:
-            number = isinstance(value, int | float) and not isinstance(value, bool)
-            texts[name] = field.entered(value, units) if number else str(value)
-    kept = _pruned(rest)
-    return {**texts, REST: json.dumps(kept, indent=1, ensure_ascii=False) if kept else ""}
+        text = _taken(rest, name.split("."), field, units)
+        if text is not None:
+            texts[name] = text
+    return {**texts, REST: _json(_pruned(rest))}
 
 
 def to_document(texts: Mapping[str, str], units: Units) -> dict[str, Any]:
@@ -31,60 +33,135 @@ def to_document(texts: Mapping[str, str], units: Units) -> dict[str, Any]:
     Raises
     ------
     BadInput
-        If what the form keeps as JSON is no object of JSON.
+        If what the form or a row keeps as JSON is no object of JSON, or says again what has rows.
     """
-    document = _rest(texts.get(REST, ""))
+    document = _object(texts.get(REST, ""), REST)
+    for name, rows in rows_in(texts).items():
+        if rows:
+            row_list = row_lists()[name]
+            items = [_item(row_list, number, row, units) for number, row in enumerate(rows)]
+            _put(document, name.split("."), items, f"/{REST}")
     for name, field in form_fields().items():
         text = texts.get(name, "").strip()
         if text:
-            _put(document, name.split("."), _value(text, field, units))
+            _put(document, name.split("."), _value(text, field, units), field.pointer)
     document.setdefault("line", {})
     return document
 
 
-def _rest(text: str) -> dict[str, Any]:
-    if not text.strip():
+def _row_texts(rest: dict[str, Any], row_list: RowList, units: Units) -> dict[str, str]:
+    """Remove a list from a document and return the texts of its rows; none, if it is no list that rows can show."""
+    *path, last = row_list.name.split(".")
+    part = _part(rest, path)
+    items = part.get(last) if isinstance(part, dict) else None
+    if not isinstance(items, list) or not 0 < len(items) <= row_list.most or not _are_rows(items, row_list):
         return {}
-    try:
-        found = parse_json(text.encode())
-    except BadInput as error:
-        raise BadInput([Fault(f"/{REST}", fault.code, fault.detail) for fault in error.faults]) from error
-    if not isinstance(found, dict):
-        raise BadInput([Fault(f"/{REST}", "json_type", "must be an object, such as {}")])
-    return found
+    texts: dict[str, str] = {}
+    for number, item in enumerate(items):
+        texts |= _item_texts(item, row_list, number, units)
+    del part[last]
+    return texts
 
 
-def _take(document: Any, path: list[str], field: FormField) -> Any:
-    """Remove a value from a document and return it, None where it is absent or does not fit a field of the form."""
-    part = document
-    for name in path[:-1]:
-        part = part.get(name) if isinstance(part, dict) else None
-    value = part.get(path[-1]) if isinstance(part, dict) else None
-    if isinstance(value, dict | list) or value is None or (isinstance(value, str) and field.is_number):
+def _are_rows(items: Sequence[Any], row_list: RowList) -> bool:
+    if row_list.is_plain:
+        return all(_is_value(_in_own_unit(item, row_list.kinds[""].fields[0]), number=True) for item in items)
+    kinds = [item.get(KIND, "") if isinstance(item, dict) else None for item in items]
+    return all(isinstance(kind, str) and kind in row_list.kinds for kind in kinds)
+
+
+def _item_texts(item: Any, row_list: RowList, number: int, units: Units) -> dict[str, str]:
+    kind = item.pop(KIND) if row_list.has_kinds else ""
+    texts = {row_list.field_name(number, KIND): kind} if row_list.has_kinds else {}
+    holder = {"": item} if row_list.is_plain else item
+    for field in row_list.kinds[kind].fields:
+        text = _taken(holder, field.name.split("."), field, units)
+        if text is not None:
+            texts[row_list.field_name(number, field.name)] = text
+    kept = "" if row_list.is_plain else _json(_pruned(_without_taken(item)))
+    return texts | ({row_list.field_name(number, REST): kept} if kept or not texts else {})
+
+
+def _taken(document: Any, path: Sequence[str], field: FormField, units: Units) -> str | None:
+    """Take a value out of a document and return its text, None where it is absent or does not fit a field."""
+    *before, last = path
+    part = _part(document, before)
+    if isinstance(part, list):
+        inside = last.isdecimal() and int(last) < len(part) == field.row["most_items"]
+        value = part[int(last)] if inside else None
+    else:
+        value = part.get(last) if isinstance(part, dict) else None
+    value = _in_own_unit(value, field)
+    if not _is_value(value, number=field.is_number):
         return None
-    del part[path[-1]]
-    return value
+    part[int(last) if isinstance(part, list) else last] = None
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return field.entered(value, units) if number else str(value)
 
 
-def _put(document: dict[str, Any], path: list[str], value: Any) -> None:
-    part = document
-    for name in path[:-1]:
-        inner = part.get(name)
+def _in_own_unit(value: Any, field: FormField) -> Any:
+    """Return a number that comes with a unit in that of its field, everything else as it is."""
+    return in_unit(value, field.row["unit"]) if isinstance(value, dict) and field.row["unit"] else value
+
+
+def _is_value(value: Any, *, number: bool) -> bool:
+    return isinstance(value, int | float) or (isinstance(value, str) and not number)
+
+
+def _part(document: Any, path: Sequence[str]) -> Any:
+    """Return what lies at a path in a document, None if there is nothing."""
+    for name in path:
+        document = document.get(name) if isinstance(document, dict) else None
+    return document
+
+
+def _item(row_list: RowList, number: int, row: Row, units: Units) -> Any:
+    """Return the item of a list that a row says."""
+    kind = kind_of(row_list, row)
+    if row_list.is_plain:
+        return _value(row.get("", "").strip(), row_list.kinds[""].fields[0], units)
+    item = _object(row.get(REST, ""), row_list.field_name(number, REST))
+    if row_list.has_kinds:
+        item[KIND] = kind
+    for field in row_list.kinds[kind].fields if kind in row_list.kinds else ():
+        text = row.get(field.name, "").strip()
+        if text:
+            pointer = "/" + row_list.field_name(number, field.name).replace(".", "/")
+            _put(item, field.name.split("."), _value(text, field, units), pointer, field.row["most_items"] or 0)
+    return item
+
+
+def _put(document: dict[str, Any], path: Sequence[str], value: Any, pointer: str, length: int = 0) -> None:
+    """Put a value at a path in a document, whose last part may be the number of an item of a list of fixed length.
+
+    Raises
+    ------
+    BadInput
+        If what lies there already is a list, with the pointer of the field that says the value.
+    """
+    *before, last = path
+    listed = last.isdecimal()
+    for name in before[:-1] if listed else before:
+        inner = document.setdefault(name, {})
+        if isinstance(inner, list):
+            raise BadInput([Fault(pointer, "exclusive", words().line.listed_already.format(name=name))])
         if not isinstance(inner, dict):
-            inner = part[name] = {}
-        part = inner
-    part[path[-1]] = value
+            inner = document[name] = {}
+        document = inner
+    if listed:
+        held = document.get(before[-1])
+        if not isinstance(held, list) or len(held) != length:
+            held = document[before[-1]] = [""] * length
+        held[int(last)] = value
+    elif isinstance(value, list) and document.get(last):
+        raise BadInput([Fault(pointer, "exclusive", words().line.said_twice.format(name=".".join(path)))])
+    else:
+        document[last] = value
 
 
 def _value(text: str, field: FormField, units: Units) -> Any:
-    if not field.is_number:
-        return text
-    plain = text.replace("\N{MINUS SIGN}", "-").replace("\N{NARROW NO-BREAK SPACE}", "").replace(" ", "")
-    if plain.count(",") == 1 and "." not in plain:
-        plain = plain.replace(",", ".")
-    try:
-        number = float(plain)
-    except ValueError:
+    number = as_number(text) if field.is_number else None
+    if number is None:
         return text
     if field.row["type"] == "integer" and number.is_integer():
         return int(number)
@@ -92,6 +169,31 @@ def _value(text: str, field: FormField, units: Units) -> Any:
     if unit.factor == 1.0 and unit.offset == 0.0:
         return number
     return {"value": number, "unit": unit.in_requests}
+
+
+def _object(text: str, name: str) -> dict[str, Any]:
+    """Return what a field of the form keeps as JSON."""
+    if not text.strip():
+        return {}
+    pointer = "/" + name.replace(".", "/")
+    try:
+        found = parse_json(text.encode())
+    except BadInput as error:
+        raise BadInput([Fault(pointer, fault.code, fault.detail) for fault in error.faults]) from error
+    if not isinstance(found, dict):
+        raise BadInput([Fault(pointer, "json_type", words().line.not_an_object)])
+    return found
+
+
+def _json(kept: Any) -> str:
+    return json.dumps(kept, indent=1, ensure_ascii=False) if kept else ""
+
+
+def _without_taken(value: Any) -> Any:
+    """Return a document without the lists whose items were all taken."""
+    if isinstance(value, dict):
+        return {name: _without_taken(inner) for name, inner in value.items()}
+    return None if isinstance(value, list) and value and all(item is None for item in value) else value
 
 
 def _pruned(value: Any) -> Any:

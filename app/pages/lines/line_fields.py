@@ -31,12 +31,17 @@ GROUPS: Mapping[str, Sequence[str]] = {
         "line.ice.accretion.angle_deg",
         "line.ice.aerodynamics.catalogue",
     ),
+    "pieces": ("line.ice.segments",),
+    "devices": ("line.devices",),
+    "phases": ("line.required_clearance_m", "line.phases"),
     "supports": (
         "line.supports.left.adjacent_span_m",
         "line.supports.left.insulator_length_m",
         "line.supports.right.adjacent_span_m",
         "line.supports.right.insulator_length_m",
     ),
+    "section": ("line.section.span_of_interest", "line.section.spans", "line.section.strings"),
+    "wind": ("line.wind.air_density_kg_per_m3", "line.wind.yaw_deg", "line.wind.profile"),
     "damping": ("line.damping.vertical_ratio", "line.damping.horizontal_ratio", "line.damping.torsional_ratio"),
     "figures": (
         "line.conductor.diameter_m",
@@ -46,36 +51,42 @@ GROUPS: Mapping[str, Sequence[str]] = {
         "line.conductor.axial_rigidity_n",
         "line.conductor.torsional_rigidity_n_m2",
         "line.conductor.rated_strength_n",
-        "line.wind.air_density_kg_per_m3",
-        "line.required_clearance_m",
     ),
     "analysis": (
         "analysis.wind_speeds_m_per_s.start",
         "analysis.wind_speeds_m_per_s.stop",
         "analysis.wind_speeds_m_per_s.count",
+        "analysis.wind_speeds_m_per_s",
         "analysis.check",
     ),
 }
-"""The groups of fields of the form, by the dotted names of a request."""
+"""The groups of the form, by the dotted names of a request: those of fields, and those of lists that have rows."""
 
-CLOSED = frozenset({"supports", "damping", "figures"})
+CLOSED = frozenset({"pieces", "supports", "section", "wind", "damping", "figures"})
 """Groups that a page shows on demand."""
 
-_SMALL = frozenset({"line.ice.accretion.thickness_m", "line.conductor.diameter_m"})
 _MILLI = 1e3
+_SMALL_M = 0.3  # what is never larger than this is entered in millimetres or inches
+_DIGITS = 12
+_CONVERTED_DIGITS = 7
 
 
 @dataclass(frozen=True, slots=True)
 class FormField:
-    """A field of the form: its row in the table of fields, and the unit in which the reader enters it."""
+    """A field of the form: its row in the table of fields, and the unit in which the reader enters it.
+
+    said: the name of its words; part: the object within a row of a list that holds it, empty for the row itself.
+    """
 
     name: str
     row: Mapping[str, Any]
+    said: str
+    part: str = ""
 
     @property
     def key(self) -> str:
         """Return the name as an id of HTML."""
-        return self.name.replace(".", "-")
+        return key_of(self.name)
 
     @property
     def pointer(self) -> str:
@@ -85,7 +96,7 @@ class FormField:
     @property
     def label(self) -> str:
         """Return the name in words."""
-        return word_for(words().fields, self.name)
+        return word_for(words().fields, self.said)
 
     @property
     def is_number(self) -> bool:
@@ -94,14 +105,15 @@ class FormField:
 
     def unit(self, units: Units) -> Unit:
         """Return the unit in which the field is entered; millimetres or inches for what is small."""
-        if self.name in _SMALL:
+        if self.row["unit"] == "m" and (self.row["maximum"] or _MILLI) <= _SMALL_M:
             return Unit("mm", _MILLI) if not units.instead else Unit("in", 1 / 0.0254)
         return units.unit(self.row["unit"])
 
     def entered(self, value: float, units: Units) -> str:
         """Return a number of the request in the unit in which it is entered."""
         unit = self.unit(units)
-        return f"{value * unit.factor + unit.offset:.7g}"
+        digits = _CONVERTED_DIGITS if units.instead else _DIGITS
+        return f"{value * unit.factor + unit.offset:.{digits}g}"
 
     def hint(self, units: Units) -> str:
         """Return what the field means, with its bounds and its default."""
@@ -109,21 +121,51 @@ class FormField:
         parts = [row["description"].partition(" [")[0].replace("`", "") + "."]
         if self.is_number and row["minimum"] is not None and row["maximum"] is not None:
             low, high = (self.entered(row[end], units) for end in ("minimum", "maximum"))
-            parts.append(said.bounds.format(low=low, high=high, unit=self.unit(units).name).replace(" .", "."))
-        if row["default"] not in (None, ""):
-            parts.append(said.default.format(value=row["default"]))
+            parts.append(_closed(said.bounds.format(low=low, high=high, unit=self.unit(units).name)))
+        default = row["default"]
+        if default not in (None, ""):
+            shown = f"{self.entered(default, units)} {self.unit(units).name}" if self.is_number else default
+            parts.append(_closed(said.default.format(value=shown)))
         return " ".join(parts)
+
+
+def key_of(name: str) -> str:
+    """Return a dotted name as an id of HTML."""
+    return name.replace(".", "-")
 
 
 @cache
 def form_fields() -> dict[str, FormField]:
-    """Return the fields of the form by their dotted names.
+    """Return the fields of the form by their dotted names, without those of rows.
 
     Raises
     ------
     KeyError
         If the schemas lack one of them.
     """
+    rows = schema_rows()
+    return {name: FormField(name, rows[name], name) for name in _named() if not _is_list(rows[name])}
+
+
+def list_names() -> tuple[str, ...]:
+    """Return the dotted names of the lists that have rows in the form."""
+    return tuple(name for name in _named() if _is_list(schema_rows()[name]))
+
+
+@cache
+def schema_rows() -> dict[str, Mapping[str, Any]]:
+    """Return the rows of the table of fields of a request, whose line may have any form, by their dotted names."""
     rows = {f"line.{row['name']}": row for row in reversed(fields_of(KnownLine))}
-    rows |= {row["name"]: row for row in input_fields() if row["name"].startswith("analysis.")}
-    return {name: FormField(name, rows[name]) for names in GROUPS.values() for name in names}
+    return rows | {row["name"]: row for row in input_fields() if row["name"].startswith("analysis.")}
+
+
+def _named() -> list[str]:
+    return [name for names in GROUPS.values() for name in names]
+
+
+def _is_list(row: Mapping[str, Any]) -> bool:
+    return str(row["type"]).startswith("array")
+
+
+def _closed(sentence: str) -> str:
+    return sentence.replace(" .", ".")

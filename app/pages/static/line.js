@@ -1,4 +1,4 @@
-// Reads a file that the reader chose into the text beside it; the form then sends the text.
+// Reads a file that the reader chose into the text beside it (the form then sends the text), and keeps drawings of old rows away.
 "use strict";
 for (const chooser of document.querySelectorAll("input[type=file][data-into]")) {
   chooser.addEventListener("change", async () => {
@@ -6,3 +6,12 @@ for (const chooser of document.querySelectorAll("input[type=file][data-into]")) 
     if (file) document.getElementById(chooser.dataset.into).value = await file.text();
   });
 }
+// A drawing that was asked for before rows changed has their old numbers: it is not shown, and the next one is under way.
+let rowsChanged = 0;
+document.addEventListener("htmx:beforeRequest", (event) => {
+  event.detail.xhr.rowsChanged = rowsChanged;
+});
+document.addEventListener("htmx:beforeSwap", (event) => {
+  if (event.detail.target.id.startsWith("group-")) rowsChanged += 1;
+  else if (event.detail.target.id === "preview" && event.detail.xhr.rowsChanged !== rowsChanged) event.detail.shouldSwap = false;
+});

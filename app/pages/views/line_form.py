@@ -1,19 +1,27 @@
 """The page on which a line is described: the form, what it becomes while it is typed, and its submission."""
 
 import json
+from collections.abc import Mapping
 from typing import Annotated, Any
 from uuid import UUID
 
 from anyio import to_thread
 from fastapi import APIRouter, Query, Request, Response
 
+from app.convert.known import OwnRows
 from app.owned import records
 from app.pages import examples
+from app.pages.drawings.phase_places import THIS
 from app.pages.forms import Fields
 from app.pages.frame import caller_of, moved, page, units_of
-from app.pages.lines.line_documents import REST, to_document, to_texts
+from app.pages.lines.line_documents import to_document, to_texts
 from app.pages.lines.line_fields import CLOSED, GROUPS, form_fields
-from app.pages.lines.line_preview import preview
+from app.pages.lines.line_preview import preview_of_sound_rows
+from app.pages.lines.numbers import as_number
+from app.pages.lines.placed_faults import of_typed, placed
+from app.pages.lines.row_lists import REST, RowList
+from app.pages.lines.rows import STEP, WINDS, Changed, changed, fields_in, numbered, rows_in
+from app.pages.lines.shown_rows import shown_rows
 from app.pages.measures import BY_NAME, FEET, SI, Units
 from app.pages.recipes import said
 from app.pages.submitting import submit
@@ -51,28 +59,53 @@ def new_line(
 @router.post("/new")
 async def submit_line(request: Request, fields: Fields) -> Response:
     """Submit what the form says; show it again, as it was typed, with its faults if it has any."""
-    units = _units(fields)
+    texts, units = numbered(fields), _units(fields)
     try:
-        job = await submit(request, to_document(fields, units))
+        job = await submit(request, to_document(texts, units))
     except BadInput as error:
-        return _form(request, fields, units, error.faults)
+        return _form(request, texts, units, error.faults)
     return moved(request, f"/pages/jobs/{job.id}")
 
 
 @router.post("/preview")
 def preview_line(request: Request, fields: Fields) -> Response:
-    """Return the part of the page that shows what the line becomes, or which fields are at fault."""
-    units = _units(fields)
-    shown, faults, text = None, [], ""
+    """Return the part of the page that shows what the line becomes, or which fields are at fault.
+
+    Rows at fault are left out of the drawing, and rows into which nothing was typed yet are not complained about.
+    """
+    texts, units = numbered(fields), _units(fields)
+    shown, text = None, ""
+    faults: list[Fault] = []
     try:
-        document = to_document(fields, units)
+        document = to_document(texts, units)
         text = json.dumps(document, indent=1, ensure_ascii=False)
-        shown = preview(request, document, units)
+        shown, faults = preview_of_sound_rows(document, _own_rows(request), units)
     except BadInput as error:
         faults = list(error.faults)
-    beside, others = _placed(faults)
-    values: dict[str, Any] = {"beside": beside, "others": others, "text": text, "form_units": units}
-    return page(request, "parts/preview.html", shown=shown, fields=form_fields(), **values)
+    values: dict[str, Any] = {"placed": placed(of_typed(faults, texts), texts), "phase_names": _phase_names(texts)}
+    return page(request, "parts/preview.html", shown=shown, text=text, form_units=units, **values)
+
+
+@router.post("/rows")
+def change_rows(request: Request, fields: Fields) -> Response:
+    """Return the form after a row was added, copied or removed: for scripts only the group that holds the rows."""
+    texts, units = numbered(fields), _units(fields)
+    change = changed(texts, fields.get("change", ""))
+    if change is None:
+        return _form(request, texts, units)
+    if "hx-request" not in request.headers:
+        return _form(request, change.texts, units, change=change)
+    name = _group_of(change.row_list)
+    values = _of_form(request, change.texts, units, (), change)
+    return page(
+        request,
+        "parts/line_group.html",
+        headers={"HX-Trigger-After-Settle": "rows-changed"},
+        name=name,
+        names=GROUPS[name],
+        said=change.said,
+        **values,
+    )
 
 
 @router.post("/units")
@@ -91,7 +124,7 @@ def export_line(request: Request, fields: Fields) -> Response:
     """Return the request of the form as a file of JSON."""
     units = _units(fields)
     try:
-        text = json.dumps(to_document(fields, units), indent=1, ensure_ascii=False)
+        text = json.dumps(to_document(numbered(fields), units), indent=1, ensure_ascii=False)
     except BadInput as error:
         return _form(request, fields, units, error.faults)
     headers = {"Content-Disposition": 'attachment; filename="line.json"'}
@@ -108,7 +141,7 @@ def import_line(request: Request, fields: Fields) -> Response:
             raise BadInput([Fault("", "json_type", "must be an object: a request, or a line")])
     except BadInput as error:
         faults = [Fault("/document", fault.code, fault.detail) for fault in error.faults]
-        return _form(request, {REST: ""}, units, faults, text)
+        return _form(request, {REST: ""}, units, faults, imported=text)
     request_document = document if "line" in document else {"line": document, "analysis": examples.ANALYSIS}
     return _form(request, to_texts(request_document, units), units)
 
@@ -126,24 +159,61 @@ async def offer_conductors(request: Request, caller: CallerOf, readers: Readers)
     return page(request, "parts/conductors.html", found=await to_thread.run_sync(found))
 
 
-def _form(request: Request, texts: dict[str, str], units: Units, faults: Any = (), imported: str = "") -> Response:
-    beside, others = _placed(faults)
-    with request.app.state.readers() as session:
-        own = sorted(records.own_rows(session, caller_of(request).owner).tables)
+def _form(
+    request: Request,
+    texts: dict[str, str],
+    units: Units,
+    faults: Any = (),
+    *,
+    imported: str = "",
+    change: Changed | None = None,
+) -> Response:
+    texts = numbered(texts)
+    values = _of_form(request, texts, units, faults, change)
+    typed = {name for name, text in texts.items() if text.strip()} | values["placed"].beside.keys()
+    open_groups = {name for name in CLOSED for field in typed if field.startswith(GROUPS[name])}
     return page(
         request,
         "line.html",
         422 if faults else 200,
-        texts=texts,
-        form_units=units,
-        fields=form_fields(),
         groups=GROUPS,
         closed=CLOSED,
-        beside=beside,
-        others=others,
-        shapes=[*own, *(shape.name for shape in ICE_SHAPES)],
+        open_groups=open_groups | ({_group_of(change.row_list)} if change else set()),
+        phase_names=_phase_names(texts),
         imported=imported,
+        **values,
     )
+
+
+def _of_form(
+    request: Request, texts: dict[str, str], units: Units, faults: Any, change: Changed | None
+) -> dict[str, Any]:
+    """Return what the controls of the form need."""
+    return {
+        "texts": texts,
+        "form_units": units,
+        "fields": form_fields(),
+        "lists": shown_rows(texts),
+        "placed": placed(faults, texts),
+        "shapes": [*sorted(_own_rows(request).tables), *(shape.name for shape in ICE_SHAPES)],
+        "focus": change.focus if change else None,
+        "changed_list": change.row_list.name if change else None,
+        "refused": change.said if change and change.refused else "",
+    }
+
+
+def _group_of(row_list: RowList) -> str:
+    return next(name for name, names in GROUPS.items() if row_list.name in names)
+
+
+def _own_rows(request: Request) -> OwnRows:
+    with request.app.state.readers() as session:
+        return records.own_rows(session, caller_of(request).owner)
+
+
+def _phase_names(texts: Mapping[str, str]) -> list[str]:
+    """Return the names that interphase spacers may tie: the line itself, and its phases."""
+    return [THIS, *(row["name"] for row in rows_in(texts)["line.phases"] if row.get("name", "").strip())]
 
 
 def _units(fields: dict[str, str]) -> Units:
@@ -152,26 +222,10 @@ def _units(fields: dict[str, str]) -> Units:
 
 def _exchanged(fields: dict[str, str], units: Units, other: Units) -> dict[str, str]:
     """Return the texts of a form in other units; what is no number stays as it was typed."""
-    changed = dict(fields)
-    for name, field in form_fields().items():
-        unit = field.unit(units)
-        try:
-            number = float(fields.get(name, ""))
-        except ValueError:
-            continue
-        if field.row["type"] == "number":
-            changed[name] = field.entered((number - unit.offset) / unit.factor, other)
-    return changed
-
-
-def _placed(faults: Any) -> tuple[dict[str, list[str]], list[Fault]]:
-    """Return the faults that stand beside a field, by its name, and all others."""
-    names = {field.pointer: name for name, field in form_fields().items()}
-    beside: dict[str, list[str]] = {}
-    others = []
-    for fault in faults:
-        if fault.pointer in names:
-            beside.setdefault(names[fault.pointer], []).append(fault.detail)
-        else:
-            others.append(fault)
-    return beside, others
+    texts = numbered(fields)
+    known = fields_in(texts)
+    for name, field in {**known, STEP: known[f"{WINDS}.start"]}.items():
+        number, unit = as_number(texts.get(name, "")), field.unit(units)
+        if number is not None and field.row["type"] == "number":
+            texts[name] = field.entered((number - unit.offset) / unit.factor, other)
+    return texts

@@ -3,8 +3,8 @@ from typing import Any
 import pytest
 
 from app.reference.source_lines import example
-from app.schemas import JobRequest
-from app.schemas.field_table import input_fields
+from app.schemas import JobRequest, Line
+from app.schemas.field_table import fields_of, input_fields
 from tests.app.lines import FULL_LINE
 
 ROWS = {row["name"]: row for row in input_fields()}
@@ -75,3 +75,9 @@ def test_the_defaults_of_the_table_are_those_that_the_service_takes() -> None:
         for token in name.split("."):
             value = value[token]
         assert ROWS[name]["default"] == value
+
+
+def test_of_a_field_with_several_forms_the_first_one_can_be_had_alone() -> None:
+    names, first = ({row["name"] for row in fields_of(Line, first_form=only)} for only in (False, True))
+    assert names - first >= {"ice.aerodynamics.table", "ice.aerodynamics.static_angle_deg"}
+    assert {"ice.aerodynamics.vertical", "devices[spacer].mass_kg", "devices[airflow_spoiler].from_m"} <= first < names

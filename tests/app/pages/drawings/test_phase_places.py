@@ -24,3 +24,17 @@ def test_phases_are_named_with_their_distance_and_drawn_to_one_scale() -> None:
 
 def test_a_line_by_itself_has_no_such_drawing() -> None:
     assert phase_places({**LINE, "phases": []}, SI) is None
+
+
+def test_interphase_spacers_tie_the_phases_that_they_name() -> None:
+    devices = [
+        {"type": "interphase_spacer", "between": pair} for pair in (["this", "top"], ["top", "wire"], ["top", "x"])
+    ]
+    assert str(phase_places({**LINE, "devices": devices}, SI)).count('class="tie"') == 2
+
+
+def test_a_phase_that_is_nearer_than_required_is_named_so() -> None:
+    drawn = str(phase_places({**LINE, "required_clearance_m": 6.0}, SI))
+    assert "top, 5.00 m: nearer than required" in drawn
+    assert "wire, 9.00 m<" in drawn
+    assert " m</text>" in drawn

@@ -1,6 +1,6 @@
 import pytest
 
-from app.pages.drawings.scales import fitting, ticks
+from app.pages.drawings.scales import fitting, scale_bar, ticks
 
 
 @pytest.mark.parametrize(
@@ -20,3 +20,10 @@ def test_all_points_fit_with_their_margin() -> None:
     assert scale.per_metre == pytest.approx(20.0)
     assert scale.place((0.0, 0.0)) == pytest.approx((10.0, 60.0))
     assert fitting([(1.0, 1.0)], (100.0, 100.0), 10.0, least=2.0).per_metre == pytest.approx(40.0)
+
+
+def test_a_bar_of_a_round_length_shows_the_scale() -> None:
+    scale = fitting([(0.0, 0.0), (10.0, 0.0)], (420.0, 260.0), 10.0)
+    bar, text = scale_bar(scale, "ft", 1 / 0.3048)
+    assert ">10 ft</text>" in text
+    assert f"h{10.0 * 0.3048 * 40.0:.2f}" in bar

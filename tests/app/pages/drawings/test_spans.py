@@ -20,6 +20,7 @@ def test_a_span_is_drawn_with_devices_and_pieces_of_ice() -> None:
     drawn = span_drawing(LINE, 6.3, 0.0, SI)
     text = str(drawn.picture)
     assert text.count('class="device"') == 1
+    assert [name for _, name in drawn.legend] == ["Spacer: 1", "Airflow spoiler: 1", "Stretch with ice of its own: 1"]
     assert 'class="device stretch"' in text
     assert 'class="ice-piece"' in text
     assert "moving-plan" not in text

@@ -27,10 +27,99 @@ def test_a_line_goes_through_the_form_and_stays_the_same_line(name: str, units: 
 
 
 def test_what_has_no_field_is_kept_beside_the_form() -> None:
-    line = {**examples.line(examples.DRAKE), "phases": [{"name": "top", "y_m": 7.0, "z_m": 0.0}], "climate": None}
+    line = {**examples.line(examples.DRAKE), "climate": {"line_azimuth_deg": 45.0}, "section": None}
     texts = to_texts({"line": line}, SI)
-    assert json.loads(texts["rest"]) == {"line": {"phases": line["phases"]}}
-    assert to_document(texts, SI)["line"]["phases"] == line["phases"]
+    assert json.loads(texts["rest"]) == {"line": {"climate": line["climate"]}}
+    assert to_document(texts, SI)["line"]["climate"] == line["climate"]
+
+
+COEFFICIENTS = examples.line("c11-twin")["ice"]["aerodynamics"]
+ROWS: dict[str, Any] = {
+    "line": {
+        "devices": [
+            {"type": "spacer", "position_m": 60.0, "mass_kg": 6.5, "polar_inertia_kg_m2": 0.4},
+            {"type": "airflow_spoiler", "from_m": 10.0, "to_m": 20.0, "aerodynamics": COEFFICIENTS},
+            {"type": "interphase_spacer", "position_m": 75.0, "mass_kg": 30.0, "between": ["this", "top"]},
+        ],
+        "phases": [{"name": "top", "y_m": 7.0, "line": {"span": {"length_m": 300.0, "sag_m": 6.0}}}],
+        "ice": {"segments": [{"from_m": 0.0, "to_m": 50.0, "mass_kg_per_m": 2.3}]},
+        "wind": {"profile": [{"position_m": 0.0, "factor": 0.7}]},
+        "section": {
+            "spans": [{"length_m": 150.0}, {"length_m": 125.88, "level_difference_m": 2.0}],
+            "strings": [{"length_m": 4.5, "weight_n": 2500.0}],
+        },
+    },
+    "analysis": {"wind_speeds_m_per_s": [2.0, 4.5]},
+}
+
+
+def test_lists_become_rows_and_are_the_same_lists_again() -> None:
+    texts = to_texts(ROWS, SI)
+    assert texts["line.devices.1.aerodynamics.vertical.1"] == "-4.0547"
+    assert texts["line.devices.2.between.1"] == "top"
+    assert texts["analysis.wind_speeds_m_per_s.1"] == "4.5"
+    assert json.loads(texts["line.phases.0.rest"]) == {"line": {"span": {"length_m": 300.0, "sag_m": 6.0}}}
+    assert texts["rest"] == ""
+    assert to_document(texts, SI) == ROWS
+
+
+def test_rows_in_feet_are_sent_with_their_units_and_come_back() -> None:
+    texts = to_texts(ROWS, FEET)
+    assert texts["line.devices.0.position_m"] == "196.8504"
+    assert texts["line.section.strings.0.weight_n"] == "562.0224"
+    made = to_document(texts, FEET)
+    assert made["line"]["devices"][0]["mass_kg"] == {"value": 14.33005, "unit": "lb"}
+    assert made["analysis"]["wind_speeds_m_per_s"][0]["unit"] == "mph"
+    assert made["line"]["devices"][1]["aerodynamics"] == COEFFICIENTS
+    assert to_texts(made, FEET) == texts
+
+
+def test_numbers_that_were_sent_with_units_fill_fields_again() -> None:
+    said = {"line": {"span": {"length_m": {"value": 1000.0, "unit": "ft"}}}}
+    assert to_texts(said, SI) == {"line.span.length_m": "304.8", "rest": ""}
+    wrong = {"line": {"span": {"length_m": {"value": 1000.0, "unit": "kg"}}}}
+    assert json.loads(to_texts(wrong, SI)["rest"]) == wrong
+
+
+@pytest.mark.parametrize(
+    "devices",
+    [[{"type": "balloon"}], ["spacer"], [{"position_m": 1.0}], "none", [{"type": "spacer"}] * 201, [{"type": ["x"]}]],
+)
+def test_lists_that_rows_cannot_show_stay_json(devices: Any) -> None:
+    request = {"line": {"devices": devices}}
+    assert json.loads(to_texts(request, SI)["rest"]) == request
+
+
+def test_what_a_row_says_wrongly_is_kept_for_the_schema_to_refuse() -> None:
+    texts = {
+        "line.devices.0.type": "balloon",
+        "line.devices.1.type": "interphase_spacer",
+        "line.devices.1.between.1": "top",
+        "line.devices.1.mass_kg": "heavy",
+        "analysis.wind_speeds_m_per_s.0": "",
+    }
+    made = to_document(texts, SI)
+    assert made["line"]["devices"][0] == {"type": "balloon"}
+    assert made["line"]["devices"][1] == {"type": "interphase_spacer", "mass_kg": "heavy", "between": ["", "top"]}
+    assert made["analysis"]["wind_speeds_m_per_s"] == [""]
+
+
+@pytest.mark.parametrize(
+    ("texts", "pointer"),
+    [
+        ({"rest": '{"line": {"devices": [{}]}}', "line.devices.0.type": "spacer"}, "/rest"),
+        (
+            {"analysis.wind_speeds_m_per_s.0": "4", "analysis.wind_speeds_m_per_s.start": "2"},
+            "/analysis/wind_speeds_m_per_s/start",
+        ),
+        ({"line.phases.0.rest": "[]"}, "/line/phases/0/rest"),
+        ({"line.phases.0.rest": "{"}, "/line/phases/0/rest"),
+    ],
+)
+def test_what_is_said_twice_or_is_no_json_is_refused(texts: dict[str, str], pointer: str) -> None:
+    with pytest.raises(BadInput) as raised:
+        to_document(texts, SI)
+    assert raised.value.faults[0].pointer == pointer
 
 
 @pytest.mark.parametrize(

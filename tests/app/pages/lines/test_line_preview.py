@@ -1,8 +1,12 @@
 import math
+from typing import Any
 
 import pytest
 
-from app.pages.lines.line_preview import sag_of
+from app.convert.known import OwnRows
+from app.pages import examples
+from app.pages.lines.line_preview import preview_of_sound_rows, sag_of
+from app.pages.measures import SI
 
 
 def test_the_sag_is_that_of_a_catenary() -> None:
@@ -13,3 +17,34 @@ def test_the_sag_is_that_of_a_catenary() -> None:
     assert sag_of({"conductor": {"mass_kg_per_m": 2.0}, "span": {"length_m": 100.0, "sag_m": 3.0}}) == 3.0
     by_parameter = {"conductor": {"mass_kg_per_m": 2.0}, "span": {"length_m": 125.88, "catenary_parameter_m": 1285.5}}
     assert sag_of(by_parameter) == pytest.approx(1.541, abs=2e-3)
+
+
+def request_with(**parts: Any) -> dict[str, Any]:
+    return {"line": {**examples.line(examples.DRAKE), **parts}}
+
+
+SPACER = {"type": "spacer", "position_m": 60.0, "mass_kg": 6.5, "polar_inertia_kg_m2": 0.4}
+BAD_SECTION = {"spans": [{"length_m": 300.0}, {"length_m": 250.0}], "strings": []}
+
+
+@pytest.mark.parametrize(
+    ("parts", "pointer", "drawn"),
+    [
+        ({"devices": [{"type": "spacer", "position_m": 1.0}, SPACER]}, "/line/devices/0/mass_kg", 1),
+        ({"devices": [{**SPACER, "position_m": 400.0}, SPACER]}, "/line/devices/0/position_m", 1),
+        ({"devices": [SPACER], "section": BAD_SECTION}, "/line/section/strings", 1),
+        ({"devices": [SPACER], "phases": [{"y_m": 7.0}]}, "/line/phases/0/name", 1),
+    ],
+)
+def test_rows_at_fault_are_left_out_of_the_drawing(parts: dict[str, Any], pointer: str, drawn: int) -> None:
+    shown, faults = preview_of_sound_rows(request_with(**parts), OwnRows(), SI)
+    assert shown is not None
+    assert pointer in [fault.pointer for fault in faults]
+    assert str(shown.span.picture).count('class="device"') == drawn
+
+
+def test_a_line_at_fault_is_not_drawn() -> None:
+    wrong = request_with(span={"length_m": -1.0}, devices=[{"type": "spacer"}])
+    shown, faults = preview_of_sound_rows(wrong, OwnRows(), SI)
+    assert shown is None
+    assert {"/line/span/length_m", "/line/devices/0/mass_kg"} <= {fault.pointer for fault in faults}

@@ -92,3 +92,79 @@ def test_conductors_are_offered_by_the_words_typed(shared_client: httpx.Client) 
     assert '<option value="Drake">' in text
     assert "28.1 mm" in text
     assert shared_client.get(address, params={"x": "no such conductor"}, headers=BROWSER).text.strip() == ""
+
+
+DEVICES = {
+    "line.devices.0.type": "spacer",
+    "line.devices.0.position_m": "60",
+    "line.devices.0.mass_kg": "6.5",
+    "line.devices.0.polar_inertia_kg_m2": "0.4",
+    "line.devices.3.type": "detuning_pendulum",
+    "line.devices.3.position_m": "900",
+}
+CHANGE = "/pages/lines/rows"
+
+
+def test_rows_are_submitted_as_lists(shared_client: httpx.Client) -> None:
+    winds = {"analysis.wind_speeds_m_per_s.0": "4", "analysis.wind_speeds_m_per_s.1": "5,5"}
+    typed = texts_of("c11-twin", **winds) | {name: text for name, text in DEVICES.items() if ".0." in name}
+    typed = {name: text for name, text in typed.items() if name.rpartition(".")[2] not in {"start", "stop", "count"}}
+    answer = send(shared_client, FORM, typed)
+    assert answer.status_code == 303, answer.text
+    job = answer.headers["location"].rpartition("/")[2]
+    copied = values(shared_client, f"{FORM}?job={job}")
+    assert (copied["line.devices.0.position_m"], copied["analysis.wind_speeds_m_per_s.1"]) == ("60", "5.5")
+
+
+def test_faults_stand_beside_the_fields_of_rows_in_the_form_and_in_the_preview(shared_client: httpx.Client) -> None:
+    typed = texts_of(examples.DRAKE, **DEVICES)
+    answer = send(shared_client, FORM, typed)
+    assert answer.status_code == 422
+    assert re.search(r'id="line-devices-1-mass_kg-fault">field required</p>', answer.text)
+    assert 'name="line.devices.1.position_m" value="900"' in answer.text
+    assert '<a href="#line-devices-1-arm_m">Device 2: Arm</a>' in answer.text
+    text = send(shared_client, "/pages/lines/preview", typed).text
+    assert re.search(r'id="line-devices-1-arm_m-fault" hx-swap-oob="true">field required', text)
+    assert text.count('class="device"') == 2  # the sound spacer on the span, and in the legend
+
+
+def test_a_row_is_added_by_a_script_in_its_group_and_without_one_on_the_whole_page(shared_client: httpx.Client) -> None:
+    typed = texts_of(examples.DRAKE, **DEVICES, change="add line.devices", **{"add.line.devices": "airflow_spoiler"})
+    whole = send(shared_client, CHANGE, typed)
+    mark = {"mark": values(shared_client, "/")["mark"]}
+    part = shared_client.post(CHANGE, data=mark | typed, headers={**BROWSER, "HX-Request": "true"})
+    assert part.headers["hx-trigger-after-settle"] == "rows-changed"
+    assert part.text.lstrip().startswith('<div class="fields" id="group-devices"')
+    for text in (whole.text, part.text):
+        assert 'name="line.devices.2.aerodynamics.horizontal.2"' in text
+        assert re.search(r'<select id="line-devices-2-type"[^>]* autofocus', text)
+        assert 'name="line.devices.1.position_m" value="900"' in text
+    assert "<html" in whole.text
+    assert 'value="Drake"' in whole.text
+    assert "Device 3 is added" in part.text
+
+
+def test_rows_keep_their_numbers_in_the_other_units(shared_client: httpx.Client) -> None:
+    text = send(shared_client, "/pages/lines/units", texts_of(examples.DRAKE, **DEVICES, **{"fill.step": "1"})).text
+    assert 'name="line.devices.0.position_m" value="196.8504"' in text
+    assert 'name="line.devices.0.polar_inertia_kg_m2" value="9.492144"' in text
+    assert 'name="fill.step" value="2.236936"' in text
+
+
+def test_a_change_that_makes_no_sense_shows_the_form_again(shared_client: httpx.Client) -> None:
+    answer = send(shared_client, CHANGE, texts_of(examples.DRAKE, change="remove line.devices 99"))
+    assert answer.status_code == 200
+    assert 'value="Drake"' in answer.text
+
+
+def test_a_hostile_number_of_rows_is_refused_by_the_schema(shared_client: httpx.Client) -> None:
+    typed = texts_of(examples.DRAKE) | {f"line.phases.{number}.name": f"p{number}" for number in range(500)}
+    answer = send(shared_client, FORM, typed)
+    assert answer.status_code == 422
+    assert re.search(r'id="line-phases-fault">[^<]*at most 20', answer.text)
+
+
+def test_the_first_button_of_the_form_computes_so_that_enter_never_removes_a_row(shared_client: httpx.Client) -> None:
+    text = send(shared_client, CHANGE, texts_of(examples.DRAKE, change="add line.devices")).text
+    form = text[text.index('<form id="line"') :]
+    assert form.index('<button class="unseen" tabindex="-1"') < form.index('<button class="quiet"')
