@@ -14,6 +14,7 @@ from app.coalescing.shared_watch import SharedWatch
 from app.http import problems
 from app.http.compression import Compression
 from app.http.head_as_get import HeadAsGet
+from app.http.prefix import UnderPrefix
 from app.http.request_log import RequestLog
 from app.http.security_headers import SecurityHeaders
 from app.interactive import Previews, Workshop
@@ -68,7 +69,9 @@ class Service(FastAPI):
 
     def build_middleware_stack(self) -> ASGIApp:
         """Wrap the application in the middleware that must also handle answers to internal errors."""
-        return RequestLog(SecurityHeaders(super().build_middleware_stack()), self.state.requests.observe)
+        stack = RequestLog(SecurityHeaders(super().build_middleware_stack()), self.state.requests.observe)
+        prefix = self.state.settings.root_path
+        return UnderPrefix(stack, prefix) if prefix else stack
 
 
 def create_app(settings: Settings | None = None) -> Service:

@@ -107,7 +107,7 @@ class _Rounds:
 
     def _take(self) -> list[Message]:
         with self._sessions.begin() as session:
-            webhooks.enlist(session)
+            webhooks.enlist(session, self._settings.root_path)
             return webhooks.take_due(session, self._in_progress, 2.0 * self._settings.webhook_timeout_seconds)
 
     async def _deliver(self, message: Message, context: ssl.SSLContext) -> None:

@@ -57,6 +57,7 @@ class Connection:
         self._patience_seconds = patience_seconds
         with self._converting_errors():
             self._http = httpx.Client(base_url=self.url, timeout=30.0, headers=headers)
+        self._prefix = self._http.base_url.path.rstrip("/")
 
     def close(self) -> None:
         """Close the connection."""
@@ -117,7 +118,7 @@ class Connection:
         ServiceError
             If there is no answer, it is a problem, or it ends early.
         """
-        with self._converting_errors(), self._http.stream("GET", address) as answer:
+        with self._converting_errors(), self._http.stream("GET", self._below(address)) as answer:
             if answer.is_error:
                 answer.read()
             yield from _checked(answer).iter_lines()
@@ -135,7 +136,9 @@ class Connection:
             may_retry = time.monotonic() + pause < deadline
             try:
                 with self._converting_errors():
-                    answer = self._http.request(method, address, content=body() if body else None, headers=headers)
+                    answer = self._http.request(
+                        method, self._below(address), content=body() if body else None, headers=headers
+                    )
             except Unreachable:
                 if not may_retry:
                     raise
@@ -147,6 +150,10 @@ class Connection:
             time.sleep(min(pause, max(0.0, deadline - time.monotonic())))
             # Random, so that many clients do not retry at the same time.
             pause = min(2.0 * pause, _LONGEST_PAUSE_SECONDS) * random.uniform(0.8, 1.0)
+
+    def _below(self, address: str) -> str:
+        """Return an address below that of the service, whose links have the prefix of its proxy."""
+        return address.removeprefix(self._prefix) if address.startswith(f"{self._prefix}/") else address
 
     @contextmanager
     def _converting_errors(self) -> Iterator[None]:

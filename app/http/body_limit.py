@@ -9,6 +9,8 @@ from fastapi import Request, Response
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.http.prefix import path_of
+
 # Closing a connection while the client still sends resets it, and the client loses the answer. So read and discard
 # the rest of the body for a while after answering.
 _LINGER_SECONDS = 2.0
@@ -47,7 +49,7 @@ class BodyLimit:
             return
         headers = dict(scope["headers"])
         announced = headers.get(b"content-length", b"0")
-        limit = self.limits.get(scope["path"], self.limits[""])
+        limit = self.limits.get(path_of(scope), self.limits[""])
         empty = announced.strip(b"0") == b"" and b"transfer-encoding" not in headers
         exchange = _Exchange(receive, send, limit.most_bytes, limit.too_large, ended=empty)
         if announced.isdigit() and int(announced[:20]) > limit.most_bytes:

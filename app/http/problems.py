@@ -7,7 +7,6 @@ from typing import Any
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
@@ -15,6 +14,7 @@ from starlette.routing import Match
 from app import convert
 from app.http.body_limit import BodyLimit, Limit
 from app.http.conditional import Bodiless
+from app.http.prefix import LinkedJSON
 from app.schemas.faults import MOST_FAULTS, Fault, faults_of, json_pointer
 
 MEDIA_TYPE = "application/problem+json"
@@ -164,7 +164,7 @@ def _respond(request: Request, problem: ProblemError) -> Response:
     document = problem_document(problem.kind, problem.detail, request.url.path[:500], problem.faults)
     if problem.links:
         document["links"] = list(problem.links)
-    return JSONResponse(document, problem.status_code, headers=problem.headers, media_type=MEDIA_TYPE)
+    return LinkedJSON(document, problem.status_code, headers=problem.headers, media_type=MEDIA_TYPE)
 
 
 async def answer(request: Request, error: Exception) -> Response:

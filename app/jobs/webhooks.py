@@ -170,21 +170,21 @@ def send_again(session: Session, deliveries: Sequence[WebhookDelivery]) -> None:
             delivery.next_attempt_at = database_time(session)
 
 
-def enlist(session: Session) -> int:
-    """Write the messages of jobs and batches that have ended, and return their number."""
+def enlist(session: Session, root_path: str = "") -> int:
+    """Write the messages of jobs and batches that have ended, with links under a prefix; return their number."""
     waiting = select(WebhookDelivery).where(WebhookDelivery.state == DeliveryState.WAITING.value)
     ended = waiting.join(Job, Job.id == WebhookDelivery.job_id).where(Job.status.in_(ENDED)).limit(_ROWS_A_QUERY)
     found = list(session.scalars(ended.with_for_update(of=WebhookDelivery, skip_locked=True)))
     for delivery in found:
         job = session.get_one(Job, delivery.job_id)
-        _write(session, delivery, "job", _of_job(job))
+        _write(session, delivery, "job", _of_job(job, root_path))
     received = waiting.join(Batch, Batch.id == WebhookDelivery.batch_id).where(Batch.received_at.is_not(None))
     for delivery in session.scalars(received.with_for_update(of=WebhookDelivery, skip_locked=True)).all():
         assert delivery.batch_id is not None
         counts = batch_progress.counts(session, [delivery.batch_id])[delivery.batch_id]
         if counts.status in ENDED:
             lines = {"successful": counts.successful, "failed": counts.failed, "dismissed": counts.dismissed}
-            href = f"/v1/batches/{delivery.batch_id}"
+            href = f"{root_path}/v1/batches/{delivery.batch_id}"
             data = {"id": str(delivery.batch_id), "status": counts.status.value, "lines": lines, "href": href}
             _write(session, delivery, "batch", data)
             found.append(delivery)
@@ -241,7 +241,8 @@ def _write(session: Session, delivery: WebhookDelivery, kind: str, data: dict[st
     delivery.state, delivery.next_attempt_at = DeliveryState.PENDING.value, now
 
 
-def _of_job(job: Job) -> dict[str, Any]:
+def _of_job(job: Job, root_path: str) -> dict[str, Any]:
     failure = {"kind": job.failure_kind.value, "detail": job.failure_detail} if job.failure_kind else None
     labels = {"name": job.name, "asset_id": job.asset_id}
-    return {"id": str(job.id), "status": job.status.value, **labels, "failure": failure, "href": f"/v1/jobs/{job.id}"}
+    href = f"{root_path}/v1/jobs/{job.id}"
+    return {"id": str(job.id), "status": job.status.value, **labels, "failure": failure, "href": href}

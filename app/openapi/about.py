@@ -31,6 +31,6 @@ def about(settings: Settings) -> dict[str, Any]:
         "version": ENGINE_VERSION,
         "description": _DESCRIPTION,
         "contact": {name: value for name, value in contact.items() if value is not None},
-        "servers": [{"url": "/", "description": "This service"}],
+        "servers": [{"url": settings.root_path or "/", "description": "This service"}],
         "openapi_tags": [{"name": name, "description": description} for name, description in _TAGS.items()],
     }

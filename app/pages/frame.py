@@ -11,6 +11,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from app.convert import ENGINE_VERSION
+from app.http.prefix import path_of, prefix_of
 from app.http.problems import ProblemError, ProblemKind
 from app.pages import assets, measures
 from app.pages.wording import word_for, words
@@ -51,7 +52,7 @@ def moved(request: Request, path: str) -> RedirectResponse:
 
 def address(request: Request) -> Callable[[str], str]:
     """Return the function that puts the prefix of a proxy before a path of this service."""
-    prefix = str(request.scope.get("root_path", "")).rstrip("/")
+    prefix = prefix_of(request.scope)
     return lambda path: prefix + path
 
 
@@ -71,11 +72,6 @@ def units_of(request: Request) -> measures.Units:
     return measures.BY_NAME.get(request.cookies.get("galloping_units", ""), measures.SI)
 
 
-def path_of(request: Request) -> str:
-    """Return the path of a request without the prefix of a proxy."""
-    return str(request.scope["path"]).removeprefix(str(request.scope.get("root_path", "")))
-
-
 def check_form(request: Request, fields: Mapping[str, str]) -> None:
     """Check that a form comes from a page of this service that the same caller read.
 
@@ -90,7 +86,7 @@ def check_form(request: Request, fields: Mapping[str, str]) -> None:
 
 def shown_problem(request: Request, problem: ProblemError) -> Response | None:
     """Return the page that explains a problem, where a person asked for a page; lead to the sign-in without a key."""
-    path = path_of(request)
+    path = path_of(request.scope)
     if not (path == "/" or path.startswith("/pages/")) or not wants_page(request):
         return None
     if problem.kind is ProblemKind.UNAUTHENTICATED:
@@ -111,7 +107,7 @@ def _common(request: Request) -> dict[str, Any]:
         "form_mark": sessions.form_mark(request.app.state.settings, _whose(request)),
         "theme": theme if theme in THEMES else THEMES[0],
         "themes": THEMES,
-        "here": path_of(request) + (f"?{request.url.query}" if request.url.query else ""),
+        "here": path_of(request.scope) + (f"?{request.url.query}" if request.url.query else ""),
         "signed_in": caller_of(request).owner if caller_of(request).key_id is not None else None,
         "version": ENGINE_VERSION,
         "script_settings": _SCRIPTS,

@@ -6,7 +6,6 @@ from urllib.parse import urlencode
 from uuid import UUID
 
 from fastapi import APIRouter, Query
-from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import Row
 
@@ -14,6 +13,7 @@ from app.answers.batches import RankingPage
 from app.batches import ranking
 from app.batches.ranking import Order, Place
 from app.http import paging
+from app.http.prefix import LinkedJSON
 from app.http.problems import ProblemKind, query_fault
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import batch_address, require_results
@@ -94,7 +94,7 @@ def rank_lines(
     caller: CallerOf,
     readers: Readers,
     settings: SettingsOf,
-) -> JSONResponse:
+) -> LinkedJSON:
     """Return one page of the lines, most critical first; `next` is the address of the next page.
 
     A line whose motion is unknown or unbounded at any wind speed comes first by amplitude and clearance, with
@@ -115,7 +115,7 @@ def rank_lines(
         last = found[query.limit - 1]
         place = Place(getattr(last, order.figure), last.number, before + query.limit)
         following = _next_address(batch_id, query, ranking.encode(key, batch_id, order, place))
-    return JSONResponse({"lines": lines, "next": following})
+    return LinkedJSON({"lines": lines, "next": following})
 
 
 def _line(query: RankingQuery, rank: int, row: Row[Any]) -> dict[str, Any]:

@@ -3,10 +3,10 @@
 from typing import Any
 from uuid import UUID
 
-from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.batches import batch_records, line_results
+from app.http.prefix import LinkedJSON
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import batch_progress
 from app.jobs.batch_progress import Counts
@@ -99,11 +99,11 @@ def batch_document(session: Session, batch: Batch, counts: Counts) -> dict[str, 
     return {**batch_summary(batch, counts), "errors": shown[:_ERRORS_SHOWN], "notes": batch.notes or []}
 
 
-def accepted_batch(session: Session, caller: Caller, batch_id: UUID) -> JSONResponse:
+def accepted_batch(session: Session, caller: Caller, batch_id: UUID) -> LinkedJSON:
     """Return the answer to a request that submitted or resubmitted a batch."""
     batch = find_batch(session, caller, batch_id)
     document = batch_document(session, batch, batch_progress.counts(session, [batch_id])[batch_id])
-    return JSONResponse(document, 202, headers={"Location": batch_address(batch_id), "Retry-After": RETRY_SECONDS})
+    return LinkedJSON(document, 202, headers={"Location": batch_address(batch_id), "Retry-After": RETRY_SECONDS})
 
 
 def _links(batch: Batch, counts: Counts) -> list[dict[str, str]]:

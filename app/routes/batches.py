@@ -5,13 +5,13 @@ from urllib.parse import urlencode
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Response
-from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
 from app import convert
 from app.answers.batches import BatchDocument, BatchPage
 from app.batches import batch_records, intake
 from app.http import paging
+from app.http.prefix import LinkedJSON
 from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.http.strict_routes import KnownParametersRoute
 from app.jobs import batch_progress, idempotency
@@ -57,7 +57,7 @@ async def _wait_for_batch(batch_id: UUID, caller: CallerOf, watch: BatchWatch, w
 )
 def batch_status(
     batch_id: UUID, caller: CallerOf, readers: Readers, wait: Annotated[int | None, Depends(_wait_for_batch)]
-) -> JSONResponse:
+) -> LinkedJSON:
     """Return the progress of a batch: its lines by state, and the faults of the first rejected lines.
 
     With `Prefer: wait=N` the service answers when the batch ends, or after N seconds.
@@ -66,7 +66,7 @@ def batch_status(
         batch = find_batch(session, caller, batch_id)
         counts = batch_progress.counts(session, [batch_id])[batch_id]
         headers = applied(wait) if counts.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
-        return JSONResponse(batch_document(session, batch, counts), headers=headers)
+        return LinkedJSON(batch_document(session, batch, counts), headers=headers)
 
 
 @router.get(
@@ -84,7 +84,7 @@ def list_batches(
     readers: Readers,
     limit: Annotated[int, Query(ge=1, le=100, description="Most batches on the page")] = 20,
     cursor: Annotated[str | None, Query(max_length=200, description="Cursor from a `next` address")] = None,
-) -> JSONResponse:
+) -> LinkedJSON:
     """Return one page of the batches, newest first; `next` is the address of the next page."""
     key = signing_key(settings)
     after = _place(key, cursor) if cursor else None
@@ -97,7 +97,7 @@ def list_batches(
         place = paging.encode(key, (shown[-1].created_at, shown[-1].id))
         following = f"{router.prefix}?{urlencode({'limit': limit, 'cursor': place})}"
     documents = [batch_summary(batch, counts[batch.id]) for batch in shown]
-    return JSONResponse({"batches": documents, "next": following})
+    return LinkedJSON({"batches": documents, "next": following})
 
 
 @router.post(
@@ -165,8 +165,8 @@ def cancel_or_remove_batch(
             return Response(status_code=204)
         document = batch_document(session, batch, batch_progress.counts(session, [batch_id])[batch_id])
     if outcome is CancelOutcome.REQUESTED:
-        return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
-    return JSONResponse(document)
+        return LinkedJSON(document, 202, headers={"Retry-After": RETRY_SECONDS})
+    return LinkedJSON(document)
 
 
 @router.post(
@@ -194,8 +194,8 @@ def cancel_batch(batch_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers)
         outcome = batch_records.cancel(session, caller, batch_id, may_remove=False)
         document = batch_document(session, batch, batch_progress.counts(session, [batch_id])[batch_id])
         if outcome is CancelOutcome.REQUESTED:
-            return PostOutcome(JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS}))
-        return PostOutcome(JSONResponse(document))
+            return PostOutcome(LinkedJSON(document, 202, headers={"Retry-After": RETRY_SECONDS}))
+        return PostOutcome(LinkedJSON(document))
 
     return run_once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "cancel"), make).answer
 

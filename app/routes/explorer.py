@@ -6,6 +6,7 @@ from fastapi.responses import HTMLResponse
 from starlette.staticfiles import StaticFiles
 
 import app
+from app.http.prefix import prefix_of
 
 ASSETS = "/docs/assets"
 
@@ -15,7 +16,7 @@ router = APIRouter(include_in_schema=False)
 @router.get("/docs")
 def docs(request: Request) -> HTMLResponse:
     """Return the page, also behind a proxy that adds a prefix to every path."""
-    prefix = request.scope.get("root_path", "").rstrip("/")
+    prefix = prefix_of(request.scope)
     return get_swagger_ui_html(
         openapi_url=f"{prefix}/openapi.json",
         title="Galloping of iced conductors",

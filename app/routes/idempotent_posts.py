@@ -1,5 +1,6 @@
 """Perform a POST under an `Idempotency-Key` once; answer a repetition with the first answer."""
 
+import json
 import logging
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -11,10 +12,11 @@ from typing import Annotated
 from uuid import UUID
 
 from fastapi import Depends, Header, Request
-from fastapi.responses import JSONResponse, Response
+from fastapi.responses import Response
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.http.prefix import LinkedJSON
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs import idempotency
 from app.jobs.idempotency import Answer, Kept, Key, KeyTaken
@@ -158,7 +160,7 @@ def replayed_answer(sessions: sessionmaker[Session], key: Key, fingerprint: Call
     if first != fingerprint():
         raise ProblemError(ProblemKind.KEY_REUSED, "This Idempotency-Key was used for another request.")
     headers = {**answer.headers, _REPLAYED: "true"}
-    return Response(answer.body, answer.status, headers=headers, media_type=JSONResponse.media_type)
+    return LinkedJSON(json.loads(answer.body), answer.status, headers=headers)
 
 
 def stored_answer(answer: Response) -> Answer:

@@ -5,9 +5,9 @@ from functools import partial
 
 from anyio import to_thread
 from fastapi import Request, Response
-from fastapi.responses import JSONResponse
 
 from app import convert, schemas
+from app.http.prefix import LinkedJSON
 from app.http.problems import invalid_document
 from app.jobs import idempotency, job_records
 from app.jobs.idempotency import Key, KeyTaken
@@ -54,9 +54,9 @@ def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may
     return Order(submission, document.webhook_url, may_reuse, keyed)
 
 
-def _accepted(job: Job) -> JSONResponse:
+def _accepted(job: Job) -> LinkedJSON:
     headers = {"Location": job_address(job.id), "Retry-After": RETRY_SECONDS}
-    return JSONResponse(job_document(job), 202, headers)
+    return LinkedJSON(job_document(job), 202, headers)
 
 
 async def estimate(request: Request, document: schemas.JobRequest) -> Response:
@@ -68,7 +68,7 @@ async def estimate(request: Request, document: schemas.JobRequest) -> Response:
         422 with every fault of the document.
     """
     await check_request(request, document)
-    return JSONResponse({"valid": True, **asdict(convert.estimate(document))})
+    return LinkedJSON({"valid": True, **asdict(convert.estimate(document))})
 
 
 async def check_request(request: Request, document: schemas.JobRequest) -> None:

@@ -6,7 +6,6 @@ from urllib.parse import urlencode
 from uuid import UUID
 
 from fastapi import APIRouter, Body, Query, Request, Response
-from fastapi.responses import JSONResponse
 from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 from sqlalchemy.orm import Session
@@ -14,6 +13,7 @@ from sqlalchemy.orm import Session
 from app import schemas
 from app.answers.jobs import JobDocument, JobEstimate, JobPage
 from app.http import paging
+from app.http.prefix import LinkedJSON
 from app.http.problems import ProblemError, ProblemKind, query_fault
 from app.jobs import idempotency, job_records
 from app.jobs.job_records import CancelOutcome, JobFilters
@@ -154,7 +154,7 @@ async def estimate_job(
         **_COMMON,
     },
 )
-async def job_status(request: Request, job_id: UUID, wait: Wait) -> JSONResponse:
+async def job_status(request: Request, job_id: UUID, wait: Wait) -> LinkedJSON:
     """Return the status of a job, at once or, with `Prefer: wait=N`, when it ends or after N seconds."""
     statuses, caller = request.app.state.statuses, request.state.caller
     job = await find_status(statuses, caller, job_id)
@@ -162,7 +162,7 @@ async def job_status(request: Request, job_id: UUID, wait: Wait) -> JSONResponse
         await wait_for_end(request.app.state.job_watch, Owned(caller.owner, job_id), wait)
         job = await find_status(statuses, caller, job_id)
     headers = applied(wait) if job.status in ENDED else {"Retry-After": RETRY_SECONDS, **applied(wait)}
-    return JSONResponse(job_document(job), headers=headers)
+    return LinkedJSON(job_document(job), headers=headers)
 
 
 @router.get(
@@ -180,7 +180,7 @@ def list_jobs(
     settings: SettingsOf,
     caller: CallerOf,
     readers: Readers,
-) -> JSONResponse:
+) -> LinkedJSON:
     """Return one page of the jobs, newest first; `next` is the address of the next page."""
     key = signing_key(settings)
     after = _place(key, filters.cursor) if filters.cursor else None
@@ -191,7 +191,7 @@ def list_jobs(
     if len(found) > filters.limit:
         last = found[filters.limit - 1]
         following = _next_address(request, paging.encode(key, (last.created_at, last.id)))
-    return JSONResponse({"jobs": documents, "next": following})
+    return LinkedJSON({"jobs": documents, "next": following})
 
 
 @router.delete(
@@ -233,8 +233,8 @@ def cancel_or_remove_job(
         session.flush()
         document = job_document(find_job(session, caller, job_id))
     if outcome is CancelOutcome.REQUESTED:
-        return JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS})
-    return JSONResponse(document)
+        return LinkedJSON(document, 202, headers={"Retry-After": RETRY_SECONDS})
+    return LinkedJSON(document)
 
 
 @router.post(
@@ -262,8 +262,8 @@ def cancel_job(job_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers) -> 
         session.flush()
         document = job_document(find_job(session, caller, job_id))
         if outcome is CancelOutcome.REQUESTED:
-            return PostOutcome(JSONResponse(document, 202, headers={"Retry-After": RETRY_SECONDS}))
-        return PostOutcome(JSONResponse(document))
+            return PostOutcome(LinkedJSON(document, 202, headers={"Retry-After": RETRY_SECONDS}))
+        return PostOutcome(LinkedJSON(document))
 
     return run_once(writers, key, lambda: idempotency.fingerprint(job_address(job_id), "cancel"), make).answer
 

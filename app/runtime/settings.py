@@ -83,6 +83,11 @@ class Settings(BaseSettings):
     webhook_retry_seconds: Seconds = Field(default=5.0, description="First pause between attempts; later ones grow")
     webhook_attempts: Count = Field(default=8, description="Attempts to send a webhook, over some 27 hours")
 
+    root_path: str = Field(
+        default="",
+        pattern=r"^(/[A-Za-z0-9._~-]+)*/?$",
+        description="Prefix under which a proxy serves this service, such as /gal",
+    )
     contact_name: str = Field(default="The operator of this service", description="Whom the OpenAPI document names")
     contact_email: str | None = Field(
         default=None,
@@ -108,6 +113,11 @@ class Settings(BaseSettings):
     @classmethod
     def _absolute(cls, value: Path) -> Path:
         return value.expanduser().absolute()
+
+    @field_validator("root_path")
+    @classmethod
+    def _without_last_slash(cls, value: str) -> str:
+        return value.rstrip("/")
 
     @field_validator("database_url")
     @classmethod

@@ -12,6 +12,7 @@ from starlette import types
 
 from app.coalescing.expiring_cache import ExpiringCache
 from app.http import problems
+from app.http.prefix import path_of
 from app.http.problems import ProblemError, ProblemKind
 from app.runtime.loopback import is_loopback
 from app.runtime.settings import Settings
@@ -57,7 +58,7 @@ class Gate:
 
     async def __call__(self, scope: types.Scope, receive: types.Receive, send: types.Send) -> None:
         """Serve one request."""
-        if scope["type"] != "http" or is_open(scope["path"].removeprefix(scope.get("root_path", ""))):
+        if scope["type"] != "http" or is_open(path_of(scope)):
             await self.app(scope, receive, send)
             return
         try:
@@ -110,7 +111,7 @@ class Gate:
         text = _bearer(headers)
         if text is not None:
             return keys.digest_of(text)
-        path: str = scope["path"].removeprefix(scope.get("root_path", ""))
+        path = path_of(scope)
         if b"cookie" in headers and (scope["method"] in {"GET", "HEAD"} or path.startswith(f"{_PAGES}/")):
             return sessions.digest_of(self._settings, headers[b"cookie"].decode("latin-1"))
         return None
@@ -138,7 +139,7 @@ def _bearer(headers: Headers) -> str | None:
 
 def _needed(scope: types.Scope) -> Scope | None:
     """Return the scope that a request needs: that of its method, but a POST that cancels needs what a DELETE needs."""
-    path: str = scope["path"].removeprefix(scope.get("root_path", ""))
+    path = path_of(scope)
     cancels = scope["method"] == "POST" and path.startswith("/v1/") and path.endswith("/cancel")
     return Scope.CANCEL if cancels else _NEEDED.get(scope["method"])
 

@@ -10,6 +10,7 @@ from uuid import UUID
 
 import httpx
 import uvicorn
+from starlette.types import ASGIApp
 
 from app.main import create_app
 from app.runtime.settings import Settings
@@ -24,9 +25,14 @@ from tests.servers import wait_until
 def running(settings: Settings) -> Iterator[httpx.Client]:
     """Serve the application with these settings on a migrated database, and give a client of it."""
     migrate(settings)
-    server = uvicorn.Server(
-        uvicorn.Config(create_app(settings), http=HTTP, log_config=None, ws="none", timeout_graceful_shutdown=5)
-    )
+    with serving(create_app(settings), http=HTTP) as client:
+        yield client
+
+
+@contextlib.contextmanager
+def serving(app: ASGIApp, **options: Any) -> Iterator[httpx.Client]:
+    """Serve an application on a free loopback port in a thread, and give a client of it."""
+    server = uvicorn.Server(uvicorn.Config(app, log_config=None, ws="none", timeout_graceful_shutdown=5, **options))
     with socket.create_server(("127.0.0.1", 0)) as listener:
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()
