@@ -20,7 +20,7 @@ from app.pages.measures import Units
 from app.schemas.faults import BadInput, Fault
 
 _GRAVITY = 9.80665  # m/s2
-_SECTION = "section"
+_SECTION = "line.section"
 _MOST_ATTEMPTS = 3
 
 
@@ -74,54 +74,71 @@ def preview(document: Mapping[str, Any], own: OwnRows, units: Units) -> Preview:
 def preview_of_sound_rows(
     document: Mapping[str, Any], own: OwnRows, units: Units
 ) -> tuple[Preview | None, list[Fault]]:
-    """Return what a line is without its rows at fault, None where that is no line either; and the faults of the whole.
+    """Return what a line is without its rows at fault, None where that is no line either; and all faults.
 
     A section at fault is left out as a whole: its spans and strings mean nothing without one another.
     """
     faults: list[Fault] = []
+    left = _Left(dict(document), {})
     for _ in range(_MOST_ATTEMPTS):
         try:
-            return preview(document, own, units), faults
+            return preview(left.document, own, units), faults
         except BadInput as error:
-            faults = faults or list(error.faults)
-            sound = _without_rows(document, error.faults)
-        if sound is None:
+            faults += [Fault(left.pointer(fault), fault.code, fault.detail) for fault in error.faults]
+            fewer = left.without(error.faults)
+        if fewer is None:
             break
-        document = sound
+        left = fewer
     return None, faults
 
 
-def _without_rows(document: Mapping[str, Any], faults: Sequence[Fault]) -> dict[str, Any] | None:
-    """Return a request without the rows that have these faults; None if others are at fault, too."""
-    left = deepcopy(dict(document))
-    rows: dict[str, set[int]] = {}
-    for fault in faults:
+@dataclass(frozen=True, slots=True)
+class _Left:
+    """A request without some rows, and the numbers that those which are left had, by the names of their lists."""
+
+    document: dict[str, Any]
+    numbers: Mapping[str, Sequence[int]]
+
+    def pointer(self, fault: Fault) -> str:
+        """Return the pointer of a fault in the request from which rows were left out."""
         name, number = _row_at(fault.pointer)
-        if name is None:
-            return None
-        rows.setdefault(name, set()).add(number)
-    for name, numbers in rows.items():
-        *path, last = name.split(".")
-        part = left
-        for token in path:
-            part = part.get(token, {})
-        if isinstance(part.get(last), list) and last != _SECTION:
-            part[last] = [item for number, item in enumerate(part[last]) if number not in numbers]
-        else:
-            part.pop(last, None)
-    return left
+        if name not in self.numbers:
+            return fault.pointer
+        within = fault.pointer.removeprefix(f"/{name.replace('.', '/')}/{number}")
+        return f"/{name.replace('.', '/')}/{self.numbers[name][number]}{within}"
+
+    def without(self, faults: Sequence[Fault]) -> "_Left | None":
+        """Return the request without the rows that have these faults; None if others are at fault, too."""
+        rows: dict[str, set[int]] = {}
+        for fault in faults:
+            name, number = _row_at(fault.pointer)
+            if not name:
+                return None
+            rows.setdefault(name, set()).add(number)
+        document, numbers = deepcopy(self.document), dict(self.numbers)
+        for name, wrong in rows.items():
+            *path, last = name.split(".")
+            part = document
+            for token in path:
+                part = part.get(token, {})
+            if name == _SECTION:
+                part.pop(last, None)
+                continue
+            numbers[name] = [n for i, n in enumerate(numbers.get(name, range(len(part[last])))) if i not in wrong]
+            part[last] = [item for i, item in enumerate(part[last]) if i not in wrong]
+        return _Left(document, numbers)
 
 
-def _row_at(pointer: str) -> tuple[str | None, int]:
-    """Return the list and the number of the row that holds a field; the section as if it were a list."""
+def _row_at(pointer: str) -> tuple[str, int]:
+    """Return the list and the number of the row that holds a field; the section as if it were a row, else nothing."""
     name = pointer.removeprefix("/").replace("/", ".")
-    if name.startswith(f"line.{_SECTION}"):
-        return f"line.{_SECTION}", 0
+    if f"{name}.".startswith(f"{_SECTION}."):
+        return _SECTION, 0
     for known in row_lists():
         number = name.removeprefix(f"{known}.").partition(".")[0]
         if name.startswith(f"{known}.") and number.isdecimal():
             return known, int(number)
-    return None, 0
+    return "", 0
 
 
 def sag_of(line: Mapping[str, Any]) -> float:

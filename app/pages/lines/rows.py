@@ -38,13 +38,17 @@ class Changed:
 
 
 def rows_in(texts: Mapping[str, str]) -> dict[str, list[Row]]:
-    """Return the rows of every list, in their order; a row that no list knows is none."""
+    """Return the rows of every list, in their order; a row that no list knows is none.
+
+    Of more rows than a list may have, the first too many stands for all others: the schema refuses the list for it.
+    """
     found: dict[str, dict[int, Row]] = {name: {} for name in row_lists()}
     for name, text in texts.items():
         match = _row_name().fullmatch(name)
         if match:
             found[match[1]].setdefault(int(match[2]), {})[match[3] or ""] = text
-    return {name: [rows[number] for number in sorted(rows)] for name, rows in found.items()}
+    most = {name: row_list.most + 1 for name, row_list in row_lists().items()}
+    return {name: [rows[number] for number in sorted(rows)[: most[name]]] for name, rows in found.items()}
 
 
 def numbered(texts: Mapping[str, str]) -> dict[str, str]:

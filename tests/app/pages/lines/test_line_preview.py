@@ -48,3 +48,18 @@ def test_a_line_at_fault_is_not_drawn() -> None:
     shown, faults = preview_of_sound_rows(wrong, OwnRows(), SI)
     assert shown is None
     assert {"/line/span/length_m", "/line/devices/0/mass_kg"} <= {fault.pointer for fault in faults}
+
+
+def test_faults_that_show_only_without_other_rows_have_the_numbers_of_the_form() -> None:
+    rows = [
+        {"type": "spacer"},
+        SPACER,
+        {**SPACER, "position_m": 400.0},
+        {"type": "spacer"},
+        {**SPACER, "position_m": 70.0},
+    ]
+    shown, faults = preview_of_sound_rows(request_with(devices=rows), OwnRows(), SI)
+    assert shown is not None
+    assert str(shown.span.picture).count('class="device"') == 2
+    assert {fault.pointer.split("/")[3] for fault in faults} == {"0", "2", "3"}
+    assert faults[-1].pointer == "/line/devices/2/position_m"

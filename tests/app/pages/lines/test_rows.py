@@ -26,6 +26,10 @@ def test_rows_are_found_in_the_order_of_their_numbers_and_numbered_from_0() -> N
     assert "line.devices.1.polar_inertia_kg_m2" not in fields_in(texts)
 
 
+def test_of_too_many_rows_one_more_than_allowed_is_left() -> None:
+    assert len(rows_in({f"line.phases.{number}.name": "x" for number in range(5000)})["line.phases"]) == 21
+
+
 def test_names_that_only_look_like_rows_are_none() -> None:
     strange = {"line.devices.x.mass_kg": "1", f"line.devices.{'9' * 5000}.mass_kg": "1", "line.nothing.0.mass_kg": "1"}
     assert devices(strange) == []
