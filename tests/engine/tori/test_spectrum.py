@@ -14,7 +14,7 @@ def strengths(**lines: float) -> FloatArray:
     found = np.full(len(PAIRS), 1e-9)
     for name, strength in lines.items():
         first, second = (int(number) for number in name[1:].split("_"))
-        found[((first, second) == PAIRS).all(axis=-1)] = strength
+        found[(PAIRS[:, 0] == first) & (PAIRS[:, 1] == second)] = strength
     return found
 
 
