@@ -9,7 +9,7 @@ from engine.mechanics.cross_sections import sections
 from engine.mechanics.finite_elements import matrices
 from engine.mechanics.modes import directional_shapes
 from engine.mechanics.static_profile import static_profile
-from engine.models.discretization import Discretization
+from engine.models.discretization import Discretization, shapes_at
 from engine.models.hybrid import hybrid_model, with_published_load
 from engine.models.reduced_model import ReducedModel, take
 from engine.numerics import polynomial
@@ -34,6 +34,11 @@ def hybrid_models(
     grid = hybrid_model(discretization, shapes, loops, analysis or Analysis(loops=loops))
     index = np.divmod(np.arange(len(discretization.lines) * len(loops)), len(loops))
     return take(grid, index), take(with_published_load(discretization, grid), index)
+
+
+def first_antinode(shapes: FloatArray, loops: int) -> FloatArray:
+    """Return V, W and Theta of shapes (stack, m, 3, nodes) where the source observes motions, s = L/(2 loops)."""
+    return shapes_at(shapes, np.full(len(shapes), 1.0 / (2.0 * loops)))
 
 
 def plain_rate(model: ReducedModel, wind_speed: float) -> Rate:

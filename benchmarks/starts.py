@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks.models import discretized, hybrid_models
+from benchmarks.models import discretized, first_antinode, hybrid_models
 from engine.arrays import FloatArray
 from engine.checks.direct_starts import spread_starts
 from engine.checks.settled_motion import SettledMotions, integrate_until_settled
-from engine.models.discretization import observation
 from engine.spec import Analysis, Line, Model
 
 LOOPS = (1, 2)
@@ -71,7 +70,7 @@ def ends(
     m = model.mass.shape[-1]
     usable = np.flatnonzero(~model.statically_unstable)
     member, wind = np.repeat(usable, len(winds)), np.tile(np.array(winds), usable.size)
-    each_loops = [observation(discretization, model.shapes[i :: len(loops)], k) for i, k in enumerate(loops)]
+    each_loops = [first_antinode(model.shapes[i :: len(loops)], k) for i, k in enumerate(loops)]
     seen = np.stack(each_loops, axis=1).reshape(-1, m, 3)[:, :3]
     seen = np.abs(np.diagonal(seen, axis1=-2, axis2=-1))
     starts = spread_starts(model, member, wind, LEVELS, np.random.default_rng(seed))

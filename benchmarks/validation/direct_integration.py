@@ -6,11 +6,10 @@ import numpy as np
 
 from benchmarks.engine_speed import found_cycles
 from benchmarks.lines import source_line
-from benchmarks.models import discretized, hybrid_models
+from benchmarks.models import discretized, first_antinode, hybrid_models
 from benchmarks.validation.common import WINDS, table
 from engine.checks.time_integration import integrate
 from engine.cycles.harmonic_balance import half_peak_to_peak, select, states
-from engine.models.discretization import observation
 from engine.models.reduced_model import take
 
 CYCLES = 300
@@ -38,7 +37,7 @@ def _integrated(subconductors: int) -> Iterator[list[object]]:
         state = states(orbit, np.zeros(1))[0, 0]
         state[3:] *= orbit.wind_speed[0]
         settled = integrate(take(model, member), float(orbit.wind_speed[0]), state, change=0.0, longest=CYCLES)
-        seen = observation(discretization, model.shapes[member], member + 1)
+        seen = first_antinode(model.shapes[[member]], member + 1)[0]
         after = 0.5 * np.ptp(settled.history @ seen, axis=0)
         before = half_peak_to_peak(seen.T @ orbit.coefficients[0])
         change = 100.0 * np.abs(after / before - 1.0).max()

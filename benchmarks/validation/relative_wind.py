@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.lines import source_line
-from benchmarks.models import discretized
+from benchmarks.models import discretized, first_antinode
 from benchmarks.validation.common import SUBCONDUCTORS, WINDS, percent, result, table
 from engine.arrays import FloatArray
 from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select, states
@@ -15,7 +15,7 @@ from engine.cycles.search import find_cycles
 from engine.cycles.starts import explicit_starts
 from engine.mechanics.modes import at_points, directional_shapes
 from engine.models.critical_wind_speeds import critical_wind_speeds
-from engine.models.discretization import Discretization, observation
+from engine.models.discretization import Discretization
 from engine.models.hybrid import hybrid_model, with_published_load
 from engine.models.reduced_model import ReducedModel, take
 from engine.result import LimitCycleRow
@@ -129,7 +129,7 @@ def unexpanded_rows(subconductors: int, cycles: int = CYCLES) -> Iterator[list[o
         take(model, member), orbits, unexpanded(discretization, take(model, member), orbits.wind_speed), cycles
     )
     for i, loops in enumerate((member + 1).tolist()):
-        seen = observation(discretization, model.shapes[member[i]], loops)
+        seen = first_antinode(model.shapes[member[[i]]], loops)[0]
         before = half_peak_to_peak(seen.T @ orbits.coefficients[i])
         after = 0.5 * np.ptp(settled[i] @ seen, axis=0)
         largest = int(before[:2].argmax())

@@ -199,10 +199,16 @@ def nodal_motion(
     )
 
 
-def observation(discretization: Discretization, shapes: FloatArray, loops: int) -> FloatArray:
-    """Return V, W, Theta at s = L/(2 loops) of coordinates with shapes (..., m, 3, nodes): (..., m, 3)."""
-    elements = discretization.lines[0].span.elements
-    scaled = elements / (2.0 * loops)
-    element = min(int(scaled), elements - 1)
-    values, _ = shape_functions(np.array(2.0 * (scaled - element) - 1.0))
-    return np.asarray(shapes[..., 2 * element : 2 * element + 3] @ values)
+def shapes_at(shapes: FloatArray, share: FloatArray) -> FloatArray:
+    """Return fields with evenly spaced nodes of quadratic elements (stack, ..., nodes) at one place each: (stack, ...).
+
+    share: (stack,), the arc length from the left support over that of the span; 1/(2 k) at the first of k antinodes.
+    """
+    elements = (shapes.shape[-1] - 1) // 2
+    element = np.minimum((share * elements).astype(np.intp), elements - 1)
+    values, _ = shape_functions(2.0 * (share * elements - element) - 1.0)
+    nodes = 2 * element[..., None] + np.arange(3)
+    inner = shapes.ndim - share.ndim - 1
+    index = nodes.reshape(*share.shape, *(1,) * inner, 3)
+    found = np.take_along_axis(shapes, np.broadcast_to(index, (*shapes.shape[:-1], 3)), axis=-1)
+    return np.asarray((found * values.reshape(*share.shape, *(1,) * inner, 3)).sum(axis=-1))

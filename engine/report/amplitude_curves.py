@@ -46,8 +46,9 @@ def _rows(
 ) -> Iterator[tuple[int, AmplitudeCurveRow]]:
     """Yield the rows of a set of branches, each with the index of its line; families and curves: (branches,)."""
     orbits, member, branch = branch_set.orbits, branch_set.member, branch_set.points.branch
-    line, coordinate = findings.line[member], _dominant_coordinates(findings, branch_set, orbits)
-    observed = observer.moving(findings, member, coordinate, states(orbits, PHASES))
+    line, shown = findings.line[member], _moving_points(branch_set)
+    coordinate = _dominant_coordinates(findings, member, orbits)[shown]
+    observed = observer.moving(findings, member, coordinate, states(orbits, PHASES)[shown])
     amplitude = half_peak_to_peak(observed.shapes.swapaxes(-1, -2) @ orbits.coefficients)
     columns = (
         findings.loops[member, coordinate],
@@ -65,14 +66,16 @@ def _rows(
         yield number, AmplitudeCurveRow(findings.name, *cells)
 
 
-def _dominant_coordinates(findings: ModelFindings, branch_set: BranchSet, orbits: Orbits) -> IntArray:
-    """Return the coordinate of largest M_ii |q_i|^2 at each point.
+def _moving_points(branch_set: BranchSet) -> IntArray:
+    """Return for each point where its motion is seen: its own index, at a Hopf point that of the next of its branch."""
+    branch = branch_set.points.branch
+    own = np.arange(branch.size)
+    following = np.minimum(own + 1, branch.size - 1)
+    still = ~branch_set.orbits.coefficients[..., 1:].any(axis=(-2, -1)) & (branch[following] == branch)
+    return np.where(still, following, own)
 
-    Nothing moves at a Hopf point: the next point of its branch decides there.
-    """
-    member, branch = branch_set.member, branch_set.points.branch
+
+def _dominant_coordinates(findings: ModelFindings, member: IntArray, orbits: Orbits) -> IntArray:
+    """Return the coordinate of largest M_ii |q_i|^2 at each point."""
     energy = findings.model.modal_masses[member] * (orbits.coefficients[..., 1:] ** 2).sum(axis=-1)
-    following = np.minimum(np.arange(branch.size) + 1, branch.size - 1)
-    still = ~energy.any(axis=-1) & (branch[following] == branch)
-    energy[still] = energy[following[still]]
     return np.asarray(energy.argmax(axis=-1))

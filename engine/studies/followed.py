@@ -5,22 +5,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray
-from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select
+from engine.arrays import BoolArray, FloatArray, IntArray, take_rows
+from engine.cycles.harmonic_balance import Orbits, half_peak_to_peak, select, states
 from engine.cycles.known_cycles import Starts, solve_starts
 from engine.cycles.resolution import resolved_stability
 from engine.mechanics.modes import directional_shapes
-from engine.mechanics.static_profile import horizontal_position
-from engine.models.discretization import Discretization, discretize, observation
+from engine.mechanics.static_profile import arc_position, horizontal_position
+from engine.models.discretization import Discretization, discretize, shapes_at
 from engine.models.hybrid import hybrid_model
 from engine.models.reduced_model import ReducedModel, take
 from engine.outcome import Fault, require
 from engine.report.cells import finite_or_none
+from engine.report.observers.widest_places import widest_places
 from engine.result import FollowedBifurcationRow, FollowedCycleRow, Result
 from engine.spec import Analysis, Line, Model
 from engine.studies.field_branches import FieldCycles, FieldProblem, follow_over_field
 from engine.studies.field_models import field_models
 
+PHASES = 2.0 * np.pi * np.arange(24) / 24  # at which the widest place is sought
 MORE_HARMONICS = 4  # added to those asked for: near a fold truncation shifts the field's value more than the amplitude
 
 LineAt = Callable[[float], Line]
@@ -130,7 +132,9 @@ class _Study:
                 if row.model is not Model.HYBRID or row.kind != "periodic" or row.frequency_hz is None:
                     continue
                 column = self.analysis.loops.index(row.loops)
-                seen = observation(discretization, grid.shapes[i, column], row.loops)
+                arc = arc_position(discretization.profile, np.full(len(results), row.observed_at_m))[i]
+                share = arc / discretization.profile.arc_length[[i]]
+                seen = shapes_at(grid.shapes[[i], column], share)[0]
                 observed = np.array([orbit.vertical, orbit.horizontal, orbit.torsional])[:, :size]
                 series = np.linalg.pinv(seen.T) @ observed
                 coefficients.append(np.pad(series, ((0, 0), (0, size - series.shape[1]))))
@@ -156,18 +160,23 @@ def _cycle_rows(
     column = study.column[found.member]
     models = take(grid, (found.value, column))
     orbits, judged, kept, _ = resolved_stability(models, np.arange(column.size), found.orbits)
+    loops_of = np.array(study.analysis.loops)[column]
+    coordinate = np.asarray((models.modal_masses * (orbits.coefficients[..., 1:] ** 2).sum(axis=-1)).argmax(axis=-1))
+    displacement = states(orbits, PHASES)[..., : models.mass.shape[-1]]
+    seen = widest_places(models.shapes, models.direction[coordinate], loops_of, coordinate, displacement)
+    amplitudes = half_peak_to_peak(seen.shapes.swapaxes(-1, -2) @ orbits.coefficients)
+    profile = take_rows(discretization.profile, found.value)
+    position = horizontal_position(profile, profile.arc_length * seen.share)
     for i in np.flatnonzero(kept).tolist():
-        loops, value = study.analysis.loops[column[i]], int(found.value[i])
-        seen = observation(discretization, models.shapes[i], loops)
-        vertical, horizontal, torsional = half_peak_to_peak(seen.T @ orbits.coefficients[i]).tolist()
-        place = horizontal_position(discretization.profile, discretization.profile.arc_length / (2.0 * loops))
+        loops, value = int(loops_of[i]), int(found.value[i])
+        vertical, horizontal, torsional = amplitudes[i].tolist()
         row = FollowedCycleRow(
             loops=loops,
             wind_speed_m_per_s=float(orbits.wind_speed[i]),
             branch=int(found.branch[i]),
             stability=judged.stability[i],
             frequency_hz=float(orbits.angular_frequency[i] / (2.0 * np.pi)),
-            observed_at_m=float(place[value]),
+            observed_at_m=float(position[i]),
             vertical_m=vertical,
             horizontal_m=horizontal,
             torsional_rad=torsional,

@@ -8,7 +8,6 @@ from engine.outcome import Outcome, Stability
 from engine.result import LimitCycleRow, Result
 from engine.result.remedies import Change
 from engine.spec import Analysis, Model
-from engine.studies.both_ends import Views
 
 LEAST = 0.01  # relative change that counts: as much as a cycle may be off that direct integration confirms
 
@@ -27,23 +26,8 @@ class Figures:
     distance: float | None = None
 
 
-def figures(views: Views, model: Model, analysis: Analysis) -> Figures:
-    """Return what one model says of a line, seen from both ends if it is not symmetric."""
-    found = [_figures(result, model, analysis) for result in views]
-    sizes = [one.size for one in found if one.size is not None]
-    distances = [one.distance for one in found if one.distance is not None]
-    return Figures(
-        onset=found[0].onset,
-        size=_largest(sizes) if sizes else None,
-        distance=min(distances) if len(distances) == len(found) else None,
-    )
-
-
-def _largest(values: Sequence[float]) -> float:
-    return math.nan if any(math.isnan(value) for value in values) else max(values)
-
-
-def _figures(result: Result, model: Model, analysis: Analysis) -> Figures:
+def figures(result: Result, model: Model, analysis: Analysis) -> Figures:
+    """Return what one model says of a line."""
     failed = any(row.outcome is not Outcome.CONVERGED for row in result.frequencies if row.model is model)
     onsets = (
         row.wind_speed_m_per_s
@@ -80,10 +64,10 @@ def is_worse(without: Figures, changed: Figures) -> bool:
     return math.isnan(changed.onset) or (changed.size is not None and not math.isfinite(changed.size))
 
 
-def judged(without: Views, changed: Views, analysis: Analysis) -> Change:
+def judged(without: Result, changed: Result, analysis: Analysis) -> Change:
     """Return whether a changed line is better, as `compared`, in the figures of every model that both results have."""
     found: set[Change] = set()
-    for model in common_models(without[0], changed[0]):
+    for model in common_models(without, changed):
         found |= _measured(figures(without, model, analysis), figures(changed, model, analysis))
     return _together(found) if found else "undecided"
 

@@ -26,10 +26,9 @@ from engine.spec import (
     separation_on,
 )
 from engine.studies.arrangements import Room, practice, taken_places
-from engine.studies.both_ends import Views, is_symmetric, mirrored, views
 from engine.studies.judgement import Figures, few, figures, is_worse, judged
 from engine.uncertainty.outcomes import State
-from engine.uncertainty.runs import sampled_analysis
+from engine.uncertainty.runs import analysed, sampled_analysis
 
 SEARCH_SHARE = 0.8  # of the progress; the rest is the full analysis without and with the devices
 TOLERANCE = 1e-3  # spread of a generation relative to its mean, below which the search has converged
@@ -111,25 +110,16 @@ def _confirmed(
     finalists = candidates.finalists(best)
     first = [candidates.line(unknowns) for unknowns in finalists[:1]]
     without, *results = yield from analyse_stack([line, *first], analysis)
-    known, before = math.isfinite(candidates.nothing), _seen(line, without, analysis)
+    known = math.isfinite(candidates.nothing)
     changes: list[Change] = []
     for number, unknowns in enumerate(finalists):
-        changed = candidates.line(unknowns)
         if number > 0:
             yield Progress(number / len(finalists), "another arrangement, because one did not improve the line")
-            results = finished(analyse_stack([changed], analysis))
-        changes.append(judged(before, _seen(changed, results[0], analysis), analysis))
+            results = finished(analyse_stack([candidates.line(unknowns)], analysis))
+        changes.append(judged(without, results[0], analysis))
         if changes[-1] == "better" or not known:
             return _Compared(without, tuple(changes), results[0], unknowns)
     return _Compared(without, tuple(changes), without, None)
-
-
-def _seen(line: Line, result: Result, analysis: Analysis) -> Views:
-    """Return a result as it is seen from both ends by the hybrid model, if the line is not symmetric."""
-    if is_symmetric(line) or Model.HYBRID not in analysis.models:
-        return (result,)
-    (image,) = finished(analyse_stack([mirrored(line)], replace(analysis, models=(Model.HYBRID,))))
-    return result, image
 
 
 def _no_improvement(candidates: "_Candidates", changes: Sequence[Change]) -> str:
@@ -153,7 +143,7 @@ class _Candidates:
             wind_speeds=few(analysis.wind_speeds) if onset_sought else tuple(sorted(set(analysis.wind_speeds))),
         )
         self._known: dict[tuple[float, ...], float] = {}
-        (alone,) = views([line], self._analysis)
+        (alone,) = analysed([line], self._analysis)
         self._without = self._figures(alone)
         self.nothing = self._objective(self._without)
 
@@ -196,7 +186,7 @@ class _Candidates:
         free = {key: line for key, line in lines.items() if self._keeps_away(line)}
         self._known.update(dict.fromkeys(new.keys() - free.keys(), math.inf))
         if free:
-            self._known.update(zip(free, map(self._value, views(list(free.values()), self._analysis)), strict=True))
+            self._known.update(zip(free, map(self._value, analysed(list(free.values()), self._analysis)), strict=True))
         return np.array([self._known[key] for key in keys])
 
     def _keeps_away(self, line: Line) -> bool:
@@ -206,10 +196,10 @@ class _Candidates:
         own = [device.position for device in placed if isinstance(device, PointDevice)]
         return all(abs(place - other) >= self._separation for place in own for other in taken)
 
-    def _figures(self, found: Views | State) -> Figures:
+    def _figures(self, found: Result | State) -> Figures:
         return Figures(math.nan) if isinstance(found, State) else figures(found, Model.HYBRID, self._analysis)
 
-    def _value(self, found: Views | State) -> float:
+    def _value(self, found: Result | State) -> float:
         changed = self._figures(found)
         return math.inf if is_worse(self._without, changed) else self._objective(changed)
 

@@ -23,13 +23,12 @@ from engine.spec import (
 )
 from engine.spec.remedies import Placed
 from engine.studies.arrangements import Places, Room, room_on
-from engine.studies.both_ends import Views, is_symmetric, larger, mirrored, views
 from engine.studies.judgement import Figures, common_models, few, figures, is_worse, judged
 from engine.studies.place_search import MOST_ROUNDS, Found, Score, search
 from engine.studies.remedy_rows import Tried, remedy_rows
 from engine.studies.usual_remedies import usual_remedies
 from engine.uncertainty.outcomes import SampleOutcome, State
-from engine.uncertainty.runs import outcomes, sampled_analysis
+from engine.uncertainty.runs import analysed, outcomes, sampled_analysis
 from engine.uncertainty.weighing import Unknowns, Weighed, weighed_with_samples
 
 FINALISTS = 3  # arrangements that the full analysis compares with the line as it is
@@ -100,7 +99,7 @@ def compare(
         first = ALONE + number * part
         proposals.append((yield from translated(study.proposal(remedy), _between(first, first + part))))
     yield Progress(SEARCHED, "analysis with each remedy")
-    without, tried = study.analysed(proposals)
+    tried = study.tried(proposals)
     for number, one in enumerate(tried):
         first = ANALYSED + (1.0 - ANALYSED) * number / len(tried)
         last = ANALYSED + (1.0 - ANALYSED) * (number + 1) / len(tried)
@@ -108,7 +107,9 @@ def compare(
         tried[number] = replace(one, outcomes=tuple(of_samples))
     yield Progress(1.0, "done")
     warnings = (*weighed.result.warnings, *notes)
-    return replace(weighed.result, warnings=warnings, remedies=remedy_rows(without, weighed.outcomes, tried, plain))
+    return replace(
+        weighed.result, warnings=warnings, remedies=remedy_rows(weighed.result, weighed.outcomes, tried, plain)
+    )
 
 
 def _weighed(subject: Subject, analysis: Analysis, asked: Uncertainty) -> Generator[Progress, None, Weighed]:
@@ -140,11 +141,11 @@ class _Study:
         tied = bool(probe.interphase_spacers)  # only the finite element model knows them, and takes long
         asked = replace(self.analysis, models=(Model.FINITE_ELEMENT,)) if tied else sampled_analysis(self.analysis)
         asked = replace(asked, wind_speeds=few(asked.wind_speeds), risk=False)
-        (alone,) = views([line], asked)
+        (alone,) = analysed([line], asked)
         without = Figures(math.nan) if isinstance(alone, State) else figures(alone, asked.models[0], asked)
 
         def scores(several: Sequence[Places]) -> list[Score]:
-            found = views([remedy.on(line, places) for places in several], asked)
+            found = analysed([remedy.on(line, places) for places in several], asked)
             return [_score(without, one, asked) for one in found]
 
         return (yield from search(count, self._room(remedy), length, scores, rounds=0 if tied else MOST_ROUNDS))
@@ -165,39 +166,34 @@ class _Study:
             return replace(self.subject.line, span=self.subject.restrung(remedy, {}).span)
         return remedy.on(self.subject.line, places or ())
 
-    def analysed(self, proposals: Sequence[_Proposal]) -> tuple[Views, list[Tried]]:
-        """Analyse the line as it is from both ends, and with every remedy.
+    def tried(self, proposals: Sequence[_Proposal]) -> list[Tried]:
+        """Analyse the line with every remedy.
 
         Of searched places the first ones count that are better by every model, if there are any.
         """
-        line = self.subject.line
-        firsts = [self.changed(one.remedy, one.places[0]) for one in proposals if one.places]
-        images = [] if is_symmetric(line) else [mirrored(line)]
-        found = views([*images, *firsts], self.analysis)
-        image = found[0] if images else ()
-        without: Views = (self.weighed.result, *(() if isinstance(image, State) else image[:1]))
-        results = placed(found[len(images) :], [bool(one.places) for one in proposals])
-        return without, [self._tried(one, without, own) for one, own in zip(proposals, results, strict=True)]
+        found = analysed([self.changed(one.remedy, one.places[0]) for one in proposals if one.places], self.analysis)
+        results = placed(found, [bool(one.places) for one in proposals])
+        return [self._tried(one, own) for one, own in zip(proposals, results, strict=True)]
 
-    def _tried(self, proposal: _Proposal, without: Views, first: Views | State | None) -> Tried:
+    def _tried(self, proposal: _Proposal, first: Result | State | None) -> Tried:
         tried = Tried(proposal.remedy, arrangements=proposal.arrangements)
         for number, places in enumerate(proposal.places):
             line = self.changed(proposal.remedy, places)
-            found = first if number == 0 else views([line], self.analysis)[0]
+            found = first if number == 0 else analysed([line], self.analysis)[0]
             if found is None or isinstance(found, State):
                 tried = replace(tried, change="undecided")
                 continue
-            change = judged(without, found, self.analysis)
+            change = judged(self.weighed.result, found, self.analysis)
             given = proposal.arrangements is None
             if given or change == "better" or (change == "undecided" and not self._is_known):
-                return replace(tried, line=line, places=places, views=found, change=change)
+                return replace(tried, line=line, places=places, result=found, change=change)
         return tried if proposal.arrangements is None else replace(tried, change="no_improvement")
 
     @property
     def _is_known(self) -> bool:
         """Whether the line as it is has figures to compare with, by every model."""
         result = self.weighed.result
-        found = [figures((result,), model, self.analysis) for model in common_models(result)]
+        found = [figures(result, model, self.analysis) for model in common_models(result)]
         return all(math.isfinite(one.size or 0.0) and not math.isnan(one.onset) for one in found)
 
     def samples(self, tried: Tried) -> Generator[Progress, None, list[SampleOutcome]]:
@@ -212,14 +208,10 @@ class _Study:
             return remedy.on(self.subject.unknowns.line_of(chosen), tried.places or ())
 
         asked = replace(self.analysis, risk=False)
-        found = yield from outcomes(self.weighed.chosen, line_of, asked)
-        if is_symmetric(line):
-            return found
-        image = yield from outcomes(self.weighed.chosen, lambda chosen: mirrored(line_of(chosen)), asked)
-        return [larger(one, other) for one, other in zip(found, image, strict=True)]
+        return (yield from outcomes(self.weighed.chosen, line_of, asked))
 
 
-def _score(without: Figures, found: Views | State, analysis: Analysis) -> Score:
+def _score(without: Figures, found: Result | State, analysis: Analysis) -> Score:
     """Return the largest motion and, less is better, the onset below the limit; infinite if worse than nothing."""
     if isinstance(found, State):
         return math.inf, math.inf

@@ -10,7 +10,6 @@ from engine.report.cells import finite_or_none
 from engine.result import Change, RemedyRow, Result
 from engine.spec import Analysis, Line, Model, Remedy
 from engine.studies.arrangements import Places
-from engine.studies.both_ends import Views
 from engine.studies.judgement import Figures, common_models, compared, figures
 from engine.studies.remedy_words import what_is_done, what_it_does
 from engine.uncertainty.estimates import probability, quantile, sizes, wilson
@@ -19,7 +18,7 @@ from engine.uncertainty.outcomes import SampleOutcome, State
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """A remedy with its line, places [m], results and samples; without a line a search found no improvement.
+    """A remedy with its line, places [m], result and samples; without a line a search found no improvement.
 
     arrangements: how many a search computed, None where places were given.
     """
@@ -29,18 +28,18 @@ class Tried:
     line: Line | None = None
     places: Places | None = None
     arrangements: int | None = None
-    views: Views = ()
+    result: Result | None = None
     outcomes: tuple[SampleOutcome, ...] = ()
 
 
 def remedy_rows(
-    without: Views, outcomes: Sequence[SampleOutcome], tried: Sequence[Tried], analysis: Analysis
+    without: Result, outcomes: Sequence[SampleOutcome], tried: Sequence[Tried], analysis: Analysis
 ) -> tuple[RemedyRow, ...]:
     """Return the row of the line as it is, then one for each remedy in the order of the request.
 
     Parameters
     ----------
-    without : Views
+    without : Result
         The line as it is.
     outcomes : sequence of SampleOutcome
         Of its samples.
@@ -57,24 +56,26 @@ def remedy_rows(
         onset_change_m_per_s=None,
         motion_change=None,
         arrangements=None,
-        **_figures(without, common_models(without[0]), analysis),
+        **_figures(without, common_models(without), analysis),
         **_samples(outcomes),
         **_compared(outcomes, ()),
-        sentence=without[0].verdict[0].sentence,
+        sentence=without.verdict[0].sentence,
     )
     rows = [_row(number, one, without, outcomes, analysis) for number, one in enumerate(tried)]
     return (first, *_ranked(rows))
 
 
-def _row(number: int, tried: Tried, without: Views, outcomes: Sequence[SampleOutcome], analysis: Analysis) -> RemedyRow:
-    seen = tried.views or without
-    models = common_models(without[0], seen[0])
+def _row(
+    number: int, tried: Tried, without: Result, outcomes: Sequence[SampleOutcome], analysis: Analysis
+) -> RemedyRow:
+    seen = tried.result or without
+    models = common_models(without, seen)
     own, before = _figures(seen, models, analysis), _figures(without, models, analysis)
     shares = _compared(outcomes, tried.outcomes)
     return RemedyRow(
         remedy=number,
         kind=tried.remedy.kind,
-        what=what_is_done(tried.remedy, tried.places, without[0], seen[0]),
+        what=what_is_done(tried.remedy, tried.places, without, seen),
         places=None if tried.places is None else " ".join(f"{place:g}" for place in tried.places),
         change=tried.change,
         rank=None,
@@ -102,12 +103,12 @@ def _key(row: RemedyRow) -> tuple[float, float]:
     return float(f"{size:.6g}"), -float(f"{onset:.6g}")
 
 
-def _figures(seen: Views, models: Sequence[Model], analysis: Analysis) -> dict[str, Any]:
+def _figures(seen: Result, models: Sequence[Model], analysis: Analysis) -> dict[str, Any]:
     """Return what a row says of a line by the models that both lines have."""
     found = [figures(seen, model, analysis) for model in models]
     onset = _worst([-one.onset for one in found])
     size = _worst([one.size for one in found if one.size is not None])
-    result, verdict = seen[0], seen[0].verdict[0]
+    verdict = seen.verdict[0]
     largest = [None if size is None else 2.0 * _largest(seen, models, name) for name in ("vertical_m", "horizontal_m")]
     return {
         "gallops": verdict.gallops,
@@ -115,17 +116,12 @@ def _figures(seen: Views, models: Sequence[Model], analysis: Analysis) -> dict[s
         "vertical_peak_to_peak_m": largest[0],
         "horizontal_peak_to_peak_m": largest[1],
         "motion_peak_to_peak_m": None if size is None else finite_or_none(2.0 * size),
-        "clearance_m": _smallest([one.verdict[0].clearance_m for one in seen]),
-        "clearance_margin_m": _smallest([_margin(one) for one in seen]),
-        "static_tension_n": finite_or_none(result.static.horizontal_tension_n),
+        "clearance_m": verdict.clearance_m,
+        "clearance_margin_m": _margin(seen),
+        "static_tension_n": finite_or_none(seen.static.horizontal_tension_n),
         "tension_range_n": verdict.tension_range_n,
         "trust": verdict.trust,
     }
-
-
-def _smallest(values: Sequence[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return min(known) if len(known) == len(values) else None
 
 
 def _worst(values: Sequence[float]) -> float | None:
@@ -133,9 +129,8 @@ def _worst(values: Sequence[float]) -> float | None:
     return None if not values or any(math.isnan(value) for value in values) else max(values)
 
 
-def _largest(seen: Views, models: Sequence[Model], name: str) -> float:
-    every = (row for result in seen for row in result.limit_cycles)
-    rows = (row for row in every if row.model in models and row.stability is Stability.STABLE)
+def _largest(seen: Result, models: Sequence[Model], name: str) -> float:
+    rows = (row for row in seen.limit_cycles if row.model in models and row.stability is Stability.STABLE)
     return max((getattr(row, name) or 0.0 for row in rows), default=0.0)
 
 

@@ -10,14 +10,16 @@ import numpy as np
 
 from engine.arrays import ComplexArray, FloatArray, IntArray
 from engine.cycles.floquet import monodromy, stability_verdicts
-from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, oscillation_size
-from engine.models.discretization import Discretization, observation
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, oscillation_size, states
+from engine.models.discretization import Discretization
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Outcome, Stability
-from engine.report.findings import ModelFindings
+from engine.report.findings import ModelFindings, cycle_coordinates
+from engine.report.observers.widest_places import widest_places
 from engine.result import LoopCompetitionRow
 
 STEP_FACTOR = 2  # on the number of steps of the Floquet integration, since multipliers near 1 decide
+PHASES = 2.0 * np.pi * np.arange(24) / 24  # at which the widest place is sought
 SAME_SIZE = 2.0  # ratio of sizes beyond which the solution is another motion than the cycle
 
 
@@ -55,10 +57,18 @@ def loop_competitions(
     multiplier, vector, error = _leading(monodromy(joint, line, orbits, STEP_FACTOR))
     verdict = stability_verdicts(np.abs(multiplier), error)
     energy = _energy_by_loops(joint, line, vector, len(loops))
+    moving = cycle_coordinates(hybrid)[stable_alone] * len(loops) + column
+    seen = widest_places(
+        joint.shapes[line],
+        joint.direction[moving],
+        np.array(loops)[column],
+        moving,
+        states(orbits, PHASES)[..., : joint.mass.shape[-1]],
+    )
+    amplitudes = half_peak_to_peak(seen.shapes.swapaxes(-1, -2) @ orbits.coefficients).tolist()
     for i, cycle in enumerate(stable_alone.tolist()):
         own = int(loops[column[i]])
-        observed = observation(discretization, joint.shapes[line[i]], own).T @ orbits.coefficients[i]
-        vertical, horizontal, torsional = half_peak_to_peak(observed).tolist()
+        vertical, horizontal, torsional = amplitudes[i]
         decided = bool(same_cycle[i]) and verdict[i] is not Stability.UNKNOWN
         rows[line[i]].append(
             LoopCompetitionRow(

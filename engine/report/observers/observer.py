@@ -6,11 +6,12 @@ from typing import Protocol
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import FloatArray, IntArray, take_rows
 from engine.mechanics.static_profile import end_steepness, horizontal_position
-from engine.models.discretization import Discretization, nodal_motion, observation
+from engine.models.discretization import Discretization, nodal_motion
 from engine.models.relative_wind import NodalMotion
 from engine.report.findings import ModelFindings
+from engine.report.observers.widest_places import widest_places
 from engine.spec import AerodynamicModel, Line
 
 
@@ -72,7 +73,7 @@ class Observer(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class SpanObserver:
-    """Observes single spans at s = L/(2 loops)."""
+    """Observes single spans where they move most, at rest at the first antinode, s = L/(2 loops)."""
 
     discretization: Discretization
 
@@ -103,26 +104,28 @@ class SpanObserver:
 
     def resting(self, findings: ModelFindings, member: IntArray, loops: IntArray) -> Observed:
         """Return s = L/(2 loops)."""
-        return self._observed(findings, member, loops, np.zeros((member.size, 0, 3)))
+        return self._observed(
+            findings.line[member], np.asarray(0.5 / loops, dtype=np.float64), np.zeros((member.size, 0, 3))
+        )
 
     def moving(self, findings: ModelFindings, member: IntArray, coordinate: IntArray, state: FloatArray) -> Observed:
-        """Return s = L/(2 loops) with the loops of the coordinate that moves most."""
-        loops = findings.loops[member, coordinate]
-        shapes = np.empty((member.size, findings.model.mass.shape[-1], 3))
-        for k in np.unique(loops):
-            here = loops == k
-            shapes[here] = observation(self.discretization, findings.model.shapes[member[here]], int(k))
-        return self._observed(findings, member, loops, shapes)
+        """Return where the motion of the coordinate that moves most is largest."""
+        model = findings.model
+        seen = widest_places(
+            model.shapes[member],
+            model.direction[coordinate],
+            findings.loops[member, coordinate],
+            coordinate,
+            state[..., : model.mass.shape[-1]],
+        )
+        return self._observed(findings.line[member], seen.share, seen.shapes)
 
     def local_motion(self, findings: ModelFindings, model: AerodynamicModel) -> NodalMotion:
         """Return the local motion at the nodes."""
         return nodal_motion(self.discretization, findings.line, findings.model.shapes, model)
 
-    def _observed(self, findings: ModelFindings, member: IntArray, loops: IntArray, shapes: FloatArray) -> Observed:
-        profile, line = self.discretization.profile, findings.line[member]
-        position = np.empty(line.size)
-        for k in np.unique(loops):
-            at = horizontal_position(profile, profile.arc_length / (2.0 * int(k)))
-            position[loops == k] = at[line[loops == k]]
+    def _observed(self, line: IntArray, share: FloatArray, shapes: FloatArray) -> Observed:
+        profile = take_rows(self.discretization.profile, line)
+        position = horizontal_position(profile, profile.arc_length * share)
         nothing = [None] * line.size
-        return Observed(position, profile.sag[line], shapes, nothing, nothing)
+        return Observed(position, profile.sag, shapes, nothing, nothing)

@@ -5,23 +5,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import FloatArray, IntArray, take_rows
 from engine.assemblies.assembled_line import AssembledLine
 from engine.assemblies.numbered_modes import largest_member, loops_of
 from engine.mechanics.finite_elements import V
 from engine.mechanics.static_profile import end_steepness, horizontal_position
-from engine.models.discretization import nodal_motion, observation
+from engine.models.discretization import nodal_motion
 from engine.models.relative_wind import NodalMotion
 from engine.report.findings import ModelFindings
 from engine.report.observers.observer import Observed
+from engine.report.observers.widest_places import widest_places
 from engine.spec import AerodynamicModel, Line
 
 
 @dataclass(frozen=True, slots=True)
 class SectionObserver:
-    """Observes one section in the span of the largest share of kinetic energy, at s = L/(2 loops) of that span.
+    """Observes one section in the span of the largest share of kinetic energy, where that span moves most.
 
-    The loops are those of the coordinate that moves most, in that span.
+    The antinodes are those of the loops that the coordinate that moves most has in that span.
     """
 
     whole: AssembledLine
@@ -67,18 +68,17 @@ class SectionObserver:
         )
 
     def moving(self, findings: ModelFindings, member: IntArray, coordinate: IntArray, state: FloatArray) -> Observed:
-        """Return s = L/(2 loops) in the span that moves most."""
+        """Return the widest place of the span that moves most."""
         shares = self.shares(findings, member, coordinate, state)
-        span = largest_member(shares)
-        profile, m = self.whole.members.profile, findings.model.mass.shape[-1]
-        shapes, position = np.empty((member.size, m, 3)), np.empty(member.size)
-        for i in range(member.size):
-            own = self._fields(findings.model.shapes[member[i]])[..., span[i], :]
-            loops = int(loops_of(own[coordinate[i], findings.model.direction[coordinate[i]]]))
-            shapes[i] = observation(self.whole.members, own, loops)
-            position[i] = horizontal_position(profile, profile.arc_length / (2.0 * loops))[span[i]]
+        span, every = largest_member(shares), np.arange(member.size)
+        model, profile = findings.model, take_rows(self.whole.members.profile, span)
+        fields = np.moveaxis(self._fields(model.shapes[member]), -2, 1)[every, span]
+        direction = model.direction[coordinate]
+        loops = loops_of(fields[every, coordinate, direction])
+        seen = widest_places(fields, direction, loops, coordinate, state[..., : model.mass.shape[-1]])
+        position = horizontal_position(profile, profile.arc_length * seen.share)
         texts = [" ".join(f"{share:.4f}" for share in row) for row in shares.tolist()]
-        return Observed(position, profile.sag[span], shapes, (span + 1).tolist(), texts)
+        return Observed(position, profile.sag, seen.shapes, (span + 1).tolist(), texts)
 
     def shares(self, findings: ModelFindings, member: IntArray, coordinate: IntArray, state: FloatArray) -> FloatArray:
         """Return the shares of the spans in the mean kinetic energy of motions: (motions, spans).
@@ -109,7 +109,8 @@ class SectionObserver:
 
     def _fields(self, shapes: FloatArray) -> FloatArray:
         """Return fields (..., 3, all nodes) span by span: (..., 3, spans, nodes)."""
-        return shapes.reshape(*shapes.shape[:-1], self.whole.assembly.members, -1)
+        members = self.whole.assembly.members
+        return shapes.reshape(*shapes.shape[:-1], members, shapes.shape[-1] // members)
 
     def _span_masses(self, shapes: FloatArray) -> FloatArray:
         """Return the mass of each span between the coordinates of a model (m, 3, all nodes): (spans, m, m)."""

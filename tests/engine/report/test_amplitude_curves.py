@@ -40,7 +40,10 @@ def test_a_curve_passes_through_the_cycles_at_the_winds_asked_for() -> None:
         winds, amplitudes = np.array([(row.wind_speed_m_per_s, row.vertical_m) for row in curve]).T
         assert (np.diff(winds) > 0.0).all(), "these branches have no fold"
         assert np.interp(cycle.wind_speed_m_per_s, winds, amplitudes) == pytest.approx(cycle.vertical_m, rel=0.03)
-        assert {row.observed_at_m for row in curve} == {cycle.observed_at_m}
+        places = {round(row.observed_at_m, 6) for row in curve}
+        assert round(cycle.observed_at_m, 6) in places
+        # Three loops may be largest at another antinode at other winds.
+        assert len(places) == 1 or cycle.loops == 3
 
 
 def test_points_are_numbered_along_each_curve() -> None:

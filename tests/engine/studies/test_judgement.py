@@ -56,7 +56,7 @@ def test_what_is_unknown_or_worse_is_never_better(without: Figures, changed: Fig
 
 def test_figures_of_a_result_are_those_of_its_rows() -> None:
     result = run(source_line(2), ASKED)
-    found = figures((result,), Model.HYBRID, ASKED)
+    found = figures(result, Model.HYBRID, ASKED)
     assert found.onset == pytest.approx(2.2498, rel=1e-3)
     (row,) = [r for r in result.limit_cycles if r.stability is Stability.STABLE and r.wind_speed_m_per_s == 6.0]
     assert found.size == pytest.approx(math.hypot(row.vertical_m or 0.0, row.horizontal_m or 0.0))
@@ -68,16 +68,16 @@ def test_figures_of_a_result_are_those_of_its_rows() -> None:
 )
 def test_a_motion_that_is_not_known_decides_nothing(change: dict[str, object]) -> None:
     result, fitted = run(source_line(2), ASKED), run(FITTED, ASKED)
-    assert judged((result,), (fitted,), ASKED) == "better"
+    assert judged(result, fitted, ASKED) == "better"
     rows = tuple(replace(r, **change) if r.kind != "equilibrium" else r for r in fitted.limit_cycles)  # type: ignore[arg-type]
     assert rows != fitted.limit_cycles
-    assert judged((result,), (replace(fitted, limit_cycles=rows),), ASKED) == "undecided"
+    assert judged(result, replace(fitted, limit_cycles=rows), ASKED) == "undecided"
 
 
 def test_an_unstable_rest_without_a_stable_motion_is_not_known() -> None:
     fitted = run(FITTED, ASKED)
     rests = tuple(row for row in fitted.limit_cycles if row.kind == "equilibrium")
-    size = figures((replace(fitted, limit_cycles=rests),), Model.HYBRID, ASKED).size
+    size = figures(replace(fitted, limit_cycles=rests), Model.HYBRID, ASKED).size
     assert size is not None
     assert math.isnan(size)
 

@@ -25,7 +25,6 @@ from engine.spec import (
     Spacer,
     SpoilerChoice,
 )
-from engine.studies.both_ends import mirrored
 from engine.studies.placement import place
 from tests.builders import ICE_AT_40, only, run, source_line, stable_cycles
 from tests.engine.uncertainty.den_hartog_line import line_of as den_hartog_line
@@ -86,12 +85,8 @@ def test_the_lowest_amplitude_is_sought_at_the_wind_speeds_asked_for() -> None:
     choice = PendulumChoice(1, (20.0, 50.0), (5.0, 20.0), (0.2, 0.5))
     result, _ = placed(source_line(2), asked, Placement(choice, Objective.LOWEST_AMPLITUDE, 4, 8))
     (row,) = result.placements
-    pendulum = DetuningPendulum(row.position_m or 0.0, row.mass_kg or 0.0, row.arm_m or 0.0)
-    seen_from_right = run(mirrored(replace(source_line(2), devices=(pendulum,))), asked)
     sizes = [
-        math.hypot(r.vertical_m or 0.0, r.horizontal_m or 0.0)
-        for seen in (result, seen_from_right)
-        for r in stable_cycles(seen, loops=2, wind_speed=4.0)
+        math.hypot(r.vertical_m or 0.0, r.horizontal_m or 0.0) for r in stable_cycles(result, loops=2, wind_speed=4.0)
     ]
     assert row.objective_value == pytest.approx(max(sizes), rel=1e-6)
     (effect,) = result.device_effects

@@ -29,12 +29,12 @@ from engine.spec import (
     Spacer,
     Uncertainty,
 )
-from engine.studies.both_ends import mirrored
 from engine.studies.judgement import figures, judged
 from engine.studies.remedies import Subject, compare
 from engine.uncertainty.weighing import Unknowns, intervals
 from tests.builders import ICE_AT_40, only, run, source_line, stable_cycles
 from tests.engine.known.known_lines import GUIDE
+from tests.engine.mirror_images import mirrored
 
 ASKED = only(Model.HYBRID, loops=(2,), wind_speeds=(6.0,))
 NO_SAMPLES = Uncertainty(0)
@@ -102,13 +102,13 @@ def test_a_row_is_the_analysis_of_the_changed_line(number: int) -> None:
     else:
         middle = float(row.places or "nan")
         changed = replace(line, devices=(replace(SPOILER, start=middle - 30.0, stop=middle + 30.0),))
-    seen = tuple(run(one, ASKED) for one in (changed, mirrored(changed)))
+    seen = run(changed, ASKED)
     own = figures(seen, Model.HYBRID, ASKED)
     size = None if own.size is None or math.isinf(own.size) else 2.0 * own.size
-    expected = (own.onset, size, seen[0].static.horizontal_tension_n)
+    expected = (own.onset, size, seen.static.horizontal_tension_n)
     assert figures_of(row) == tuple(value if value is None else pytest.approx(value) for value in expected)
-    assert row.change == judged((run(line, ASKED),), seen, ASKED)
-    vertical = max(2.0 * (r.vertical_m or 0.0) for one in seen for r in stable_cycles(one, loops=2, wind_speed=6.0))
+    assert row.change == judged(run(line, ASKED), seen, ASKED)
+    vertical = max(2.0 * (r.vertical_m or 0.0) for r in stable_cycles(seen, loops=2, wind_speed=6.0))
     assert row.vertical_peak_to_peak_m == pytest.approx(vertical)
 
 
@@ -175,7 +175,7 @@ def test_devices_move_and_stay_in_order() -> None:
     moved = MovedDevices(Spacer, (100.0, 20.0)).on(line, (100.0, 20.0))
     assert moved.devices == (line.devices[1], Spacer(20.0, 4.0, 0.3), Spacer(100.0, 5.0, 0.3))
     (row,) = rows(line, MovedDevices(Spacer, (20.0, 100.0)))[1:]
-    own = figures((run(moved, ASKED),), Model.HYBRID, ASKED)
+    own = figures(run(moved, ASKED), Model.HYBRID, ASKED)
     assert row.onset_m_per_s == pytest.approx(own.onset, rel=1e-9)
 
 
