@@ -11,7 +11,7 @@ from starlette.types import ASGIApp
 
 from app.coalescing.grouped_calls import GroupedCalls, committed_together
 from app.coalescing.shared_watch import SharedWatch
-from app.http import problems
+from app.http import cors, problems
 from app.http.compression import Compression
 from app.http.head_as_get import HeadAsGet
 from app.http.prefix import UnderPrefix
@@ -37,6 +37,7 @@ from app.routes import (
     events,
     explorer,
     health,
+    job_changes,
     jobs,
     lines,
     own_aerodynamics,
@@ -117,13 +118,17 @@ def create_app(settings: Settings | None = None) -> Service:
     problems.install(app, limits, frame.shown_problem)
     app.add_middleware(Compression)
     app.add_middleware(HeadAsGet)
+    if settings.cors_origins:
+        cors.install(app, settings.cors_origins)
     _add_addresses(app)
     return app
 
 
 def _add_addresses(app: Service) -> None:
     """Add the routes of the API, the pages, and the files that both need."""
-    for module in (jobs, remedies, lines, previews, results, pictures, batch_intake, batches, batch_results):
+    for module in (jobs, job_changes, remedies, lines, previews, results, pictures):
+        app.include_router(module.router)
+    for module in (batch_intake, batches, batch_results):
         app.include_router(module.router)
     for module in (batch_ranking, clearance, events, deliveries, aerodynamics, own_aerodynamics, own_conductors):
         app.include_router(module.router)

@@ -60,6 +60,7 @@ WITHOUT_A_TEST_FILE = {
     "app.routes.own_documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",
     "app.routes.reference_documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",
     "app.schemas.batch": SCHEMA,
+    "app.schemas.labels": SCHEMA,
     "app.schemas.devices": SCHEMA,
     "app.schemas.environment": SCHEMA,
     "app.schemas.fields": SCHEMA,

@@ -95,9 +95,23 @@ def get(session: Session, owner: str, batch_id: UUID) -> Batch | None:
     return session.scalars(_of(owner, batch_id)).one_or_none()
 
 
-def page(session: Session, owner: str, after: tuple[datetime, UUID] | None, limit: int) -> list[Batch]:
-    """Return the owner's newest batches, or those after `after`, the (created_at, id) of the last one seen."""
+def page(
+    session: Session,
+    owner: str,
+    after: tuple[datetime, UUID] | None,
+    limit: int,
+    created: tuple[datetime | None, datetime | None] = (None, None),
+) -> list[Batch]:
+    """Return the owner's newest batches, or those after `after`, the (created_at, id) of the last one seen.
+
+    `created` are moments after and before which the batches were created, None for any.
+    """
     statement = select(Batch).where(Batch.owner == owner, Batch.received_at.is_not(None))
+    since, until = created
+    if since is not None:
+        statement = statement.where(Batch.created_at > since)
+    if until is not None:
+        statement = statement.where(Batch.created_at < until)
     if after is not None:
         statement = statement.where(tuple_(Batch.created_at, Batch.id) < after)
     return list(session.scalars(statement.order_by(Batch.created_at.desc(), Batch.id.desc()).limit(limit)))

@@ -15,15 +15,18 @@ _READING = frozenset({"GET", "HEAD"})
 
 
 class KnownParametersRoute(APIRoute):
-    """A route that refuses unknown query parameters of a request that changes something, where a slip costs most."""
+    """A route that refuses unknown query parameters, since a slip in a name would do or show something else.
+
+    Pages are read with whatever a link adds to their address.
+    """
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         """Return the handler that looks at the names of the parameters first."""
         handler = super().get_route_handler()
-        known = frozenset(_parameters(self.dependant))
+        known, strict = frozenset(_parameters(self.dependant)), self.include_in_schema
 
         async def knowing(request: Request) -> Response:
-            if request.scope["query_string"] and request.method not in _READING:
+            if request.scope["query_string"] and (strict or request.method not in _READING):
                 _refuse_unknown(request, known)
             return await handler(request)
 

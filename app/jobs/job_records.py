@@ -182,6 +182,19 @@ def cancel(session: Session, caller: Caller, job_id: UUID, *, may_remove: bool =
     return CancelOutcome.REMOVED
 
 
+def relabel(session: Session, caller: Caller, job: Job, labels: Mapping[str, Any]) -> None:
+    """Change those of a job's name, asset_id and tags that are given; None removes one, or all tags."""
+    for name in ("name", "asset_id"):
+        if name in labels:
+            setattr(job, name, labels[name])
+    if "tags" in labels:
+        kept = {} if labels["tags"] is None else {tag.key: tag.value for tag in job.tags}
+        changed = {key: value for key, value in {**kept, **(labels["tags"] or {})}.items() if value is not None}
+        session.execute(delete(JobTag).where(JobTag.job_id == job.id))
+        insert_rows(session, JobTag, [{"job_id": job.id, "key": key, "value": changed[key]} for key in sorted(changed)])
+    audit.record(session, caller, AuditAction.JOB_RELABELLED, job.id)
+
+
 def record(session: Session, job_id: UUID, kind: JobEventKind, *, attempt: int = 0, detail: str | None = None) -> None:
     """Add an event to a job's history, in the transaction in which it happens."""
     session.add(JobEvent(job_id=job_id, at=database_time(session), kind=kind, attempt=attempt, detail=detail))

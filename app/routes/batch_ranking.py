@@ -15,13 +15,14 @@ from app.batches.ranking import Order, Place
 from app.http import paging
 from app.http.prefix import LinkedJSON
 from app.http.problems import ProblemKind, query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import batch_address, require_results
 from app.routes.dependencies import PREFIX, CallerOf, Readers, SettingsOf
 from app.runtime.settings import signing_key
 from app.storage.stored_results import ranking_columns
 
-router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
+router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"], route_class=KnownParametersRoute)
 
 _CRITICAL, _HEIGHT, _WIDTH = "lowest_critical_wind_speed_m_per_s", "largest_height_m", "largest_width_m"
 Spacing = Annotated[float | None, Field(gt=0.0, le=100.0)]

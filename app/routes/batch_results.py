@@ -17,13 +17,14 @@ from app.export.exported_columns import exported_columns
 from app.export.formats import Dialect
 from app.http.conditional import strong_tag, unless_known
 from app.http.problems import ProblemError, ProblemKind, query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import require_results
 from app.routes.dependencies import PREFIX, CallerOf, Readers
 from app.routes.finished_jobs import KnownTags
 from app.routes.streaming import streamed
 
-router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"])
+router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"], route_class=KnownParametersRoute)
 
 BatchFormat = Literal["ndjson", "json", "csv", "parquet", "xlsx", "geojson"]
 MEDIA_TYPES: dict[BatchFormat, str] = {

@@ -5,6 +5,7 @@ from urllib.parse import urlencode
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Response
+from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy.orm import Session
 
 from app import convert
@@ -27,12 +28,29 @@ from app.routes.batch_status import (
 )
 from app.routes.dependencies import RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
+from app.routes.moments import Moment
 from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
 from app.runtime.settings import signing_key
 from app.security.caller import Owned
 from app.tables import ENDED
 
 router = APIRouter(prefix=BATCHES, tags=["batches"], route_class=KnownParametersRoute)
+
+
+class BatchListQuery(BaseModel):
+    """Filters of a list of batches, and where the page begins."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    created_after: Moment | None = Field(
+        default=None, description="Only batches created after this time, with a time zone"
+    )
+    created_before: Moment | None = Field(
+        default=None, description="Only batches created before this time, with a time zone"
+    )
+    limit: int = Field(default=20, ge=1, le=100, description="Most batches on the page")
+    cursor: str | None = Field(default=None, max_length=200, description="Cursor from a `next` address")
+
 
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
 
@@ -79,23 +97,21 @@ def batch_status(
     },
 )
 def list_batches(
-    settings: SettingsOf,
-    caller: CallerOf,
-    readers: Readers,
-    limit: Annotated[int, Query(ge=1, le=100, description="Most batches on the page")] = 20,
-    cursor: Annotated[str | None, Query(max_length=200, description="Cursor from a `next` address")] = None,
+    settings: SettingsOf, caller: CallerOf, readers: Readers, query: Annotated[BatchListQuery, Query()]
 ) -> LinkedJSON:
     """Return one page of the batches, newest first; `next` is the address of the next page."""
     key = signing_key(settings)
-    after = _place(key, cursor) if cursor else None
+    after = _place(key, query.cursor) if query.cursor else None
     with readers() as session:
-        found = batch_records.page(session, caller.owner, after, limit + 1)
-        shown = found[:limit]
+        created = query.created_after, query.created_before
+        found = batch_records.page(session, caller.owner, after, query.limit + 1, created)
+        shown = found[: query.limit]
         counts = batch_progress.counts(session, [batch.id for batch in shown])
     following = None
-    if len(found) > limit:
+    if len(found) > query.limit:
         place = paging.encode(key, (shown[-1].created_at, shown[-1].id))
-        following = f"{router.prefix}?{urlencode({'limit': limit, 'cursor': place})}"
+        kept = query.model_dump(mode="json", exclude_none=True) | {"cursor": place}
+        following = f"{router.prefix}?{urlencode(kept)}"
     documents = [batch_summary(batch, counts[batch.id]) for batch in shown]
     return LinkedJSON({"batches": documents, "next": following})
 

@@ -12,6 +12,7 @@ from app.export import formats
 from app.export.clearance_report import COLUMNS, report_rows
 from app.export.formats import Dialect
 from app.http.problems import ProblemError, ProblemKind, query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, Readers
 from app.routes.finished_jobs import FinishedJob
@@ -19,7 +20,7 @@ from app.routes.results import point_rows, request_of_point
 from app.schemas.fields import example_of
 from app.storage import stored_results
 
-router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
+router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"], route_class=KnownParametersRoute)
 
 Spacing = Annotated[float, Field(ge=-100.0, le=100.0)]
 

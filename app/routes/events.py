@@ -12,6 +12,7 @@ from sqlalchemy import func, select
 
 from app.http.conditional import Bodiless
 from app.http.problems import ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import batch_progress
 from app.jobs.watched_states import BatchSeen, Happening
 from app.routes import documentation
@@ -22,7 +23,7 @@ from app.routes.waiting import BatchWatch, JobWatch
 from app.security.caller import Owned
 from app.tables import ENDED, JobEvent, JobEventKind
 
-router = APIRouter(prefix=PREFIX)
+router = APIRouter(prefix=PREFIX, route_class=KnownParametersRoute)
 
 _NUMBER = re.compile(r"[0-9]{1,18}")
 _KINDS_WITH_DETAIL = frozenset({JobEventKind.FAILED, JobEventKind.RELEASED})

@@ -1,6 +1,6 @@
 """Check requests that become jobs, store them, and answer with their status."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 
 from anyio import to_thread
@@ -31,7 +31,11 @@ async def accepted_job(request: Request, document: schemas.JobRequest, key: Key 
         422 with every fault of the document.
     """
     await check_request(request, document)
-    order = _order(request.state.caller, document, key, may_reuse=may_reuse)
+    return await accepted_order(request, _order(request.state.caller, document, key, may_reuse=may_reuse))
+
+
+async def accepted_order(request: Request, order: Order) -> Response:
+    """Store an order as a job and send it; or answer as before, if its key was used."""
     shared = request.app.state  # read directly, since a FastAPI dependency costs as much as checking the line
     try:
         job: Job = await shared.inbox.call(order)
@@ -47,11 +51,18 @@ async def accepted_job(request: Request, document: schemas.JobRequest, key: Key 
 def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Order:
     line, kept = document.line, document.kept()
     submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
-    keyed = None
-    if key is not None:
-        fingerprint = idempotency.fingerprint(JOBS, job_records.canonical(kept), document.webhook_url or "")
-        keyed = Keyed(key, fingerprint, lambda job: stored_answer(_accepted(job)))
-    return Order(submission, document.webhook_url, may_reuse, keyed)
+    order = Order(submission, document.webhook_url, may_reuse)
+    if key is None:
+        return order
+    fingerprint = idempotency.fingerprint(JOBS, job_records.canonical(kept), document.webhook_url or "")
+    return keyed_order(order, key, fingerprint)
+
+
+def keyed_order(order: Order, key: Key | None, fingerprint: str) -> Order:
+    """Return an order that is done once under its key, if there is one."""
+    if key is None:
+        return order
+    return replace(order, keyed=Keyed(key, fingerprint, lambda job: stored_answer(_accepted(job))))
 
 
 def _accepted(job: Job) -> LinkedJSON:

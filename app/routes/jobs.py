@@ -1,13 +1,11 @@
 """Submit, read, list and cancel jobs."""
 
-from datetime import UTC, datetime
 from typing import Annotated
 from urllib.parse import urlencode
 from uuid import UUID
 
 from fastapi import APIRouter, Body, Query, Request, Response
-from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, Field
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy.orm import Session
 
 from app import schemas
@@ -23,6 +21,7 @@ from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_on
 from app.routes.job_intake import JOBS, accepted_job, estimate
 from app.routes.job_status import find_job, find_status, job_address, job_document
 from app.routes.known_lines import KnownLineRoute
+from app.routes.moments import Moment
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.settings import signing_key
 from app.schemas.fields import Label, example_of
@@ -34,23 +33,6 @@ router = APIRouter(prefix=JOBS, tags=["jobs"], route_class=KnownLineRoute)
 _MOST_ON_PAGE = 500
 _REQUESTS = documentation.REQUESTS | own_documentation.KNOWN_REQUESTS
 _COMMON = documentation.problems(ProblemKind.NOT_FOUND)
-
-
-def _in_utc(moment: datetime) -> datetime:
-    """Return a moment in UTC.
-
-    Raises
-    ------
-    PydanticCustomError
-        If it lies outside the years that a date has there.
-    """
-    try:
-        return moment.astimezone(UTC)
-    except OverflowError as error:
-        raise PydanticCustomError("moment", "must lie in the years 1 to 9999 of UTC") from error
-
-
-Moment = Annotated[AwareDatetime, AfterValidator(_in_utc)]
 
 
 class ListQuery(BaseModel):

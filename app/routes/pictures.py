@@ -11,6 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app import convert, plots
 from app.http.problems import ProblemError, ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.interactive import Workshop
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, CallerOf, Readers
@@ -19,7 +20,7 @@ from app.routes.results import point_rows, request_of_point
 from app.storage import stored_results
 from app.tables import Job
 
-router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}/plots", tags=["results"])
+router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}/plots", tags=["results"], route_class=KnownParametersRoute)
 
 PictureFormat = Literal["svg", "png", "pdf"]
 Tables = dict[str, list[dict[str, Any]]]

@@ -9,6 +9,7 @@ from app.answers.reference import ConductorList, FieldList, IceShapeList, TableL
 from app.convert import ENGINE_VERSION
 from app.export.exported_columns import all_tables
 from app.http.problems import ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.owned import records
 from app.reference import conductors
 from app.reference.ice_shapes import ICE_SHAPES
@@ -18,7 +19,7 @@ from app.runtime.version import SERVICE_VERSION
 from app.schemas import field_table
 from app.schemas.fields import example_of
 
-router = APIRouter(prefix=PREFIX, tags=["reference"])
+router = APIRouter(prefix=PREFIX, tags=["reference"], route_class=KnownParametersRoute)
 
 
 @router.get(

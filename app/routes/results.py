@@ -15,6 +15,7 @@ from app.export import formats
 from app.export.exported_columns import ExportedColumn, axis_columns, exported_columns
 from app.export.formats import Dialect, Format
 from app.http.problems import ProblemError, ProblemKind, query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, Readers
 from app.routes.finished_jobs import FinishedJob
@@ -23,7 +24,7 @@ from app.routes.streaming import streamed
 from app.storage import stored_results
 from app.tables import Job
 
-router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"])
+router = APIRouter(prefix=f"{PREFIX}/jobs/{{job_id}}", tags=["results"], route_class=KnownParametersRoute)
 
 Rows = Iterator[dict[str, object]]
 

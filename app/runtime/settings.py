@@ -1,13 +1,14 @@
 """The operator's settings: one typed object, read from `GALLOPING_...` environment variables."""
 
 import os
+import re
 import secrets
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import AliasChoices, Field, FilePath, SecretStr, field_validator, model_validator
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from app.runtime.weak_secrets import weak_secrets
 
@@ -16,6 +17,8 @@ _SECRET_FILE = "signing-secret"
 _FORMER_SECRET_FILE = "cursor-secret"  # written by earlier versions
 
 _SECRET_NAMES = AliasChoices("GALLOPING_SIGNING_SECRET", "GALLOPING_CURSOR_SECRET")  # the second is deprecated
+
+_ORIGIN = re.compile(r"https?://[^/\s?#]+")
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
@@ -88,6 +91,9 @@ class Settings(BaseSettings):
         pattern=r"^(/[A-Za-z0-9._~-]+)*/?$",
         description="Prefix under which a proxy serves this service, such as /gal",
     )
+    cors_origins: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(), description="Origins of pages that may call the API, separated by commas; * for every one"
+    )
     contact_name: str = Field(default="The operator of this service", description="Whom the OpenAPI document names")
     contact_email: str | None = Field(
         default=None,
@@ -113,6 +119,17 @@ class Settings(BaseSettings):
     @classmethod
     def _absolute(cls, value: Path) -> Path:
         return value.expanduser().absolute()
+
+    @field_validator("cors_origins", mode="before")
+    @classmethod
+    def _origins(cls, value: object) -> object:
+        if not isinstance(value, str):
+            return value
+        origins = tuple(origin.strip() for origin in value.split(",") if origin.strip())
+        for origin in origins:
+            if origin != "*" and not _ORIGIN.fullmatch(origin):
+                raise ValueError(f"{origin} is no origin such as https://grid.example")
+        return origins
 
     @field_validator("root_path")
     @classmethod
@@ -160,6 +177,7 @@ class Settings(BaseSettings):
         """Return the environment variables that pass these settings to a child process."""
         values = self.model_dump(exclude_none=True)
         plain = {k: v.get_secret_value() if isinstance(v, SecretStr) else str(v) for k, v in values.items()}
+        plain["cors_origins"] = ",".join(self.cors_origins)
         return {_PREFIX + name.upper(): value for name, value in plain.items()}
 
 

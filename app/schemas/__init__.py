@@ -22,6 +22,7 @@ from app.schemas.environment import (
     Wind,
 )
 from app.schemas.fields import Document
+from app.schemas.labels import JobLabels
 from app.schemas.line import Bundle, Conductor, Line, Phase, PhaseLine, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
 from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
@@ -47,6 +48,7 @@ __all__ = [
     "IceSegment",
     "Icing",
     "InterphaseSpacer",
+    "JobLabels",
     "JobRequest",
     "Line",
     "MeasuredCoefficients",

@@ -18,6 +18,7 @@ class AuditAction(StrEnum):
     KEY_REFUSED = "key_refused"
     JOB_SUBMITTED = "job_submitted"
     JOB_CANCELLED = "job_cancelled"
+    JOB_RELABELLED = "job_relabelled"
     JOB_REMOVED = "job_removed"
     BATCH_SUBMITTED = "batch_submitted"
     BATCH_RESUBMITTED = "batch_resubmitted"

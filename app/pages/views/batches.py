@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from app.batches import batch_records, line_results
 from app.http import paging
 from app.http.problems import ProblemError, ProblemKind, query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import batch_progress
 from app.jobs.job_records import CancelOutcome
 from app.pages.batches.histograms import histogram
@@ -27,7 +28,7 @@ from app.runtime.settings import signing_key
 from app.security.caller import Scope
 from app.tables import ENDED
 
-router = APIRouter(include_in_schema=False, prefix="/pages/batches")
+router = APIRouter(include_in_schema=False, prefix="/pages/batches", route_class=KnownParametersRoute)
 
 _ON_PAGE = 40
 _MOST_LINES = 200  # the downloads have all of them

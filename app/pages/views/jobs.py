@@ -7,13 +7,14 @@ from fastapi import APIRouter, Query, Request, Response
 
 from app.http import paging
 from app.http.problems import query_fault
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import job_records
 from app.jobs.job_records import JobFilters
 from app.pages.frame import page
 from app.routes.dependencies import CallerOf, Readers
 from app.runtime.settings import signing_key
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
 _ON_PAGE = 40
 

@@ -9,6 +9,7 @@ from anyio import to_thread
 from fastapi import APIRouter, Query, Request, Response
 
 from app.convert.known import OwnRows
+from app.http.strict_routes import KnownParametersRoute
 from app.owned import records
 from app.pages import examples
 from app.pages.drawings.phase_places import THIS
@@ -31,7 +32,7 @@ from app.routes.dependencies import CallerOf, Readers
 from app.routes.job_status import find_job
 from app.schemas.faults import BadInput, Fault, parse_json
 
-router = APIRouter(include_in_schema=False, prefix="/pages/lines")
+router = APIRouter(include_in_schema=False, prefix="/pages/lines", route_class=KnownParametersRoute)
 
 _MOST_OFFERED = 30
 _MOST_ASKED = 100

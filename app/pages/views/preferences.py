@@ -2,11 +2,12 @@
 
 from fastapi import APIRouter, Request, Response
 
+from app.http.strict_routes import KnownParametersRoute
 from app.pages.forms import Fields, local_path
 from app.pages.frame import THEMES, address, moved
 from app.pages.measures import BY_NAME
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
 _YEAR_SECONDS = 365 * 24 * 3600
 _CHOICES = {"units": tuple(BY_NAME), "theme": THEMES}

@@ -5,6 +5,7 @@ from uuid import UUID
 from fastapi import APIRouter, Request, Response
 
 from app.http.problems import ProblemError, ProblemKind, invalid_document
+from app.http.strict_routes import KnownParametersRoute
 from app.pages.forms import Fields
 from app.pages.frame import moved
 from app.pages.recipes import said
@@ -14,7 +15,7 @@ from app.routes.dependencies import CallerOf, Readers
 from app.routes.job_status import find_job
 from app.schemas.faults import BadInput
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
 _INSTEAD = {"study", "placement", "remedies", "webhook_url"}
 

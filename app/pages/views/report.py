@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse
 
 from app.http.problems import ProblemError, ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.interactive import Busy, Workshop
 from app.pages import assets
 from app.pages.findings import findings
@@ -19,7 +20,7 @@ from app.routes.dependencies import CallerOf
 from app.routes.finished_jobs import FinishedJob
 from app.storage import stored_results
 
-router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}")
+router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}", route_class=KnownParametersRoute)
 
 _RETRY_SECONDS = "5"  # as long as a few reports take
 

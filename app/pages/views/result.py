@@ -9,6 +9,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
 from app.http.problems import ProblemError, ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import job_records
 from app.jobs.job_records import CancelOutcome
 from app.pages.charts.curves import curves
@@ -28,7 +29,7 @@ from app.routes.job_status import find_job
 from app.security.caller import Scope
 from app.tables import Job, JobStatus
 
-router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}")
+router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}", route_class=KnownParametersRoute)
 
 Point = Annotated[int, Query(ge=0, description="Number of the study's point, from 0")]
 _UNDER_WAY = {JobStatus.ACCEPTED, JobStatus.RUNNING}

@@ -4,13 +4,14 @@ from anyio import to_thread
 from fastapi import APIRouter, Request, Response
 
 from app.http.problems import ProblemError, ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.pages.forms import Fields, local_path
 from app.pages.frame import address, moved, page
 from app.pages.wording import words
 from app.security import keys, sessions
 from app.security.quotas import Quota
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
 
 @router.get("/pages/sign-in")

@@ -7,6 +7,7 @@ from fastapi.responses import JSONResponse
 
 from app.convert import ENGINE_VERSION
 from app.http.problems import ProblemError, ProblemKind
+from app.http.strict_routes import KnownParametersRoute
 from app.jobs import job_records
 from app.jobs.job_records import JobFilters
 from app.pages import examples
@@ -17,7 +18,7 @@ from app.pages.submitting import submit
 from app.pages.wording import words
 from app.routes.dependencies import CallerOf, Readers
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
 _RECENT = 8
 _LINKS = {

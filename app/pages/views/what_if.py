@@ -12,6 +12,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.http.problems import ProblemError, ProblemKind, invalid_document
+from app.http.strict_routes import KnownParametersRoute
 from app.pages.charts.curves import curves
 from app.pages.findings import Findings, with_axes
 from app.pages.forms import Fields
@@ -34,7 +35,7 @@ from app.tables import Job
 
 _SCRIPT_WORDS = ("kept", "busy", "too_often", "too_long", "signed_out", "refused")
 
-router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}/what-if")
+router = APIRouter(include_in_schema=False, prefix="/pages/jobs/{job_id}/what-if", route_class=KnownParametersRoute)
 
 
 @dataclass(frozen=True, slots=True)

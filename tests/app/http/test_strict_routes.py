@@ -1,4 +1,4 @@
-"""Routes take what they know: query parameters of requests that change something. Bodies are in test_problems."""
+"""Routes take what they know: query parameters of the API, and of pages that change something. Bodies are in test_problems."""
 
 import httpx
 import pytest
@@ -16,6 +16,14 @@ from tests.documents import short_request
             "known are analysis, atomic, defaults, validate_only, webhook_url",
         ),
         ("POST", "/v1/lines/resolve?x=1", "there are none here"),
+        ("POST", "/v1/remedies?x=1", "there are none here"),
+        ("POST", "/v1/jobs/estimate?x=1", "there are none here"),
+        ("PATCH", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e?x=1", "there are none here"),
+        ("GET", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e?x=1", "there are none here"),
+        ("GET", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e/results?x=1", "there are none here"),
+        ("GET", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e/results/frequencies?x=1", "known are dialect, format"),
+        ("GET", "/v1/conductors?x=1", "known are search"),
+        ("POST", "/pages/examples/drake?x=1", "there are none here"),
         ("DELETE", "/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e?x=1", ""),
         ("DELETE", "/v1/batches/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e?x=1", ""),
     ],
@@ -30,3 +38,7 @@ def test_unknown_query_parameters_are_refused(
     assert fault["pointer"] in {"/query/validate-only", "/query/atomik", "/query/x"}
     assert known in fault["detail"]
     assert shared_client.get("/v1/jobs").json()["jobs"] == []
+
+
+def test_a_page_is_read_with_whatever_a_link_adds(shared_client: httpx.Client) -> None:
+    assert shared_client.get("/pages/jobs?utm_source=mail", headers={"Accept": "text/html"}).status_code == 200
