@@ -29,6 +29,7 @@ class Moving:
     name: str
     orbit: Markup
     span: Markup | None
+    legend: Sequence[tuple[Markup, str]]
     exaggeration: str
     data: str
     computed_shape: bool
@@ -82,6 +83,7 @@ def moving(job: Job, found: Findings, motion: Motion, units: Units) -> Moving:
         name=name,
         orbit=orbit_picture(motion, around, units, title),
         span=drawn.picture if drawn else None,
+        legend=drawn.legend if drawn else (),
         exaggeration=f"{drawn.exaggeration:.2g}" if drawn else "",
         data=json.dumps(data, separators=(",", ":")),
         computed_shape=computed,

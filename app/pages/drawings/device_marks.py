@@ -49,7 +49,7 @@ def _sample(kind: str, name: str) -> Markup:
     at = (
         ends if stretch else [(0.5 * _SAMPLE[0], 0.3 * _SAMPLE[1] if kind == "detuning_pendulum" else 0.5 * _SAMPLE[1])]
     )
-    wire = element("path", d=f"M0 {at[0][1]}h{_SAMPLE[0]}", class_="moving-side")
+    wire = element("path", d=f"M0 {at[0][1]}h{_SAMPLE[0]}", class_="path")
     return picture(_SAMPLE, name, [wire, _mark(kind, at, name)], "drawing sample")
 
 

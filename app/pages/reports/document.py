@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from app.pages.drawings.spans import span_drawing
+from app.pages.drawings.spans import SpanDrawing, span_drawing
 from app.pages.findings import Findings
 from app.pages.frame import rendered
 from app.pages.measures import Units
@@ -49,12 +49,12 @@ def pictures(found: Findings) -> list[str]:
     return [name for name, table in _PICTURES.items() if found.rows(table)]
 
 
-def _span(material: Material, units: Units) -> Any:
+def _span(material: Material, units: Units) -> SpanDrawing | None:
     """Return the drawing of the span at rest; None for sections and where there is no static state."""
     found = material.found
     if found.line.get("section") is not None or not found.here["static"]:
         return None
-    return span_drawing(found.line_here, found.here["static"]["sag_m"], 0.0, units).picture
+    return span_drawing(found.line_here, found.here["static"]["sag_m"], 0.0, units)
 
 
 def _given(part: object, path: str = "") -> Iterator[tuple[str, str]]:

@@ -7,6 +7,7 @@ from sqlalchemy.orm import Session
 
 from app.pages.drawings.bundles import positions
 from app.pages.drawings.orbits import wires
+from app.pages.drawings.device_marks import legend
 from app.pages.findings import Findings
 from app.pages.measures import FEET, SI
 from app.pages.motions import Motion, motions, worst
@@ -52,6 +53,7 @@ def test_the_script_gets_the_motion_and_the_shape_of_its_loop(
     assert shape[len(shape) // 2] == pytest.approx(1.0, abs=2e-3)
     assert shown.computed_shape
     assert "moving-side" in str(shown.span)
+    assert [name for _, name in shown.legend] == [name for _, name in legend(found.line_here)]
     assert name_of(largest, FEET).startswith(FEET.shown(largest.row["wind_speed_m_per_s"], "m/s"))
 
 

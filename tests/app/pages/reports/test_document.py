@@ -51,3 +51,10 @@ def test_long_tables_are_cut_and_say_so(material: Material) -> None:
     cycles = [row for row in material.found.rows("limit_cycles") if row["kind"] == "periodic"][:1] * 100
     found = replace(material.found, tables={**material.found.tables, "limit_cycles": cycles})
     assert "The first 60 of 100 rows" in made(replace(material, found=found, motions=[]))
+
+
+def test_devices_of_the_line_are_named_beside_their_marks(material: Material) -> None:
+    devices = [{"type": "spacer", "position_m": 10.0}] * 2
+    found = replace(material.found, line={**material.found.line, "devices": devices})
+    assert "Spacer: 2" in made(replace(material, found=found))
+    assert "Spacer" not in made(material)
