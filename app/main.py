@@ -114,7 +114,8 @@ def create_app(settings: Settings | None = None) -> Service:
     _equip(app, settings, database)
     app.state.meter = meter = Meter(settings)
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
-    limits = {"": settings.max_body_bytes, **dict.fromkeys(batch_intake.ADDRESSES, settings.max_batch_bytes)}
+    of_batches = dict.fromkeys((*batch_intake.ADDRESSES, views.BATCH_FILES), settings.max_batch_bytes)
+    limits = {"": settings.max_body_bytes, **of_batches}
     problems.install(app, limits, frame.shown_problem)
     app.add_middleware(Compression)
     app.add_middleware(HeadAsGet)

@@ -15,7 +15,10 @@ from app.pages.views import (
     what_if,
 )
 
-__all__ = ["routers"]
+__all__ = ["BATCH_FILES", "routers"]
+
+BATCH_FILES = batches.FILES
+"""The address that takes files of batches, which may be larger than other bodies."""
 
 
 def routers() -> tuple[APIRouter, ...]:

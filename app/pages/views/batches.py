@@ -30,6 +30,7 @@ from app.tables import ENDED
 
 router = APIRouter(include_in_schema=False, prefix="/pages/batches", route_class=KnownParametersRoute)
 
+FILES = f"{router.prefix}/file"
 _ON_PAGE = 40
 _MOST_LINES = 200  # the downloads have all of them
 
