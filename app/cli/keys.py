@@ -9,7 +9,7 @@ import typer
 from app.cli.console import BAD_INPUT, end, print_table, write
 from app.cli.inputs import read_settings, using_database
 from app.cli.options import AsJson, DataDirectory
-from app.security.caller import OWNER_PATTERN, Scope
+from app.security.caller import LOCAL, OWNER_PATTERN, Scope
 
 if TYPE_CHECKING:
     from app.tables import ApiKey
@@ -42,6 +42,13 @@ def create(
     expires_at = datetime.now(UTC) + timedelta(days=days) if days else None
     with using_database(read_settings(data_dir)) as sessions, sessions.begin() as session:
         key, text = keys.create(session, owner, scope or list(Scope), name, expires_at)
+        before = keys.made_before(session) if owner != LOCAL.owner else 0
+    if before:
+        typer.echo(
+            f"{before} job(s) and batch(es) made before keys existed belong to the owner {LOCAL.owner}. "
+            f"`galloping keys create --owner {LOCAL.owner}` makes a key that opens them.",
+            err=True,
+        )
     if json:
         write({"key": text, **_document(key)}, None)
         return

@@ -8,13 +8,24 @@ from fastapi import Request
 from app import convert
 from app.http.strict_routes import StrictJsonRoute
 from app.owned import records
+from app.schemas.faults import BadInput
+from app.schemas.wrapping import without_wrapper
 
 
 class KnownLineRoute(StrictJsonRoute):
     """A route that resolves such a line, with what the caller's owner keeps, before the schema reads the document."""
 
     async def prepared(self, request: Request, document: Any) -> Any:
-        """Return the document with an explicit line."""
+        """Return the document with an explicit line.
+
+        Raises
+        ------
+        BadInput
+            If the document is a line without its wrapper, or its line cannot be resolved.
+        """
+        bare = without_wrapper(document, '{"line": <the line>, "analysis": {...}}, where analysis may be absent')
+        if bare is not None:
+            raise BadInput([bare])
         if not convert.is_known_request(document):
             return document
 

@@ -11,15 +11,15 @@ import secrets
 from collections.abc import Iterable, Sequence
 from datetime import datetime, timedelta
 
-from sqlalchemy import select, update
+from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
 from app.security import audit
 from app.security.audit import OPERATOR
-from app.security.caller import Caller, Scope
+from app.security.caller import LOCAL, Caller, Scope
 from app.storage.database import database_time
-from app.tables import ApiKey, AuditAction
+from app.tables import ApiKey, AuditAction, Batch, Job
 
 _SCHEME = "galloping_"
 _RANDOM_BYTES = 24
@@ -73,6 +73,13 @@ def record_use(session: Session, digest: str) -> None:
     if not _is_valid(key, now):
         audit.record(session, _caller(key), AuditAction.KEY_REFUSED, key.id, key.prefix)
     session.execute(update(ApiKey).where(ApiKey.id == key.id).values(used_at=now))
+
+
+def made_before(session: Session) -> int:
+    """Return how many jobs and batches belong to `local`, as whom everything is made until a key exists."""
+    jobs = select(func.count()).select_from(Job).where(Job.owner == LOCAL.owner, Job.batch_id.is_(None))
+    batches = select(func.count()).select_from(Batch).where(Batch.owner == LOCAL.owner)
+    return (session.scalar(jobs) or 0) + (session.scalar(batches) or 0)
 
 
 def any_exist(session: Session) -> bool:

@@ -11,6 +11,7 @@ from typing import IO, Any
 from app.exchange.cim import read_segments
 from app.exchange.features import read_features
 from app.schemas.faults import BadInput, BodyTooLarge, Fault, parse_json
+from app.schemas.wrapping import without_wrapper
 from app.sheets.columns import Columns
 from app.sheets.delimited import read_delimited
 from app.sheets.encodings import as_utf8
@@ -89,6 +90,9 @@ def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
         if len(body) > most_bytes:
             raise BodyTooLarge(f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV.")
     document = parse_json(bytes(body))
+    bare = without_wrapper(document, '{"lines": [<the lines>], "analysis": {...}}, where analysis may be absent')
+    if bare is not None:
+        raise BadInput([bare])
     if not isinstance(document, dict):
         raise BadInput([Fault("", "not_an_object", "must be an object with lines and analysis")])
     faults = [Fault(f"/{name[:200]}", "unknown_field", "unknown field") for name in document if name not in _KNOWN]

@@ -16,10 +16,12 @@ def test_a_key_is_made_used_listed_and_revoked(
     tmp_path: Path, own_settings: Settings, own_client: httpx.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     place = ("--data-dir", str(own_settings.data_dir))
+    service.submit(own_client)
     made = galloping("keys", "create", "--owner", "acme", "--name", "SCADA", "--days", "9", *place)
     key = made.stdout.strip()
     assert made.returncode == 0 and len(made.stdout.splitlines()) == 1
     assert key not in made.stderr
+    assert "1 job(s) and batch(es) made before keys existed belong to the owner local" in made.stderr
     monkeypatch.setenv("GALLOPING_KEY", key)
     request = tmp_path / "request.json"
     request.write_text(json.dumps(short_request()))
@@ -42,6 +44,7 @@ def test_a_key_is_made_used_listed_and_revoked(
         "key_revoked",
         "job_submitted",
         "key_created",
+        "job_submitted",
     ]
     assert events[2]["key_id"] == listed["id"]
 

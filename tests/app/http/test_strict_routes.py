@@ -1,4 +1,4 @@
-"""Routes take what they know: query parameters of the API, and of pages that change something. Bodies are in test_problems."""
+"""Routes take what they know: query parameters of the API, and of forms of pages. Bodies are in test_problems."""
 
 import httpx
 import pytest
