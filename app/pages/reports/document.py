@@ -1,7 +1,6 @@
 """The report as HTML: verdict, line, assumptions, results, method and its limits."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
 
 from app.pages.drawings.spans import SpanDrawing, span_drawing
 from app.pages.findings import Findings

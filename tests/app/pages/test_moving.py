@@ -6,8 +6,8 @@ import pytest
 from sqlalchemy.orm import Session
 
 from app.pages.drawings.bundles import positions
-from app.pages.drawings.orbits import wires
 from app.pages.drawings.device_marks import legend
+from app.pages.drawings.orbits import wires
 from app.pages.findings import Findings
 from app.pages.measures import FEET, SI
 from app.pages.motions import Motion, motions, worst
