@@ -9,6 +9,7 @@ from engine.outcome import Fault, require
 from engine.spec import Aerodynamics, Coefficients, MeasuredCoefficients
 
 ORDER = 3
+AT_REST = 1e-9  # rad from the static angle, below which a row lies on neither side of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,7 @@ def fit_coefficients(table: CoefficientTable, static_angle: float, half_range: f
     away = (table.angle - static_angle + np.pi) % (2.0 * np.pi) - np.pi
     here = np.abs(away) <= half_range * (1.0 + 1e-12)
     alpha = away[here]
-    enough = alpha.size > ORDER + 1 and alpha.min() <= 0.0 <= alpha.max()
+    enough = alpha.size > ORDER + 1 and alpha.min() < -AT_REST and alpha.max() > AT_REST
     here_deg = f"{np.degrees(static_angle):.1f} deg"
     rule = f"must leave at least five rows of the table, on both sides of the static angle ({here_deg})"
     require(None if enough else Fault("half_range", half_range, rule))

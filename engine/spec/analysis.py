@@ -195,6 +195,16 @@ def _loops_faults(name: str, loops: tuple[int, ...]) -> Iterator[Fault]:
         yield Fault(name, loops, "must be one or more distinct whole numbers from 1")
 
 
+def _too_many_loops(analysis: Analysis, elements: int) -> Iterator[Fault]:
+    """Name the loops that the elements cannot show, of those that the models asked for use."""
+    used = {"loops": analysis.loops}
+    if Model.FINITE_ELEMENT in analysis.models:
+        used["finite_element_loops"] = analysis.finite_element_loops
+    for name, loops in used.items():
+        if max(loops, default=0) > elements:
+            yield Fault(name, max(loops), f"must not exceed the number of elements ({elements})")
+
+
 def check_compatible(line: Line, analysis: Analysis) -> None:
     """Check that a line has the data that an analysis needs.
 
@@ -204,7 +214,6 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
         If the line has fewer elements than loops are asked for, the published closure is asked for with a wind profile,
         the relative wind is asked for without coefficients at rest, or the table model with no table or one with gaps.
     """
-    most = max(analysis.loops + analysis.finite_element_loops)
     elements = line.span.elements * (1 if line.section is None else len(line.section.spans))
     published = analysis.closure is Closure.PUBLISHED
     relative = analysis.aerodynamic_model is AerodynamicModel.RELATIVE_WIND
@@ -216,7 +225,7 @@ def check_compatible(line: Line, analysis: Analysis) -> None:
         if table and line.ice.aerodynamics.measured is None
         else None,
         *(line.curve_faults() if table else ()),
-        Fault("loops", most, f"must not exceed the number of elements ({elements})") if most > elements else None,
+        *_too_many_loops(analysis, elements),
         Fault("closure", analysis.closure.value, "must be exact for a wind profile")
         if published and line.wind.profile
         else None,

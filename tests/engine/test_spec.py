@@ -312,3 +312,11 @@ def test_finite_element_loops_are_bounded_where_motions_are_asked_for() -> None:
 )
 def test_yokes_are_held_but_at_strings_unless_said_otherwise(end: Support, held: bool) -> None:
     assert end.holds_differences is held
+
+
+def test_loops_that_no_model_uses_are_not_held_against_the_elements() -> None:
+    short = replace(LINE, span=replace(LINE.span, elements=2))
+    check_compatible(short, Analysis(loops=(1,), models=(Model.HYBRID,)))
+    with pytest.raises(InvalidSpec) as caught:
+        check_compatible(short, Analysis(loops=(1,)))
+    assert [(fault.field, fault.value) for fault in caught.value.faults] == [("finite_element_loops", 3)]

@@ -285,7 +285,7 @@ def test_loops_at_fault_are_no_excuse_for_others() -> None:
     line = changed("span.elements", 2)
     assert pointers({"line": line, "analysis": {"loops": [0], "finite_element_loops": []}}) == ["/analysis/loops/0"]
     analysis = {"loops": [0], "finite_element_loops": [1, 3]}
-    assert pointers({"line": line, "analysis": analysis}) == ["/analysis/loops/0", "/analysis/loops"]
+    assert pointers({"line": line, "analysis": analysis}) == ["/analysis/loops/0", "/analysis/finite_element_loops"]
 
 
 def test_points_that_only_together_do_not_fit_are_named() -> None:

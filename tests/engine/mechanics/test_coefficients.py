@@ -49,6 +49,19 @@ def test_too_few_rows_or_one_side_are_refused(static: float, half_range: float) 
         fit_coefficients(table(), static, half_range)
 
 
+def from_40_deg_on(step: int) -> CoefficientTable:
+    angle = np.radians(np.sort(40.0 + step * np.arange(11.0)))
+    return CoefficientTable(angle, np.sin(angle), np.cos(angle), np.sin(2.0 * angle))
+
+
+@pytest.mark.parametrize("step", [2, -2])
+def test_rows_that_begin_or_end_at_the_static_angle_lie_on_one_side_of_it(step: int) -> None:
+    """From 40 to 60 degrees about 40, and from 20 to 40."""
+    with pytest.raises(InvalidSpec, match="on both sides of the static angle"):
+        fit_coefficients(from_40_deg_on(step), np.radians(40.0), np.radians(20.0))
+    assert fit_coefficients(from_40_deg_on(step), np.radians(40.0 + 1.5 * step), np.radians(20.0)).rows == 11
+
+
 def test_table_must_be_finite_rising_and_of_one_length() -> None:
     good = np.linspace(0.0, 1.0, 6)
     with pytest.raises(InvalidSpec) as caught:
