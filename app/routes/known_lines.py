@@ -6,10 +6,10 @@ from anyio import to_thread
 from fastapi import Request
 
 from app import convert
+from app.convert.known.wrapping import without_wrapper
 from app.http.strict_routes import StrictJsonRoute
 from app.owned import records
 from app.schemas.faults import BadInput
-from app.schemas.wrapping import without_wrapper
 
 
 class KnownLineRoute(StrictJsonRoute):

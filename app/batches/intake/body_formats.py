@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import IO, Any
 
+from app.convert.known.wrapping import without_wrapper
 from app.exchange.cim import read_segments
 from app.exchange.features import read_features
 from app.schemas.faults import BadInput, BodyTooLarge, Fault, parse_json
-from app.schemas.wrapping import without_wrapper
 from app.sheets.columns import Columns
 from app.sheets.delimited import read_delimited
 from app.sheets.encodings import as_utf8

@@ -62,7 +62,10 @@ def test_every_wrong_address_is_a_problem(shared_client: httpx.Client, method: s
 def test_a_wrong_method_names_the_right_ones(shared_client: httpx.Client) -> None:
     assert shared_client.put("/health/live").headers["allow"] == "GET, HEAD"
     assert shared_client.put("/v1/jobs").headers["allow"] == "GET, HEAD, POST"
-    assert shared_client.post("/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e").headers["allow"] == "DELETE, GET, HEAD, PATCH"
+    assert (
+        shared_client.post("/v1/jobs/0199a3c4-5b7e-7c1a-9d2e-3f4a5b6c7d8e").headers["allow"]
+        == "DELETE, GET, HEAD, PATCH"
+    )
 
 
 def test_the_type_of_a_problem_leads_to_its_page(shared_client: httpx.Client) -> None:

@@ -1,9 +1,9 @@
 import httpx
 import pytest
 
+from app.convert.known.wrapping import without_wrapper
 from app.reference.source_lines import example
 from app.routes.own_documentation import KNOWN_LINE
-from app.schemas.wrapping import without_wrapper
 from tests.documents import short_request
 
 LINE = example("c11-twin")
