@@ -43,6 +43,7 @@ GROUPS: Mapping[str, Sequence[str]] = {
     "section": ("line.section.span_of_interest", "line.section.spans", "line.section.strings"),
     "wind": ("line.wind.air_density_kg_per_m3", "line.wind.yaw_deg", "line.wind.profile"),
     "damping": ("line.damping.vertical_ratio", "line.damping.horizontal_ratio", "line.damping.torsional_ratio"),
+    "climate": ("line.climate.line_azimuth_deg", "line.climate.sectors", "line.climate.icing"),
     "figures": (
         "line.conductor.diameter_m",
         "line.conductor.bare_mass_kg_per_m",
@@ -53,6 +54,7 @@ GROUPS: Mapping[str, Sequence[str]] = {
         "line.conductor.rated_strength_n",
     ),
     "analysis": (
+        "line.design_wind_m_per_s",
         "analysis.wind_speeds_m_per_s.start",
         "analysis.wind_speeds_m_per_s.stop",
         "analysis.wind_speeds_m_per_s.count",
@@ -62,7 +64,7 @@ GROUPS: Mapping[str, Sequence[str]] = {
 }
 """The groups of the form, by the dotted names of a request: those of fields, and those of lists that have rows."""
 
-CLOSED = frozenset({"pieces", "supports", "section", "wind", "damping", "figures"})
+CLOSED = frozenset({"pieces", "supports", "section", "wind", "damping", "climate", "figures"})
 """Groups that a page shows on demand."""
 
 _MILLI = 1e3

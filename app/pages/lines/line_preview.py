@@ -20,7 +20,7 @@ from app.pages.measures import Units
 from app.schemas.faults import BadInput, Fault
 
 _GRAVITY = 9.80665  # m/s2
-_SECTION = "line.section"
+_WHOLE = ("line.section", "line.climate")
 _MOST_ATTEMPTS = 3
 
 
@@ -76,7 +76,7 @@ def preview_of_sound_rows(
 ) -> tuple[Preview | None, list[Fault]]:
     """Return what a line is without its rows at fault, None where that is no line either; and all faults.
 
-    A section at fault is left out as a whole: its spans and strings mean nothing without one another.
+    A section or a climate at fault is left out as a whole: their rows mean nothing without one another.
     """
     faults: list[Fault] = []
     left = _Left(dict(document), {})
@@ -121,7 +121,7 @@ class _Left:
             part = document
             for token in path:
                 part = part.get(token, {})
-            if name == _SECTION:
+            if name in _WHOLE:
                 part.pop(last, None)
                 continue
             numbers[name] = [n for i, n in enumerate(numbers.get(name, range(len(part[last])))) if i not in wrong]
@@ -130,10 +130,11 @@ class _Left:
 
 
 def _row_at(pointer: str) -> tuple[str, int]:
-    """Return the list and the number of the row that holds a field; the section as if it were a row, else nothing."""
+    """Return the list and the number of the row that holds a field; what is left out as a whole as if it were a row."""
     name = pointer.removeprefix("/").replace("/", ".")
-    if f"{name}.".startswith(f"{_SECTION}."):
-        return _SECTION, 0
+    for whole in _WHOLE:
+        if f"{name}.".startswith(f"{whole}."):
+            return whole, 0
     for known in row_lists():
         number = name.removeprefix(f"{known}.").partition(".")[0]
         if name.startswith(f"{known}.") and number.isdecimal():

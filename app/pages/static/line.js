@@ -15,3 +15,10 @@ document.addEventListener("htmx:beforeSwap", (event) => {
   if (event.detail.target.id.startsWith("group-")) rowsChanged += 1;
   else if (event.detail.target.id === "preview" && event.detail.xhr.rowsChanged !== rowsChanged) event.detail.shouldSwap = false;
 });
+// Says aloud how many places are at fault, only when that changes.
+document.addEventListener("htmx:afterSwap", (event) => {
+  if (event.detail.target.id !== "preview") return;
+  const status = document.getElementById("preview-said");
+  const said = (event.detail.target.querySelector("[data-said]") || status).dataset.said;
+  if (status.textContent !== said) status.textContent = said;
+});

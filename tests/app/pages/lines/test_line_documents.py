@@ -27,10 +27,10 @@ def test_a_line_goes_through_the_form_and_stays_the_same_line(name: str, units: 
 
 
 def test_what_has_no_field_is_kept_beside_the_form() -> None:
-    line = {**examples.line(examples.DRAKE), "climate": {"line_azimuth_deg": 45.0}, "section": None}
+    line = {**examples.line(examples.DRAKE), "tags": {"region": "north"}, "section": None}
     texts = to_texts({"line": line}, SI)
-    assert json.loads(texts["rest"]) == {"line": {"climate": line["climate"]}}
-    assert to_document(texts, SI)["line"]["climate"] == line["climate"]
+    assert json.loads(texts["rest"]) == {"line": {"tags": line["tags"]}}
+    assert to_document(texts, SI)["line"]["tags"] == line["tags"]
 
 
 COEFFICIENTS = examples.line("c11-twin")["ice"]["aerodynamics"]
@@ -44,6 +44,11 @@ ROWS: dict[str, Any] = {
         "phases": [{"name": "top", "y_m": 7.0, "line": {"span": {"length_m": 300.0, "sag_m": 6.0}}}],
         "ice": {"segments": [{"from_m": 0.0, "to_m": 50.0, "mass_kg_per_m": 2.3}]},
         "wind": {"profile": [{"position_m": 0.0, "factor": 0.7}]},
+        "climate": {
+            "line_azimuth_deg": 45.0,
+            "sectors": [{"direction_deg": 0.0, "share": 1.0, "weibull_shape": 2.0, "weibull_scale_m_per_s": 6.0}],
+            "icing": [{"kind": "glaze", "thickness_m": {"value": 12.0, "unit": "mm"}, "hours_a_year": 40.0}],
+        },
         "section": {
             "spans": [{"length_m": 150.0}, {"length_m": 125.88, "level_difference_m": 2.0}],
             "strings": [{"length_m": 4.5, "weight_n": 2500.0}],

@@ -33,6 +33,7 @@ BAD_SECTION = {"spans": [{"length_m": 300.0}, {"length_m": 250.0}], "strings": [
         ({"devices": [{"type": "spacer", "position_m": 1.0}, SPACER]}, "/line/devices/0/mass_kg", 1),
         ({"devices": [{**SPACER, "position_m": 400.0}, SPACER]}, "/line/devices/0/position_m", 1),
         ({"devices": [SPACER], "section": BAD_SECTION}, "/line/section/strings", 1),
+        ({"devices": [SPACER], "climate": {"sectors": []}}, "/line/climate/line_azimuth_deg", 1),
         ({"devices": [SPACER], "phases": [{"y_m": 7.0}]}, "/line/phases/0/name", 1),
     ],
 )
