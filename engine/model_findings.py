@@ -11,7 +11,7 @@ from engine.cycles.bifurcations import bifurcations
 from engine.cycles.known_cycles import Starts
 from engine.cycles.search import DirectIntegration, find_cycles
 from engine.models.critical_wind_speeds import Crossings, no_crossings
-from engine.models.reduced_model import ReducedModel
+from engine.models.reduced_model import ReducedModel, of_each_member
 from engine.report.findings import ModelFindings
 from engine.spec import Analysis, Check, Model
 from engine.tori.quasi_periodic import check_by_integration, quasi_periodic_motions
@@ -29,7 +29,10 @@ class ModelStack:
 
 
 def findings_of(stack: ModelStack, winds: FloatArray, starts: Starts, analysis: Analysis) -> ModelFindings:
-    """Find all motions of a stack of models at the wind speeds, and check them by direct integration if asked for."""
+    """Find all motions of a stack of models at wind speeds, and check them by direct integration if asked for.
+
+    winds: of all members, (winds,), or of each, (members, winds), in rising order [m/s].
+    """
     model, direct = stack.model, analysis.check is Check.DIRECT
     integration = DirectIntegration(
         starts=direct_starts(model, winds, analysis.harmonics) if direct else None,
@@ -49,5 +52,5 @@ def findings_of(stack: ModelStack, winds: FloatArray, starts: Starts, analysis: 
         confidence=confidence(model, cycles, analysis.check),
         bifurcations=bifurcation_points,
         quasi_periodic=check_by_integration(model, tori) if direct else tori,
-        winds=winds,
+        winds=of_each_member(model, winds),
     )

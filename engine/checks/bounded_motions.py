@@ -6,7 +6,7 @@ from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.checks.direct_starts import fitted_cycles, integrated_to_limit, spread_starts
 from engine.cycles.known_cycles import Starts
 from engine.cycles.search import Settled
-from engine.models.reduced_model import ReducedModel
+from engine.models.reduced_model import ReducedModel, of_each_member
 from engine.outcome import Outcome
 
 LEVELS = (0.03, 0.3)  # rad of torsion, or of the change of wind direction by vertical motion
@@ -23,7 +23,7 @@ def bounded_motions(
     ----------
     model : ReducedModel
         Leading axis (members,).
-    wind_speeds : (winds,)
+    wind_speeds : (winds,) or (members, winds)
         [m/s].
     harmonics : int
     member, wind : (places,)
@@ -34,13 +34,14 @@ def bounded_motions(
     Settled
         Starts of cycles, approximate, from the motions that did not diverge, and the places where every start diverged.
     """
-    state = spread_starts(model, member, wind_speeds[wind], LEVELS, np.random.default_rng(SEED))
+    speed = of_each_member(model, wind_speeds)[member, wind]
+    state = spread_starts(model, member, speed, LEVELS, np.random.default_rng(SEED))
     place = np.repeat(np.arange(member.size), state.shape[1])
     state = state.reshape(place.size, -1)
-    diverged, at_rest = _ends(model, member[place], wind_speeds[wind[place]], state, place)
+    diverged, at_rest = _ends(model, member[place], speed[place], state, place)
     moving = np.flatnonzero(~diverged & ~at_rest)
     own = place[moving]
-    index, orbits = fitted_cycles(model, member[own], wind_speeds[wind[own]], state[moving], harmonics)
+    index, orbits = fitted_cycles(model, member[own], speed[own], state[moving], harmonics)
     everywhere = np.bincount(place[~diverged], minlength=member.size) == 0
     return Settled(Starts(member[own[index]], wind[own[index]], orbits), np.stack([member, wind], axis=-1)[everywhere])
 

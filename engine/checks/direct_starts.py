@@ -17,7 +17,7 @@ from engine.checks.settled_motion import (
 )
 from engine.cycles.harmonic_balance import Orbits, fourier
 from engine.cycles.known_cycles import Starts
-from engine.models.reduced_model import ReducedModel
+from engine.models.reduced_model import ReducedModel, of_each_member
 from engine.outcome import Outcome
 
 WINDS = 3  # the lowest, the highest and one between them
@@ -87,7 +87,7 @@ def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
     ----------
     model : ReducedModel
         Leading axis (members,).
-    wind_speeds : (winds,)
+    wind_speeds : (winds,) or (members, winds)
         [m/s].
     harmonics : int
 
@@ -97,12 +97,14 @@ def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
         Of the motions that neither came to rest nor diverged. They are approximate, and several may lead to one cycle.
     """
     usable = np.flatnonzero(~model.statically_unstable)
-    chosen = np.unique(np.linspace(0, wind_speeds.size - 1, WINDS).round().astype(np.intp))[: wind_speeds.size]
+    winds = of_each_member(model, wind_speeds)
+    count = winds.shape[-1]
+    chosen = np.unique(np.linspace(0, count - 1, WINDS).round().astype(np.intp))[:count]
     member, wind = np.repeat(usable, chosen.size), np.tile(chosen, usable.size)
-    state = spread_starts(model, member, wind_speeds[wind], LEVELS, np.random.default_rng(0))
+    state = spread_starts(model, member, winds[member, wind], LEVELS, np.random.default_rng(0))
     per_case = state.shape[1]
     member, wind, state = np.repeat(member, per_case), np.repeat(wind, per_case), state.reshape(-1, state.shape[-1])
-    index, orbits = settled_cycles(model, member, wind_speeds[wind], state, harmonics)
+    index, orbits = settled_cycles(model, member, winds[member, wind], state, harmonics)
     return Starts(member[index], wind[index], orbits)
 
 

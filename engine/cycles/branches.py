@@ -14,7 +14,7 @@ from engine.cycles.harmonic_balance import Orbits, first_harmonic_angle, select,
 from engine.cycles.known_cycles import SLOWEST
 from engine.cycles.refinement import KnownExponents, judged_points, refined
 from engine.models.critical_wind_speeds import Crossings, critical_modes
-from engine.models.reduced_model import ReducedModel, lowest_frequency
+from engine.models.reduced_model import ReducedModel, lowest_frequency, of_each_member
 from engine.numerics.continuation import (
     BranchPoints,
     StepControl,
@@ -39,8 +39,8 @@ CELLS = 8  # parts of a segment between two points that are searched for a given
 LOWEST_WIND = 0.25  # of the lowest requested wind speed: branches are not followed below it
 HIGHEST_WIND = 1.05  # of the highest wind speed: a branch may fold just above it and return
 
-Limits = tuple[float | FloatArray, float]
-"""Lowest value of the parameter, of all branches or (branches,), and highest one."""
+Limits = tuple[float | FloatArray, float | FloatArray]
+"""Lowest and highest value of the parameter, of all branches or (branches,)."""
 
 
 def follow_from_hopf_points(
@@ -64,7 +64,7 @@ def follow_from_hopf_points(
         Indices of the crossings that are Hopf points.
     harmonics : int
         H of the balance.
-    winds : (winds,)
+    winds : (winds,) or (members, winds)
         Requested wind speeds in rising order [m/s]; branches are followed a little beyond the highest.
     into_range : bool
         Whether those that start beyond that are followed on where they enter it, see `entering` and `followed_into`.
@@ -79,14 +79,14 @@ def follow_from_hopf_points(
     problem = CycleProblem(model, member, reference)
     start = points_of(Orbits(np.zeros_like(first), hopf_wind_speed.angular_frequency, speed))
     direction = points_of(Orbits(first, np.zeros(hopf.size), np.zeros(hopf.size)))
-    lowest, highest = wind_limits(winds)
+    lowest, highest = wind_limits(problem, winds)
     own_lowest = np.where((speed > highest) & (not into_range), highest, lowest)
     return follow_branches(problem, start, direction, (own_lowest, highest), speed)
 
 
 def entering(branch_set: BranchSet, winds: FloatArray) -> IntArray:
     """Return the branches from Hopf points beyond the highest wind speed that end where they enter the range: (k,)."""
-    highest, last = wind_limits(winds)[1], branch_set.last
+    highest, last = wind_limits(branch_set.problem, winds)[1], branch_set.last
     inside = branch_set.points.z[last, -1] < highest
     began_beyond = np.isfinite(branch_set.hopf_wind_speed) & (branch_set.hopf_wind_speed > highest)
     return np.flatnonzero(
@@ -100,14 +100,14 @@ def followed_into(branch_set: BranchSet, index: IntArray, winds: FloatArray) -> 
         return branch_set
     first = np.searchsorted(branch_set.points.branch, np.arange(branch_set.problem.member.size))
     origin = branch_set.points.select(first)
-    limits = wind_limits(winds)
+    limits = wind_limits(branch_set.problem, winds)
     return _refined_throughout(_followed_on(branch_set, origin, index, limits), origin, limits)
 
 
 def follow_from_cycles(model: ReducedModel, member: IntArray, orbits: Orbits, winds: FloatArray) -> BranchSet:
     """Follow the branch of each cycle (k,): 2 k branches, k to higher wind speeds, then k to lower ones."""
     problem = CycleProblem(model, member, reference_size(model, member, orbits))
-    return follow_both_ways(problem, points_of(orbits), wind_limits(winds))
+    return follow_both_ways(problem, points_of(orbits), wind_limits(problem, winds))
 
 
 def reference_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArray:
@@ -116,9 +116,10 @@ def reference_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> Flo
     return total_size(model, member, orbits.coefficients) * REFERENCE_ANGLE / np.maximum(angle, REFERENCE_ANGLE)
 
 
-def follow_both_ways(problem: CycleProblem, start: FloatArray, limits: tuple[float, float]) -> BranchSet:
+def follow_both_ways(problem: CycleProblem, start: FloatArray, limits: Limits) -> BranchSet:
     """Follow branches from points (k, n + 1), one per entry of the problem: k to higher parameters, then k to lower."""
     both, up = np.tile(np.arange(start.shape[0]), 2), np.repeat([1.0, -1.0], start.shape[0])
+    limits = _limits_of(limits, both)
     problem, start = problem.repeated(both), start[both]
     along = np.zeros_like(start)
     along[:, -1] = up * problem.scale(start, np.arange(both.size))[:, -1]
@@ -128,9 +129,19 @@ def follow_both_ways(problem: CycleProblem, start: FloatArray, limits: tuple[flo
     return follow_branches(problem, start, direction, limits, np.full(both.size, np.inf))
 
 
-def wind_limits(winds: FloatArray) -> tuple[float, float]:
-    """Return the wind speeds between which branches are followed for requested ones (winds,) [m/s]."""
-    return LOWEST_WIND * float(winds[0]), HIGHEST_WIND * float(winds[-1])
+def wind_limits(problem: CycleProblem, winds: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the wind speeds between which each branch of a problem is followed: (branches,) each [m/s].
+
+    winds: those requested, of all members, (winds,), or of each, (members, winds) [m/s].
+    """
+    own = of_each_member(problem.model, winds)[problem.member]
+    return LOWEST_WIND * own[:, 0], HIGHEST_WIND * own[:, -1]
+
+
+def _limits_of(limits: Limits, branch: IntArray) -> Limits:
+    """Return the limits of selected, possibly repeated branches (k,)."""
+    low, high = (bound[branch] if isinstance(bound, np.ndarray) else bound for bound in limits)
+    return low, high
 
 
 def ends_at_hopf_points(branch_sets: BranchSet, crossings: Crossings, hopf: IntArray) -> BoolArray:
@@ -143,7 +154,7 @@ def ends_at_hopf_points(branch_sets: BranchSet, crossings: Crossings, hopf: IntA
 
 
 def guessed_cycles(branch_sets: BranchSet, winds: FloatArray) -> tuple[IntArray, IntArray, Orbits]:
-    """Interpolate the cycles of the branches at wind speeds (winds,), as initial guesses.
+    """Interpolate the cycles of the branches at wind speeds (winds,) or (branches, winds), as initial guesses.
 
     Returns branch, wind speed index and orbit of each guess: (guesses,), (guesses,), Orbits.
     """
@@ -152,7 +163,7 @@ def guessed_cycles(branch_sets: BranchSet, winds: FloatArray) -> tuple[IntArray,
 
 
 def guessed_points(points: BranchPoints, winds: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Interpolate branches where they cross wind speeds (winds,), the last unknown.
+    """Interpolate branches where they cross wind speeds, the last unknown: (winds,) or (branches, winds).
 
     Returns branch, wind speed index and point of each crossing: (k,), (k,), (k, n + 1).
     """
@@ -160,11 +171,12 @@ def guessed_points(points: BranchPoints, winds: FloatArray) -> tuple[IntArray, I
     left, right = points.select(segment), points.select(segment + 1)
     part = np.linspace(0.0, 1.0, CELLS + 1)
     speed = interpolate(left, right, np.broadcast_to(part, (segment.size, part.size)), LAST)[..., 0]
-    above = speed[:, :, None] >= winds
+    own = winds[left.branch] if winds.ndim > 1 else np.broadcast_to(winds, (segment.size, winds.size))
+    above = speed[:, :, None] >= own[:, None]
     row, cell, wind = np.nonzero(above[:, 1:] != above[:, :-1])
-    share = (cell + (winds[wind] - speed[row, cell]) / (speed[row, cell + 1] - speed[row, cell])) / CELLS
+    share = (cell + (own[row, wind] - speed[row, cell]) / (speed[row, cell + 1] - speed[row, cell])) / CELLS
     guess = interpolate(left.select(row), right.select(row), share)
-    guess[:, -1] = winds[wind]
+    guess[:, -1] = own[row, wind]
     return left.branch[row], wind, guess
 
 
@@ -201,8 +213,7 @@ def _followed_on(found: BranchSet, origin: BranchPoints, index: IntArray, limits
     here, first = (
         make_points(own, np.arange(index.size), part.z, part.tangent) for part in (last, origin.select(index))
     )
-    lowest = np.broadcast_to(limits[0], found.problem.member.shape)[index]
-    points, outcome, ended = _followed(own, here, first, (lowest, limits[1]))
+    points, outcome, ended = _followed(own, here, first, _limits_of(limits, index))
     new = BranchPoints(index[points.branch], points.z, points.scale, points.tangent)
     every, judged = concatenated([found.points, new]), judged_points(found.problem, new)
     order = np.argsort(every.branch, kind="stable")
@@ -267,8 +278,8 @@ def _stays_in_range(problem: CycleProblem, new: BranchPoints, limits: Limits, sl
     member = problem.member[new.branch]
     orbits = problem.orbits(new.z, new.branch)
     rising, value = new.tangent[:, -1] > 0.0, new.z[:, -1]
-    lowest = np.broadcast_to(limits[0], problem.member.shape)[new.branch]
-    inside = (rising | (value > lowest)) & (~rising | (value < limits[1]))
+    lowest, highest = _limits_of(limits, new.branch)
+    inside = (rising | (value > lowest)) & (~rising | (value < highest))
     quick = orbits.angular_frequency > slowest[new.branch]
     return np.asarray(inside & quick & (first_harmonic_angle(problem.model, member, orbits) < LARGEST_ANGLE))
 

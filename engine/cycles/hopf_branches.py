@@ -33,7 +33,7 @@ def branches_in_groups(
         Leading axis (members,).
     crossings : Crossings
         Of these models.
-    winds : (winds,)
+    winds : (winds,) or (members, winds)
         Requested wind speeds in rising order [m/s].
     needed : (members,)
         Number of harmonics of each member.
@@ -81,10 +81,11 @@ def _joints(first: BranchSet, second: BranchSet, index: IntArray, winds: FloatAr
     """Return pairs of branches, of the first set and of index (k,) of the second, that meet at the end of the range."""
     if index.size == 0:
         return []
-    known, highest = KnownCycles(first.problem.model), wind_limits(winds)[1:]
+    known = KnownCycles(first.problem.model)
     numbers, branches = [], []
     for branch_set, some in ((first, np.arange(first.problem.member.size)), (second, index)):
-        branch, wind, orbits = guessed_cycles(branch_set, np.array(highest))
+        highest = wind_limits(branch_set.problem, winds)[1]
+        branch, wind, orbits = guessed_cycles(branch_set, highest[:, None])
         here = np.flatnonzero(np.isin(branch, some))
         member = branch_set.problem.member[branch[here]]
         starts, good = solve_starts(branch_set.problem.model, Starts(member, wind[here], select(orbits, here)))

@@ -30,14 +30,14 @@ def harmonics_needed(model: ReducedModel, wind_speeds: FloatArray, asked: int) -
     ----------
     model : ReducedModel
         Leading axis (members,).
-    wind_speeds : (winds,)
-        In rising order [m/s].
+    wind_speeds : (winds,) or (members, winds)
+        Of all members or of each, in rising order [m/s].
     asked : int
         The least number.
     """
     m = model.mass.shape[-1]
     slope = gradient_at_rest(model)[..., :m]
-    by_wind = wind_speeds[-1] ** 2 * diagonals(slope) / model.modal_masses
+    by_wind = wind_speeds[..., -1:] ** 2 * diagonals(slope) / model.modal_masses
     square = np.maximum(model.uncoupled_squares, model.uncoupled_squares - by_wind)
     lowest = lowest_frequency(model)[:, None]
     ratio = np.sqrt(np.maximum(square, 0.0)) / lowest

@@ -19,7 +19,7 @@ from engine.cycles.known_cycles import KnownCycles, Starts, solve_starts
 from engine.cycles.resolution import MOST_HARMONICS, harmonics_needed, resolved_in_groups, unresolved_members
 from engine.cycles.starts import energy_starts
 from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
-from engine.models.reduced_model import ReducedModel, take, with_samples
+from engine.models.reduced_model import ReducedModel, of_each_member, take, with_samples
 from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.result import FoundBy
@@ -95,8 +95,8 @@ def find_cycles(
         Leading axis (members,).
     crossings : Crossings
         Of these models up to the limit asked for; branches start at the Hopf points among them.
-    wind_speeds : (winds,)
-        In rising order [m/s].
+    wind_speeds : (winds,) or (members, winds)
+        Of all members or of each, in rising order [m/s].
     starts : Starts
     harmonics : int
     integration : DirectIntegration, optional
@@ -106,7 +106,7 @@ def find_cycles(
     Cycles
         Sorted by member, wind speed and branch.
     """
-    known = KnownCycles(model)
+    known, wind_speeds = KnownCycles(model), of_each_member(model, wind_speeds)
     if wind_speeds.size == 0:
         return _sorted_cycles(model, known, ())
     needed = harmonics_needed(model, wind_speeds, harmonics)
@@ -179,11 +179,11 @@ def _roughly_balanced(known: KnownCycles, starts: Starts) -> Starts:
 
 def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
     """Return member and wind speed index (places,) where neither the static state nor a known cycle is stable."""
-    stable = np.repeat(model.statically_unstable[:, None], wind_speeds.size, axis=1)
+    stable = np.repeat(model.statically_unstable[:, None], wind_speeds.shape[-1], axis=1)
     lasting = np.asarray(cycles.floquet.stability == Stability.STABLE, dtype=np.bool_)
     stable[cycles.member[lasting], cycles.wind[lasting]] = True
     member, wind = np.nonzero(~stable)
-    values = eigenvalues(at_wind(state_matrices(take(model, member)), wind_speeds[wind]))
+    values = eigenvalues(at_wind(state_matrices(take(model, member)), wind_speeds[member, wind]))
     unstable = unstable_pairs(values) > 0
     return member[unstable], wind[unstable]
 
@@ -191,7 +191,7 @@ def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: Flo
 def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray, found_by: FoundBy) -> IntArray:
     """Solve for the cycles where followed branches cross the wind speeds; return the numbers of these branches."""
     followed = known.add_branches(branch_set.problem.member, branch_set.hopf_wind_speed)
-    branch, wind, orbits = guessed_cycles(branch_set, winds)
+    branch, wind, orbits = guessed_cycles(branch_set, winds[branch_set.problem.member])
     starts, good = solve_starts(branch_set.problem.model, Starts(branch_set.problem.member[branch], wind, orbits))
     numbers = known.add(starts, good, found_by)
     known.link(followed[branch[good]], numbers[good])

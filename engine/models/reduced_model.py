@@ -47,6 +47,11 @@ class ReducedModel:
         return np.asarray(diagonals(self.stiffness) / self.modal_masses)
 
 
+def of_each_member(model: ReducedModel, wind_speeds: FloatArray) -> FloatArray:
+    """Return wind speeds (members, winds), given those of all members, (winds,), or those of each."""
+    return np.broadcast_to(wind_speeds, (model.mass.shape[0], wind_speeds.shape[-1]))
+
+
 def lowest_frequency(model: ReducedModel) -> FloatArray:
     """Return the root of the smallest |K_ii / M_ii| of each model: (members,) [rad/s]."""
     return np.asarray(np.sqrt(np.abs(model.uncoupled_squares).min(axis=-1)))

@@ -21,7 +21,7 @@ class ModelFindings:
     """Critical wind speeds, motions and bifurcations of all members of a stack of models.
 
     model: leading axis (members,); line: (members,), index of each member's line; loops: (members, m), number of loops
-    of each coordinate; winds: (winds,), requested wind speeds in rising order [m/s].
+    of each coordinate; winds: (members, winds), wind speeds requested of each in rising order [m/s].
     """
 
     name: Model

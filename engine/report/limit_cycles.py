@@ -105,8 +105,8 @@ class _RowKeys:
 def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[tuple[int, Motion]]:
     """Yield rows of the static state, and of wind speeds where it is unstable and no stable motion is known."""
     findings = seen.findings
-    members, winds = findings.line.size, findings.winds.size
-    values = eigenvalues(at_wind(state_matrices(findings.model), np.broadcast_to(findings.winds, (members, winds))))
+    members, winds = findings.winds.shape
+    values = eigenvalues(at_wind(state_matrices(findings.model), findings.winds))
     size = np.abs(values).max(axis=-1, initial=0.0)
     undecided = np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size
     static = findings.model.statically_unstable
@@ -116,7 +116,7 @@ def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[tuple[int, Moti
     member, at, wind = np.nonzero(np.broadcast_to(known[:, :, None], (members, len(loops), winds)))
     number = np.array(loops, dtype=np.intp)[at]
     keys = _RowKeys(
-        findings.line[member], number, findings.winds[wind], seen.observer.resting(findings, member, number)
+        findings.line[member], number, findings.winds[member, wind], seen.observer.resting(findings, member, number)
     )
     amplitude = np.where(static[member], np.nan, 0.0)
     labels: dict[str, Iterable[Any]] = {
@@ -137,7 +137,7 @@ def _without_motion(seen: _Seen, missing: MissingMotions, asked: tuple[int, ...]
     first = np.isin(findings.loops, asked).argmax(axis=-1)
     loops = findings.loops[member, first[member]]
     observed = seen.observer.resting(findings, member, loops)
-    keys = _RowKeys(findings.line[member], loops, findings.winds[missing.wind], observed)
+    keys = _RowKeys(findings.line[member], loops, findings.winds[member, missing.wind], observed)
     labels: dict[str, Iterable[Any]] = {
         "kind": missing.kind,
         "stability": repeat(Stability.UNKNOWN),

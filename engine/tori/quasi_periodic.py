@@ -16,7 +16,7 @@ from engine.cycles.harmonic_balance import Orbits, select
 from engine.cycles.search import Cycles
 from engine.cycles.transitions import Kind
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.reduced_model import ReducedModel, of_each_member, take
 from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.result import FoundBy
@@ -107,13 +107,13 @@ def quasi_periodic_motions(
     model : ReducedModel
         Leading axis (members,).
     cycles, bifurcations : those on the branches of the cycles
-    winds : (winds,)
-        In rising order [m/s].
+    winds : (winds,) or (members, winds)
+        Of all members or of each, in rising order [m/s].
     search : TorusSearch
         Which torus points are followed: those from which stable tori start and those of models with a wind speed at
         which no stable motion is known, or every one.
     """
-    motions = _no_motions(model)
+    motions, winds = _no_motions(model), of_each_member(model, winds)
     if winds.size and any(kind is Kind.TORUS for kind in bifurcations.kind):
         starts = _torus_starts(model, cycles, bifurcations, winds, search)
         motions = _from_torus_points(model, starts, winds)
@@ -160,7 +160,7 @@ def check_by_integration(model: ReducedModel, motions: QuasiPeriodicMotions) -> 
 
 def _from_torus_points(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> QuasiPeriodicMotions:
     """Follow tori from torus points and solve for them where they cross the wind speeds."""
-    branch, wind, z = guessed_points(follow_tori(model, starts, winds), winds)
+    branch, wind, z = guessed_points(follow_tori(model, starts, winds), winds[starts.member])
     guess = resized(tori_of(z, model.mass.shape[-1], COARSE), FINE)
     return _balanced_tori(model, (starts.member[branch], wind, starts.family[branch]), guess, "torus_point")
 
@@ -248,7 +248,7 @@ def _without_stable_motion(
     if not locations:
         return locations
     member, wind = np.array(sorted(locations), dtype=np.intp).T
-    values = eigenvalues(at_wind(state_matrices(take(model, member)), winds[wind]))
+    values = eigenvalues(at_wind(state_matrices(take(model, member)), winds[member, wind]))
     unstable = unstable_pairs(values) > 0
     return {place for place, moves in zip(sorted(locations), unstable.tolist(), strict=True) if moves}
 

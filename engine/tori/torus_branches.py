@@ -12,7 +12,7 @@ from engine.cycles.branches import guessed_points
 from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, balance, resized, select
 from engine.cycles.transitions import Kind
-from engine.models.reduced_model import ReducedModel, take
+from engine.models.reduced_model import ReducedModel, of_each_member, take
 from engine.numerics.continuation import BranchPoints, Problem, StepControl, continue_branches, make_points
 from engine.numerics.newton import NewtonOptions
 from engine.progress import driven
@@ -203,14 +203,16 @@ def cycles_from_tori(tori: Tori) -> Orbits:
 
 
 def follow_tori(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> BranchPoints:
-    """Follow branches of tori within the range of the wind speeds (winds,), until they end at another cycle.
+    """Follow branches of tori within the range of each one's wind speeds, until they end at another cycle.
+
+    winds: (winds,) or (members, winds), in rising order [m/s].
 
     Returns
     -------
     BranchPoints
         Sorted by branch, in the order in which they were computed, without the starting points.
     """
-    problem = TorusProblem(model, starts.member, starts.tori.order)
+    problem, own = TorusProblem(model, starts.member, starts.tori.order), of_each_member(model, winds)[starts.member]
     last = make_points(problem, np.arange(starts.member.size), points_of(starts.tori), starts.direction)
     found, at_start = [last.select(np.zeros(0, dtype=np.intp))], np.ones(starts.member.size, dtype=np.bool_)
 
@@ -220,7 +222,8 @@ def follow_tori(model: ReducedModel, starts: TorusStarts, winds: FloatArray) -> 
         found.append(new.select(~ended))
         at_start[new.branch] = False
         last.overwrite(new)
-        return np.asarray(~ended & np.where(rising, new.z[:, -1] < winds[-1], new.z[:, -1] > winds[0]))
+        lowest, highest = own[new.branch, 0], own[new.branch, -1]
+        return np.asarray(~ended & np.where(rising, new.z[:, -1] < highest, new.z[:, -1] > lowest))
 
     driven(_continuation(problem, starts, STEPS), goes_on)
     every = BranchPoints(

@@ -61,7 +61,7 @@ def tied_clearance_rows(whole: AssembledLine, findings: ModelFindings) -> list[P
     place = np.linspace(0.0, whole.line.span.length, 2 * whole.line.span.elements + 1)
     hung = hung_phases(whole, findings.model.shapes[0], place)
     return [
-        _row(whole, pair, place, findings.winds, motions, i)
+        _row(whole, pair, place, findings.winds[0], motions, i)
         for motions in _motions(findings)
         for i in range(motions.wind.size)
         for pair in combinations(hung, 2)

@@ -42,7 +42,7 @@ def test_a_branch_from_beyond_ends_where_it_meets_one_that_left_the_range() -> N
     assert crossings.wind_speed == pytest.approx([2.400, 10.286], abs=2e-3)
     (first, second), joints = branches_in_groups(model, crossings, NARROW, FIVE)
     assert joints == [(0, 1)]
-    highest = wind_limits(NARROW)[1]
+    highest = wind_limits(first.problem, NARROW)[1][0]
     assert first.orbits.wind_speed[-1] > highest
     assert second.orbits.wind_speed[0] == crossings.wind_speed[1]
     assert (second.orbits.wind_speed[:-1] > highest).all()
