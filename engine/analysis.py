@@ -19,6 +19,7 @@ from engine.model_findings import ModelStack, findings_of
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
 from engine.models.discretization import (
     Discretization,
+    blocks_of_winds,
     discretize,
     fields_in_space,
     in_wind,
@@ -46,12 +47,14 @@ from engine.spec import Analysis, DeviceEffect, Line, LoopCompetition, Model, St
 class _Discretized:
     """What every later step reads: the discretization, its shapes and, where asked for, its full modes.
 
-    scan: static states over the wind speed, where these follow it.
+    winds: (lines, winds), at which the motions of each are searched [m/s]; scan: static states over the wind speed,
+    where these follow it.
     """
 
     discretization: Discretization
     shapes: DirectionalShapes
     modes: FullModes | None
+    winds: FloatArray
     scan: Scan | None = None
 
 
@@ -122,22 +125,24 @@ def _is_single_span(line: Line) -> bool:
 def _analyse_spans(lines: Sequence[Line], analysis: Analysis) -> Generator[Progress, None, list[Result]]:
     yield Progress(0.0, "static state and modes")
     prepared = _discretized(lines, analysis)
-    parts = _in_each_wind(prepared, analysis) if analysis.follows_twist else [(prepared, analysis)]
-    findings: list[ModelFindings] = []
+    parts = _in_each_wind(prepared, analysis) if analysis.follows_twist else [prepared]
+    found: list[list[ModelFindings]] = []
     frequencies: list[NaturalFrequencies] = []
     competitions: list[list[LoopCompetitionRow]] = [[] for _ in lines]
-    for number, (here, asked) in enumerate(parts):
+    for number, here in enumerate(parts):
         yield Progress(0.1 + 0.8 * number / len(parts), "critical wind speeds and limit cycles of the hybrid model")
-        hybrid = [_analyse_hybrid(here, group, asked) for group in loop_groups(asked.loops, asked)]
-        findings += hybrid if Model.HYBRID in asked.models else []
-        if here.modes is not None and asked.finite_element_loops:
-            findings.append((yield from _analyse_finite_element(here, here.modes, hybrid, asked)))
-        frequencies = frequencies or _frequencies(here, hybrid, asked)
-        further = _competitions(here, hybrid, asked)
-        competitions = [[*known, *more] for known, more in zip(competitions, further, strict=True)]
+        hybrid = [_analyse_hybrid(here, group, analysis) for group in loop_groups(analysis.loops, analysis)]
+        found.append(list(hybrid) if Model.HYBRID in analysis.models else [])
+        if here.modes is not None and analysis.finite_element_loops:
+            found[-1].append((yield from _analyse_finite_element(here, here.modes, hybrid, analysis)))
+        frequencies = frequencies or _frequencies(here, hybrid, analysis)
+        for state, rows in enumerate(_competitions(here, hybrid, analysis)):
+            competitions[state % len(lines)] += rows
     yield Progress(0.95, "result rows")
+    # Model by model with rising wind speeds, however many of these make a part; states are numbered wind by wind.
+    findings = tuple(replace(one, line=one.line % len(lines)) for alike in zip(*found, strict=True) for one in alike)
     about = _with_smallest_range(prepared, parts) if analysis.follows_twist else prepared.discretization
-    results = line_results(about, prepared.shapes, tuple(frequencies), tuple(findings), analysis, competitions)
+    results = line_results(about, prepared.shapes, tuple(frequencies), findings, analysis, competitions)
     yield Progress(1.0, "done")
     return results
 
@@ -149,20 +154,23 @@ def _frequencies(
     return frequencies if prepared.modes is None else [*frequencies, full_frequencies(prepared.modes)]
 
 
-def _in_each_wind(prepared: _Discretized, analysis: Analysis) -> list[tuple[_Discretized, Analysis]]:
-    """Return the state in still air with no wind speed, then the state at each wind speed with that one."""
-    parts = [(prepared, replace(analysis, wind_speeds=()))]
-    for i, speed in enumerate(_winds(analysis).tolist()):
-        here = in_wind(prepared.discretization, i)
-        own = _Discretized(here, shapes_in_wind(here, prepared.shapes), _modes(here, analysis))
-        parts.append((own, replace(analysis, wind_speeds=(speed,))))
+def _in_each_wind(prepared: _Discretized, analysis: Analysis) -> list[_Discretized]:
+    """Return the states in still air with no wind speed, then those at all wind speeds, each with its own."""
+    lines, winds = len(prepared.discretization.lines), _winds(analysis)
+    parts = [replace(prepared, winds=np.zeros((lines, 0)))]
+    for block in blocks_of_winds(lines, winds.size):
+        here = in_wind(prepared.discretization, block)
+        own = np.repeat(winds[block], lines)[:, None]
+        parts.append(_Discretized(here, shapes_in_wind(here, prepared.shapes), _modes(here, analysis), own))
     return parts
 
 
-def _with_smallest_range(prepared: _Discretized, parts: list[tuple[_Discretized, Analysis]]) -> Discretization:
+def _with_smallest_range(prepared: _Discretized, parts: list[_Discretized]) -> Discretization:
     """Return the state in still air with the range of angles that the tables hold at every wind speed."""
-    ranges = [here.discretization.sections.fitted_range for here, _ in parts[1:]] or [np.array([np.inf])]
-    sections = replace(prepared.discretization.sections, fitted_range=np.min(ranges, axis=0))
+    lines = len(prepared.discretization.lines)
+    ranges = [here.discretization.sections.fitted_range.reshape(-1, lines) for here in parts[1:]]
+    smallest = np.min(np.concatenate([np.full((1, lines), np.inf), *ranges]), axis=0)
+    sections = replace(prepared.discretization.sections, fitted_range=smallest)
     return replace(prepared.discretization, sections=sections)
 
 
@@ -177,7 +185,8 @@ def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
     loops = tuple(sorted({*analysis.loops, 1, 2} | extra))
     shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, loops)
     scan = scan_of(discretization, analysis.critical_wind_limit, shapes) if analysis.follows_twist else None
-    return _Discretized(discretization, shapes, _modes(discretization, analysis), scan)
+    winds = np.broadcast_to(_winds(analysis), (len(lines), len(set(analysis.wind_speeds))))
+    return _Discretized(discretization, shapes, _modes(discretization, analysis), winds, scan)
 
 
 def _modes(discretization: Discretization, analysis: Analysis) -> FullModes | None:
@@ -200,7 +209,7 @@ def _analyse_hybrid(prepared: _Discretized, loops: tuple[int, ...], analysis: An
     column = np.tile(np.arange(len(loops)), len(prepared.discretization.lines))
     model = take(grid, (line, column))
     published = take(with_published_load(prepared.discretization, grid), (line, column))
-    winds = _winds(analysis)
+    winds = prepared.winds[line]
     starts = explicit_starts(published, model, winds, analysis.harmonics)
 
     def model_of(states: Discretization, shapes: DirectionalShapes, lines: IntArray) -> ReducedModel:
@@ -232,7 +241,7 @@ def _analyse_finite_element(
     own = np.resize(modes.loops, coordinates[1])  # those of each direction; a relief coordinate is never the largest
     loops = np.broadcast_to(own, coordinates)
     stack = ModelStack(Model.FINITE_ELEMENT, model, line, loops, crossings)
-    return findings_of(stack, _winds(analysis), starts, analysis)
+    return findings_of(stack, prepared.winds, starts, analysis)
 
 
 def _crossings(

@@ -41,7 +41,7 @@ def findings_of(stack: ModelStack, winds: FloatArray, starts: Starts, analysis: 
     cycles = find_cycles(model, stack.crossings, winds, starts, analysis.harmonics, integration)
     bifurcation_points = bifurcations(cycles.branch_sets, cycles.followed, model, stack.crossings)
     tori = quasi_periodic_motions(model, cycles, bifurcation_points, winds, analysis.quasi_periodic)
-    follows = analysis.follows_twist and analysis.wind_speeds  # crossings about this state hold at its wind speed only
+    follows = analysis.follows_twist and winds.size  # crossings about this state hold at its wind speed only
     return ModelFindings(
         name=stack.name,
         model=model,

@@ -17,6 +17,7 @@ from engine.numerics.newton import NewtonOptions, Solution, newton
 
 SETTLED = 1e-2  # m, rad times the tolerance: largest change of a coefficient from twice an unexpanded load's samples
 MOST_SAMPLES = 1024
+READ_SAMPLES = 208  # least number in a period to read amplitudes from
 EXACT = 1e-5  # largest tolerance of solutions that count
 
 
@@ -246,11 +247,11 @@ def select(orbits: Orbits, index: IntArray) -> Orbits:
 def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
     """Return half of the peak-to-peak of Fourier series (..., 2 H + 1): (...).
 
-    The extremes on a grid of 16 samples per harmonic are refined by a parabola through three samples.
+    The extremes on a grid of at least 16 samples per harmonic are refined by a parabola through three samples. The grid
+    is the same up to twelve harmonics, so that it does not matter to how many a stack pads its cycles.
     """
     harmonics = coefficients.shape[-1] // 2
-    samples = 16 * harmonics + 16
-    values = coefficients @ fourier(2.0 * np.pi * np.arange(samples) / samples, harmonics).T
+    values = coefficients @ basis(harmonics, max(READ_SAMPLES, 16 * harmonics + 16)).values.T
     return np.asarray(0.5 * (peaks(values) + peaks(-values)))
 
 

@@ -4,7 +4,7 @@ Everything structural (matrices, eigenproblems, mode shapes) is in the axes of t
 of it, which are X, Y and Z without blow-out. Wind, devices and what is reported are in X, Y and Z.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from engine.mechanics.wind_twist import WindTwist, wind_twist
 from engine.models.relative_wind import NodalMotion, local_motion_forms, turned_arms
 from engine.spec import AerodynamicModel, Line, StaticTwist
 
+BLOCK_STATES = 256  # of lines, whose matrices may stand side by side
 FIT_RANGE = np.radians(20.0)  # of the cubics that stand for curves in starts
 
 
@@ -119,12 +120,18 @@ def _in_plane(profile: StaticProfile, system: Matrices) -> Matrices:
     return replace(system, stiffness=turned(system.stiffness), mass=turned(system.mass))
 
 
-def in_wind(discretization: Discretization, wind: int) -> Discretization:
-    """Return the discretization about the static state at a wind speed, by its index. Theory section 14.
+def blocks_of_winds(lines: int, winds: int) -> Iterator[IntArray]:
+    """Yield the indices of winds in blocks, of each of which the states of all lines may stand side by side."""
+    size = max(1, BLOCK_STATES // lines)
+    yield from (np.arange(first, min(first + size, winds)) for first in range(0, winds, size))
+
+
+def in_wind(discretization: Discretization, winds: IntArray) -> Discretization:
+    """Return the discretizations about the static states at wind speeds, as `states_in_wind`. Theory section 14.
 
     Coefficients fixed to the section are cubics fitted to the curves there.
     """
-    state = states_in_wind(discretization, np.array([wind]))
+    state = states_in_wind(discretization, winds)
     here, local = state.sections, local_curves(state.lines, state.profile, state.sections)
     cubics = cubics_about(local.curves, local.which, local.angle, FIT_RANGE)
     fitted = replace(here, aerodynamics=cubics, fitted_range=reach(local, here.local_weight > 0.0))

@@ -13,11 +13,16 @@ from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
 from engine.mechanics.modes import TORSIONAL, DirectionalShapes
 from engine.mechanics.wind_twist import WindTwist
 from engine.models.critical_wind_speeds import Crossings, StateMatrices, at_wind, state_matrices, unstable_pairs
-from engine.models.discretization import Discretization, shapes_in_wind, states_in_wind, with_wind_twist
+from engine.models.discretization import (
+    Discretization,
+    blocks_of_winds,
+    shapes_in_wind,
+    states_in_wind,
+    with_wind_twist,
+)
 from engine.models.reduced_model import ReducedModel
 
 STEPS = 30  # of the grid up to the limit
-BLOCK_LINES = 256  # largest number of lines and wind speeds whose matrices stand side by side
 CELLS = 8  # parts of a step of the grid that are searched for changes of stability
 HALVINGS = 40
 STATIC = 1e-9  # imaginary part over the largest eigenvalue, below which a growing motion does not oscillate
@@ -48,8 +53,7 @@ def scan_of(discretization: Discretization, limit: float, still: DirectionalShap
     winds = np.linspace(0.0, limit, STEPS + 1)[1:]
     followed = with_wind_twist(discretization, winds, further=False)
     assert followed.wind_twist is not None, "it was followed above"
-    size = max(1, BLOCK_LINES // len(discretization.lines))
-    blocks = (states_in_wind(followed, np.arange(i, min(i + size, winds.size))) for i in range(0, winds.size, size))
+    blocks = (states_in_wind(followed, block) for block in blocks_of_winds(len(discretization.lines), winds.size))
     states = tuple((block, shapes_in_wind(block, still)) for block in blocks)
     return Scan(winds, states, followed.wind_twist)
 

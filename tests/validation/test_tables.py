@@ -92,7 +92,7 @@ def test_doubling_the_samples_moves_no_coefficient() -> None:
 
 def test_large_starts_come_back_to_the_motion_of_small_ones() -> None:
     """Starts of 1.5 m and 1.2 rad: the load is bounded, whatever the angle of attack."""
-    system = in_wind(with_wind_twist(discretize((with_table(source_line(2), 0.0),)), np.array([6.0])), 0)
+    system = in_wind(with_wind_twist(discretize((with_table(source_line(2), 0.0),)), np.array([6.0])), np.array([0]))
     shapes = directional_shapes(system.matrices, system.profile.arc_length, (1, 2))
     model = take(hybrid_model(system, shapes, (1,), TABLE), 0)
     zero = np.zeros(3, dtype=np.intp)

@@ -56,7 +56,7 @@ def test_the_onset_of_a_twisting_line_is_that_of_its_state_there() -> None:
     assert set(found.member.tolist()) == {1} or 0 in found.member
     for member, speed in zip(found.member.tolist(), found.wind_speed.tolist(), strict=True):
         own = (line, with_table(source_line(2), 0.0))[member]
-        here = in_wind(with_wind_twist(discretize((own,)), np.array([speed])), 0)
+        here = in_wind(with_wind_twist(discretize((own,)), np.array([speed])), np.array([0]))
         frozen = critical_wind_speeds(one_loop(here), LIMIT)
         assert np.abs(frozen.wind_speed / speed - 1.0).min() < 3e-3
 

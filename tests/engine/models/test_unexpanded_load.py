@@ -152,7 +152,7 @@ def _loads(system: Discretization) -> tuple[ReducedModel, UnexpandedLoad]:
 def test_load_about_the_twisted_state_is_that_of_a_section_that_rests_there() -> None:
     """Where bundle and ice hardly turn, the twist is a shift of the table."""
     line = with_table(source_line(2), 20.0)
-    twisted = in_wind(with_wind_twist(discretized(line), np.array([30.0])), 0)
+    twisted = in_wind(with_wind_twist(discretized(line), np.array([30.0])), np.array([0]))
     _, load = _loads(twisted)
     _, still = _loads(discretized(line))
     state = np.random.default_rng(3).normal(scale=0.1, size=(1, 1, 3, 6))
