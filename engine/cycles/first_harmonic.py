@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
+from engine.cycles.harmonic_balance import Orbits, basis, linearized
 from engine.kernels import compiled
 from engine.models.critical_wind_speeds import at_wind, state_matrices
-from engine.models.reduced_model import ReducedModel, diagonals, force, take
+from engine.models.reduced_model import ReducedModel, diagonals, take, with_samples
 from engine.models.stretching import restoring_force
 
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
@@ -230,7 +231,7 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     weight = 1.0 / np.sqrt(model.modal_masses)[member]
     frequency = values.imag[member, mode]
     shape = _complex(_unstable_modes(matrices[member], values[member, mode]) * weight)
-    linear, cubic = _work(take(model, member), wind_speed[member], frequency, shape)
+    linear, cubic = _work(model, member, wind_speed[member], frequency, shape)
     grows = (linear > 0.0) & (cubic < 0.0)
     size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
     growing = np.flatnonzero(grows)
@@ -279,14 +280,17 @@ def _complex(values: AnyArray) -> ComplexArray:
 
 
 def _work(
-    model: ReducedModel, wind_speed: FloatArray, frequency: FloatArray, shape: ComplexArray
+    model: ReducedModel, member: IntArray, wind_speed: FloatArray, frequency: FloatArray, shape: ComplexArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return p_1 and p_3 from the work at two amplitudes; ten samples resolve the fourth harmonic."""
-    phase = np.exp(2j * np.pi * np.arange(10) / 10.0)[:, None]
-    q = (shape[:, None] * phase).real
-    velocity = (1j * frequency[:, None, None] * shape[:, None] * phase).real
-    drag = (velocity @ model.damping * velocity).sum(axis=-1).mean(axis=-1)
-    state = np.concatenate([q, velocity / wind_speed[:, None, None]], axis=-1)
-    work = [wind_speed**2 * (force(model, r * state) * r * velocity).sum(axis=-1).mean(axis=-1) for r in (1.0, 2.0)]
+    """Return p_1 and p_3 from the work at two amplitudes, that of the residual of the harmonic balance at the velocity.
+
+    Inertia and stiffness do no work over a period; ten samples resolve the fourth harmonic.
+    """
+    first = np.stack([np.zeros(shape.shape), shape.real, -shape.imag], axis=-1)
+    velocity = frequency[:, None, None] * (first @ basis(1).derivative.T)
+    sampled, work = with_samples(model, 10), []
+    for size in (1.0, 2.0):
+        lost, _ = linearized(sampled, member, Orbits(size * first, frequency, wind_speed))
+        work.append(-0.5 * size * (lost.reshape(first.shape) * velocity).sum(axis=(1, 2)))
     cubic = (work[1] - 4.0 * work[0]) / 12.0
-    return work[0] - cubic - drag, cubic
+    return work[0] - cubic, cubic
