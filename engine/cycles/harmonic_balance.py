@@ -247,8 +247,7 @@ def select(orbits: Orbits, index: IntArray) -> Orbits:
 def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
     """Return half of the peak-to-peak of Fourier series (..., 2 H + 1): (...).
 
-    The extremes on a grid of at least 16 samples per harmonic are refined by a parabola through three samples. The grid
-    is the same up to twelve harmonics, so that it does not matter to how many a stack pads its cycles.
+    The extremes on a grid, the same up to twelve harmonics, however far a stack pads, are refined by a parabola.
     """
     harmonics = coefficients.shape[-1] // 2
     values = coefficients @ basis(harmonics, max(READ_SAMPLES, 16 * harmonics + 16)).values.T

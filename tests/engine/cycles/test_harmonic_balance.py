@@ -132,6 +132,8 @@ def test_half_peak_to_peak_of_sums_of_waves() -> None:
     fine = fourier(np.linspace(0.0, 2.0 * np.pi, 100_001), 2) @ series.T
     assert half_peak_to_peak(series) == pytest.approx(0.5 * np.ptp(fine, axis=0), rel=1e-4, abs=1e-12)
     assert half_peak_to_peak(series)[0] == pytest.approx(5.0, rel=1e-5)
+    padded = np.pad(series, ((0, 0), (0, 24 - 2 * (series.shape[-1] // 2))))
+    assert half_peak_to_peak(padded) == pytest.approx(half_peak_to_peak(series), rel=1e-14)
 
 
 def test_resizing_keeps_the_lower_harmonics() -> None:

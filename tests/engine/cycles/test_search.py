@@ -38,6 +38,20 @@ def test_branch_is_one_family_over_the_wind() -> None:
     assert (np.diff(half_peak_to_peak(cycles.orbits.coefficients)[:, 0]) > 0.0).all()
 
 
+def test_members_with_wind_speeds_of_their_own_have_the_cycles_that_each_has_alone() -> None:
+    pair, winds = take(hybrid(source_line(2), 1), [0, 0]), np.array([[4.0], [6.0]])
+    together = found_for(pair, winds)
+    alone = [found_for(take(pair, [i]), own) for i, own in enumerate(winds)]
+    assert together.member.tolist() == [0, 1]
+    assert together.wind.tolist() == [0, 0]
+    assert together.orbits.wind_speed.tolist() == [4.0, 6.0]
+    for i, own in enumerate(alone):
+        assert together.orbits.angular_frequency[i] == pytest.approx(own.orbits.angular_frequency[0], rel=1e-12)
+        ends = [cycles.branch_sets[0].orbits.wind_speed for cycles in (together, own)]
+        here = together.branch_sets[0].member == i
+        assert ends[0][here] == pytest.approx(ends[1], rel=1e-12)
+
+
 def test_members_without_galloping_have_no_cycles() -> None:
     cycles = found_for(hybrid(source_line(2), 1), np.array([1.0, 2.0]))
     assert cycles.member.size == 0
