@@ -22,6 +22,7 @@ from app.jobs import submissions
 from app.jobs.dispatch import Sender, celery_application
 from app.jobs.job_records import look_up
 from app.jobs.watched_states import batches_seen, jobs_seen
+from app.ogc import routes as ogc
 from app.openapi import about, finished
 from app.operation import metrics
 from app.pages import assets, frame, views
@@ -135,6 +136,7 @@ def _add_addresses(app: Service) -> None:
         app.include_router(module.router)
     for module in (reference, health, explorer):
         app.include_router(module.router)
+    app.include_router(ogc.router)
     for router in views.routers():
         app.include_router(router)
     for address, files in {explorer.ASSETS: explorer.assets(), **assets.folders()}.items():

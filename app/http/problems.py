@@ -104,9 +104,11 @@ class ProblemError(HTTPException):
         faults: Sequence[Fault] = (),
         links: Sequence[Mapping[str, str]] = (),
         headers: Mapping[str, str] | None = None,
+        type_address: str | None = None,
     ) -> None:
-        """Take the kind, a sentence for this occurrence, and optional faults, links and headers."""
+        """Take the kind, a sentence for this occurrence, and optional parts; a standard may have its own type of it."""
         self.kind = kind
+        self.type_address = type_address
         self.faults = faults
         self.links = links
         super().__init__(kind.status, detail, dict(headers) if headers else None)
@@ -162,6 +164,8 @@ def _respond(request: Request, problem: ProblemError) -> Response:
     if shown is not None:
         return shown
     document = problem_document(problem.kind, problem.detail, request.url.path[:500], problem.faults)
+    if problem.type_address is not None:
+        document["type"] = problem.type_address
     if problem.links:
         document["links"] = list(problem.links)
     return LinkedJSON(document, problem.status_code, headers=problem.headers, media_type=MEDIA_TYPE)

@@ -2,14 +2,14 @@
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, Select, delete, select, tuple_
+from sqlalchemy import ColumnElement, Select, delete, extract, func, select, tuple_
 from sqlalchemy.orm import Session, defer, sessionmaker
 from uuid_utils.compat import uuid7
 
@@ -49,6 +49,9 @@ class JobFilters:
     batch_id: UUID | None = None
     created_after: datetime | None = None
     created_before: datetime | None = None
+    statuses: Collection[JobStatus] = ()
+    shortest_seconds: float | None = None
+    longest_seconds: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,6 +215,13 @@ def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
         conditions.append(Job.created_at > filters.created_after)
     if filters.created_before is not None:
         conditions.append(Job.created_at < filters.created_before)
+    if filters.statuses:
+        conditions.append(Job.status.in_(filters.statuses))
+    seconds = extract("epoch", func.coalesce(Job.finished_at, func.now())) - extract("epoch", Job.started_at)
+    if filters.shortest_seconds is not None:
+        conditions.append(seconds >= filters.shortest_seconds)
+    if filters.longest_seconds is not None:
+        conditions.append(seconds <= filters.longest_seconds)
     for key, value in filters.tags.items():
         tagged = select(JobTag.job_id).where(JobTag.key == key, JobTag.value == value)
         conditions.append(Job.id.in_(tagged))

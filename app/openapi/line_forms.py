@@ -7,7 +7,7 @@ from app.routes.own_documentation import KNOWN_LINE
 from app.schemas.batch import BatchRequest
 
 _REFERENCE = "#/components/schemas/{model}"
-_FORMS = (
+FORMS = (
     ("Line, spelled out", "Line", example("c11-twin")),
     ("Line as an engineer knows it", "KnownLine", KNOWN_LINE),
 )
@@ -18,8 +18,8 @@ def with_both_forms(document: dict[str, Any]) -> dict[str, Any]:
     schemas = document["components"]["schemas"]
     schemas["JobRequest"]["properties"]["line"] = {
         "description": "The line: spelled out, or as an engineer knows it, which is then resolved",
-        "anyOf": [{"title": title, "$ref": _REFERENCE.format(model=name)} for title, name, _ in _FORMS],
-        "examples": [line for _, _, line in _FORMS],
+        "anyOf": [{"title": title, "$ref": _REFERENCE.format(model=name)} for title, name, _ in FORMS],
+        "examples": [line for _, _, line in FORMS],
     }
     batch = BatchRequest.model_json_schema(by_alias=True, ref_template=_REFERENCE)
     spelled = batch.pop("$defs")["BatchLine"]
@@ -33,7 +33,7 @@ def with_both_forms(document: dict[str, Any]) -> dict[str, Any]:
     batch["properties"]["lines"]["items"] = {
         "anyOf": [
             {"title": title, "$ref": _REFERENCE.format(model=name)}
-            for (title, _, _), name in zip(_FORMS, ("BatchLine", "KnownBatchLine"), strict=True)
+            for (title, _, _), name in zip(FORMS, ("BatchLine", "KnownBatchLine"), strict=True)
         ]
     }
     return document

@@ -36,16 +36,28 @@ async def accepted_job(request: Request, document: schemas.JobRequest, key: Key 
 
 async def accepted_order(request: Request, order: Order) -> Response:
     """Store an order as a job and send it; or answer as before, if its key was used."""
-    shared = request.app.state  # read directly, since a FastAPI dependency costs as much as checking the line
     try:
-        job: Job = await shared.inbox.call(order)
+        return _accepted(await stored_job(request, order))
     except KeyTaken:
         keyed = order.keyed
         assert keyed is not None
-        return await to_thread.run_sync(replayed_answer, shared.readers, keyed.key, lambda: keyed.fingerprint)
+        readers = request.app.state.readers
+        return await to_thread.run_sync(replayed_answer, readers, keyed.key, lambda: keyed.fingerprint)
+
+
+async def stored_job(request: Request, order: Order) -> Job:
+    """Store an order as a job and send it.
+
+    Raises
+    ------
+    KeyTaken
+        If its key was used.
+    """
+    shared = request.app.state  # read directly, since a FastAPI dependency costs as much as checking the line
+    job: Job = await shared.inbox.call(order)
     if job.status is JobStatus.ACCEPTED:
         shared.messages.submit(job.id)
-    return _accepted(job)
+    return job
 
 
 def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Order:

@@ -18,7 +18,7 @@ def input_fields() -> tuple[dict[str, Any], ...]:
     Names are dotted. `[]` marks a list of objects, and `[spacer]` the type of its items to which the field belongs.
     """
     document = JobRequest.model_json_schema(by_alias=True)
-    return tuple(_fields("", _inlined(document, document["$defs"])))
+    return tuple(_fields("", inlined(document, document["$defs"])))
 
 
 @cache
@@ -28,7 +28,7 @@ def fields_of(model: type[BaseModel], *, first_form: bool = False) -> tuple[dict
     With `first_form`, of a field that has several forms only the first one counts, so that its rows fit together.
     """
     document = model.model_json_schema(by_alias=True)
-    return tuple(_fields("", _inlined(document, document["$defs"]), 1 if first_form else None))
+    return tuple(_fields("", inlined(document, document["$defs"]), 1 if first_form else None))
 
 
 def field_names(model: type[BaseModel]) -> list[str]:
@@ -36,16 +36,16 @@ def field_names(model: type[BaseModel]) -> list[str]:
     return [row["name"] for row in fields_of(model)]
 
 
-def _inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:
+def inlined(node: Any, definitions: Mapping[str, _Schema]) -> Any:
     """Return a schema with every reference replaced by its target."""
     if isinstance(node, list):
-        return [_inlined(item, definitions) for item in node]
+        return [inlined(item, definitions) for item in node]
     if not isinstance(node, dict):
         return node
-    own = {key: _inlined(value, definitions) for key, value in node.items() if key not in {"$ref", "$defs"}}
+    own = {key: inlined(value, definitions) for key, value in node.items() if key not in {"$ref", "$defs"}}
     if "$ref" not in node:
         return own
-    return {**_inlined(definitions[node["$ref"].rpartition("/")[2]], definitions), **own}
+    return {**inlined(definitions[node["$ref"].rpartition("/")[2]], definitions), **own}
 
 
 def _fields(prefix: str, schema: _Schema, forms: int | None = None) -> Iterator[dict[str, Any]]:

@@ -1,0 +1,93 @@
+"""What the service says of itself to clients of OGC API - Processes: landing page, conformance, the process."""
+
+from functools import cache
+from typing import Any
+
+from app.answers.results import ResultDocument
+from app.convert import ENGINE_VERSION
+from app.openapi.line_forms import FORMS
+from app.schemas import JobRequest
+from app.schemas.field_table import inlined
+from app.schemas.known import KnownLine
+
+BASE = "/ogc"
+PROCESS = "galloping"
+
+_CONFORMANCE = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf"
+_RELATION = "http://www.opengis.net/def/rel/ogc/1.0"
+_CLASSES = ("core", "ogc-process-description", "json", "job-list", "dismiss")
+_TITLE = "Galloping of iced conductors"
+_ABOUT = (
+    "Tells whether an iced transmission-line span gallops, from which wind speed, and how far; with a study also how "
+    "that changes with one or two fields of the line, with remedies what they change."
+)
+_INPUTS = ("line", "analysis", "study", "placement", "remedies")
+
+
+def link(rel: str, path: str, title: str, media_type: str = "application/json") -> dict[str, str]:
+    """Return a link of this service."""
+    return {"rel": rel, "href": path, "type": media_type, "title": title}
+
+
+def landing() -> dict[str, Any]:
+    """Return the landing page."""
+    return {
+        "title": _TITLE,
+        "description": _ABOUT,
+        "links": [
+            link("self", f"{BASE}/", "This document"),
+            link("service-desc", "/openapi.json", "The whole API", "application/vnd.oai.openapi+json;version=3.1"),
+            link("service-doc", "/docs", "The whole API for people", "text/html"),
+            *(link(rel, f"{BASE}/conformance", "Conformance") for rel in ("conformance", f"{_RELATION}/conformance")),
+            *(link(rel, f"{BASE}/processes", "Processes") for rel in ("processes", f"{_RELATION}/processes")),
+            *(link(rel, f"{BASE}/jobs", "Jobs") for rel in ("job-list", f"{_RELATION}/job-list")),
+        ],
+    }
+
+
+def conformance() -> dict[str, Any]:
+    """Return the classes of the standard that these routes follow."""
+    return {"conformsTo": [f"{_CONFORMANCE}/{name}" for name in _CLASSES]}
+
+
+def summary() -> dict[str, Any]:
+    """Return the process in a list."""
+    address = f"{BASE}/processes/{PROCESS}"
+    return {
+        "id": PROCESS,
+        "title": _TITLE,
+        "description": _ABOUT,
+        "version": ENGINE_VERSION,
+        "keywords": ["galloping", "overhead line", "ice", "wind"],
+        "jobControlOptions": ["sync-execute", "async-execute", "dismiss"],
+        "outputTransmission": ["value"],
+        "links": [
+            link("self", address, "Description of the process"),
+            link(f"{_RELATION}/execute", f"{address}/execution", "Execute the process"),
+        ],
+    }
+
+
+@cache
+def description() -> dict[str, Any]:
+    """Return the process with the schemas of its inputs and of its output."""
+    request = JobRequest.model_json_schema(by_alias=True)
+    fields = inlined(request, request["$defs"])["properties"]
+    known = KnownLine.model_json_schema(by_alias=True)
+    forms = [fields["line"], inlined(known, known["$defs"])]
+    named = [{**form, "title": title} for form, (title, _, _) in zip(forms, FORMS, strict=True)]
+    schemas = {**{name: fields[name] for name in _INPUTS}, "line": {"anyOf": named}}
+    inputs = {
+        name: {
+            "title": name.capitalize(),
+            "description": fields[name]["description"],
+            "schema": schemas[name],
+            "minOccurs": 1 if name == "line" else 0,
+            "maxOccurs": 1,
+        }
+        for name in _INPUTS
+    }
+    result = ResultDocument.model_json_schema(by_alias=True)
+    output = {**inlined(result, result["$defs"]), "contentMediaType": "application/json"}
+    about = {"title": "Result", "description": "Every table of the result", "schema": output}
+    return {**summary(), "inputs": inputs, "outputs": {"result": about}}

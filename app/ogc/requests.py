@@ -1,0 +1,114 @@
+"""Requests of OGC API - Processes: what to execute, and which jobs to list."""
+
+from collections.abc import Iterator
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from app import convert, schemas
+from app.http.problems import query_fault
+from app.jobs.job_records import JobFilters
+from app.ogc.descriptions import PROCESS
+from app.schemas.faults import BadInput, Fault, faults_of
+from app.tables import JobStatus
+
+_QUALIFIED = frozenset({"value", "mediaType", "encoding", "schema"})
+_MOMENT: TypeAdapter[datetime] = TypeAdapter(AwareDatetime)
+
+
+class Subscriber(BaseModel):
+    """Where to report the end of a job."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, populate_by_name=True)
+
+    success: str = Field(alias="successUri", max_length=2000)
+
+
+class Execution(BaseModel):
+    """A request to execute the process; members that the standard does not know are ignored, as it asks."""
+
+    model_config = ConfigDict(extra="ignore", strict=True)
+
+    inputs: dict[str, Any]
+    outputs: dict[Literal["result"], Any] | None = None
+    response: Literal["raw", "document"] = "raw"
+    subscriber: Subscriber | None = None
+
+    def request(self, own: convert.OwnRows) -> schemas.JobRequest:
+        """Return the job that the inputs say, its line resolved with the caller's own rows.
+
+        Raises
+        ------
+        BadInput
+            With every fault, with JSON pointers below `/inputs`.
+        """
+        faults = list(self._links())
+        if faults:
+            raise BadInput(faults)
+        document = {name: _bare(value) for name, value in self.inputs.items()}
+        try:
+            found = schemas.JobRequest.model_validate(convert.explicit_request(document, own))
+        except ValidationError as error:
+            raise BadInput(faults_of(error.errors(include_url=False), root="/inputs")) from error
+        except BadInput as error:
+            raise BadInput([Fault(f"/inputs{f.pointer}", f.code, f.detail) for f in error.faults]) from error
+        url = None if self.subscriber is None else self.subscriber.success
+        return found.model_copy(update={"webhook_url": url})
+
+    def _links(self) -> Iterator[Fault]:
+        for name, value in self.inputs.items():
+            if isinstance(value, dict) and "href" in value:
+                yield Fault(f"/inputs/{name}", "by_reference", "must be given by value; the service follows no links")
+
+
+class JobsQuery(BaseModel):
+    """Filters of the list of jobs, as the standard names them."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    type: list[Literal["process"]] = []
+    processID: list[Annotated[str, Field(max_length=100)]] = []  # noqa: N815 - the standard's name
+    status: list[JobStatus] = []
+    datetime: Annotated[str | None, Field(max_length=100)] = None
+    minDuration: Annotated[int | None, Field(ge=0)] = None  # noqa: N815
+    maxDuration: Annotated[int | None, Field(ge=0)] = None  # noqa: N815
+    limit: Annotated[int, Field(ge=1, le=500)] = 50
+    cursor: Annotated[str | None, Field(max_length=200)] = None
+
+    def filters(self) -> JobFilters | None:
+        """Return the filters, None where they match no job of this service.
+
+        Raises
+        ------
+        ProblemError
+            400 if the interval of time is none.
+        """
+        if self.processID and PROCESS not in self.processID:
+            return None
+        begin, end = _interval(self.datetime) if self.datetime else (None, None)
+        return JobFilters(
+            statuses=tuple(self.status),
+            created_after=begin,
+            created_before=end,
+            shortest_seconds=self.minDuration,
+            longest_seconds=self.maxDuration,
+        )
+
+
+def _bare(value: Any) -> Any:
+    """Return an input by itself; a value of the standard may say its media type beside it."""
+    return value["value"] if isinstance(value, dict) and "value" in value and value.keys() <= _QUALIFIED else value
+
+
+def _interval(text: str) -> tuple[datetime | None, datetime | None]:
+    ends = text.split("/")
+    try:
+        moments = [None if end in {"", ".."} else _MOMENT.validate_python(end) for end in ends]
+    except ValidationError as error:
+        raise query_fault("datetime", "must be moments with a time zone, as in RFC 3339") from error
+    if len(moments) == 1:
+        return moments[0], moments[0]
+    if len(moments) != 2:
+        raise query_fault("datetime", "must be a moment or two with a slash between them")
+    return moments[0], moments[1]

@@ -1,0 +1,189 @@
+"""The routes of OGC API - Processes."""
+
+from typing import Annotated, Any
+from urllib.parse import urlencode
+from uuid import UUID
+
+from anyio import to_thread
+from fastapi import APIRouter, Body, Query, Request, Response
+from sqlalchemy.orm import Session
+
+from app import convert, schemas
+from app.export import formats
+from app.http import paging
+from app.http.prefix import LinkedJSON
+from app.http.problems import invalid_document, query_fault
+from app.http.strict_routes import StrictJsonRoute
+from app.jobs import job_records
+from app.jobs.job_records import CancelOutcome, Submission
+from app.jobs.submissions import Order
+from app.ogc import descriptions, documents
+from app.ogc.descriptions import BASE, PROCESS, link
+from app.ogc.requests import Execution, JobsQuery
+from app.owned import records
+from app.routes.dependencies import CallerOf, Readers, SettingsOf, Writers
+from app.routes.job_intake import check_request, stored_job
+from app.routes.streaming import streamed
+from app.routes.waiting import wait_for_end
+from app.runtime.settings import signing_key
+from app.schemas.faults import BadInput
+from app.security.caller import Caller, Owned
+from app.tables import ENDED, Job
+
+router = APIRouter(prefix=BASE, include_in_schema=False, route_class=StrictJsonRoute)
+
+
+@router.get("/")
+def landing() -> LinkedJSON:
+    """Return the landing page."""
+    return LinkedJSON(descriptions.landing())
+
+
+@router.get("/conformance")
+def conformance() -> LinkedJSON:
+    """Return the conformance classes."""
+    return LinkedJSON(descriptions.conformance())
+
+
+@router.get("/processes")
+def list_processes() -> LinkedJSON:
+    """Return the list of processes, which is one."""
+    links = [link("self", f"{BASE}/processes", "Processes")]
+    return LinkedJSON({"processes": [descriptions.summary()], "links": links})
+
+
+@router.get("/processes/{process_id}")
+def describe_process(process_id: str) -> LinkedJSON:
+    """Return the description of a process."""
+    _require_process(process_id)
+    return LinkedJSON(descriptions.description())
+
+
+@router.post("/processes/{process_id}/execution")
+async def execute(request: Request, process_id: str, execution: Annotated[Execution, Body()]) -> Response:
+    """Execute the process: 200 with its results if a short one ends in time, else 201 with the address of its job.
+
+    `Prefer: respond-async` answers at once.
+
+    Raises
+    ------
+    ProblemError
+        404 for another process, 422 with every fault of the inputs.
+    """
+    _require_process(process_id)
+    caller, shared = request.state.caller, request.app.state
+    document = await to_thread.run_sync(_request_of, request, execution)
+    await check_request(request, document)
+    line = document.line
+    submission = Submission(caller, document.kept(), line.name, line.asset_id, line.tags)
+    job = await stored_job(request, Order(submission, document.webhook_url))
+    preferred = "respond-async" in ", ".join(request.headers.getlist("prefer")).lower()
+    seconds, most = convert.estimate(document).seconds, shared.settings.longest_wait_seconds
+    if not preferred and seconds is not None and seconds < most:
+        await wait_for_end(shared.job_watch, Owned(caller.owner, job.id), int(most) or 1)
+        job = await to_thread.run_sync(_find, request, job.id)
+        if job.status in ENDED:
+            documents.require_success(job)
+            return _answered(request, job, raw=execution.response == "raw")
+    applied = {"Preference-Applied": "respond-async"} if preferred else {}
+    return LinkedJSON(documents.status_info(job), 201, {"Location": f"{BASE}/jobs/{job.id}", **applied})
+
+
+@router.get("/jobs")
+def list_jobs(
+    settings: SettingsOf, caller: CallerOf, readers: Readers, query: Annotated[JobsQuery, Query()]
+) -> LinkedJSON:
+    """Return one page of the jobs, newest first.
+
+    Raises
+    ------
+    ProblemError
+        400 if a parameter is not valid.
+    """
+    key, filters = signing_key(settings), query.filters()
+    try:
+        after = paging.decode(key, query.cursor) if query.cursor else None
+    except paging.BadCursor as error:
+        raise query_fault("cursor", str(error)) from error
+    found: list[Job] = []
+    if filters is not None:
+        with readers() as session:
+            found = job_records.page(session, caller.owner, filters, after, query.limit + 1)
+    shown = [documents.status_info(job) for job in found[: query.limit]]
+    links = [link("self", f"{BASE}/jobs", "Jobs")]
+    if len(found) > query.limit:
+        last = found[query.limit - 1]
+        kept = query.model_dump(mode="json", exclude_defaults=True) | {
+            "limit": query.limit,
+            "cursor": paging.encode(key, (last.created_at, last.id)),
+        }
+        links.append(link("next", f"{BASE}/jobs?{urlencode(kept, doseq=True)}", "Older jobs"))
+    return LinkedJSON({"jobs": shown, "links": links})
+
+
+@router.get("/jobs/{job_id}")
+def job_status(request: Request, job_id: str) -> LinkedJSON:
+    """Return the status of a job."""
+    return LinkedJSON(documents.status_info(_find(request, job_id)))
+
+
+@router.get("/jobs/{job_id}/results")
+def job_results(request: Request, job_id: str) -> Response:
+    """Return the results of a job under the name of its output.
+
+    Raises
+    ------
+    ProblemError
+        404 while they are not ready.
+    """
+    job = _find(request, job_id)
+    documents.require_success(job)
+    return _answered(request, job, raw=False)
+
+
+@router.delete("/jobs/{job_id}")
+def dismiss(request: Request, job_id: str, writers: Writers) -> LinkedJSON:
+    """Cancel a job, or remove what an ended one has left."""
+    found = _find(request, job_id)
+    with writers.begin() as session:
+        outcome = job_records.cancel(session, request.state.caller, found.id)
+        session.flush()
+        job = found if outcome is CancelOutcome.REMOVED else _of(session, request.state.caller, found.id)
+        info = documents.status_info(job)
+    return LinkedJSON({**info, "status": "dismissed", "message": "The job is dismissed.", "links": info["links"][:1]})
+
+
+def _require_process(process_id: str) -> None:
+    if process_id != PROCESS:
+        raise documents.missing("no-such-process", f"There is no process {process_id[:100]}.")
+
+
+def _request_of(request: Request, execution: Execution) -> schemas.JobRequest:
+    with request.app.state.readers() as session:
+        own = records.own_rows(session, request.state.caller.owner)
+    try:
+        return execution.request(own)
+    except BadInput as error:
+        raise invalid_document(error.faults) from error
+
+
+def _find(request: Request, job_id: str | UUID) -> Job:
+    with request.app.state.readers() as session:
+        return _of(session, request.state.caller, job_id)
+
+
+def _of(session: Session, caller: Caller, job_id: str | UUID) -> Job:
+    try:
+        job = job_records.get(session, caller.owner, UUID(str(job_id)))
+    except ValueError:
+        job = None
+    if job is None or job.batch_id is not None:
+        raise documents.missing("no-such-job", f"There is no job {str(job_id)[:100]}.")
+    return job
+
+
+def _answered(request: Request, job: Job, *, raw: bool) -> Response:
+    def pieces(session: Session) -> Any:
+        return formats.in_blocks(documents.results(session, job, raw=raw))
+
+    return streamed(request.app.state.readers, pieces, formats.MEDIA_TYPES["json"], {})
