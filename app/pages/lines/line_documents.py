@@ -24,7 +24,7 @@ def to_texts(document: Mapping[str, Any], units: Units) -> dict[str, str]:
         text = _taken(rest, name.split("."), field, units)
         if text is not None:
             texts[name] = text
-    return {**texts, REST: _json(_pruned(rest))}
+    return {**texts, REST: _json(_without_nulls(rest))}
 
 
 def to_document(texts: Mapping[str, str], units: Units) -> dict[str, Any]:
@@ -51,15 +51,14 @@ def to_document(texts: Mapping[str, str], units: Units) -> dict[str, Any]:
 
 def _row_texts(rest: dict[str, Any], row_list: RowList, units: Units) -> dict[str, str]:
     """Remove a list from a document and return the texts of its rows; none, if it is no list that rows can show."""
-    *path, last = row_list.name.split(".")
-    part = _part(rest, path)
-    items = part.get(last) if isinstance(part, dict) else None
-    if not isinstance(items, list) or not 0 < len(items) <= row_list.most or not _are_rows(items, row_list):
+    path = row_list.name.split(".")
+    items = _part(rest, path)
+    if not isinstance(items, list) or len(items) > row_list.most or not _are_rows(items, row_list):
         return {}
     texts: dict[str, str] = {}
     for number, item in enumerate(items):
         texts |= _item_texts(item, row_list, number, units)
-    del part[last]
+    _remove(rest, path)
     return texts
 
 
@@ -78,7 +77,7 @@ def _item_texts(item: Any, row_list: RowList, number: int, units: Units) -> dict
         text = _taken(holder, field.name.split("."), field, units)
         if text is not None:
             texts[row_list.field_name(number, field.name)] = text
-    kept = "" if row_list.is_plain else _json(_pruned(_without_taken(item)))
+    kept = "" if row_list.is_plain else _json(_without_nulls(item))
     return texts | ({row_list.field_name(number, REST): kept} if kept or not texts else {})
 
 
@@ -94,7 +93,7 @@ def _taken(document: Any, path: Sequence[str], field: FormField, units: Units) -
     value = _in_own_unit(value, field)
     if not _is_value(value, number=field.is_number):
         return None
-    part[int(last) if isinstance(part, list) else last] = None
+    _remove(document, path)
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return field.entered(value, units) if number else str(value)
 
@@ -189,16 +188,22 @@ def _json(kept: Any) -> str:
     return json.dumps(kept, indent=1, ensure_ascii=False) if kept else ""
 
 
-def _without_taken(value: Any) -> Any:
-    """Return a document without the lists whose items were all taken."""
-    if isinstance(value, dict):
-        return {name: _without_taken(inner) for name, inner in value.items()}
-    return None if isinstance(value, list) and value and all(item is None for item in value) else value
+def _remove(document: Any, path: Sequence[str]) -> None:
+    """Remove what lies at a path in a document, with the parts that become empty by that; an item of a list is null."""
+    *before, last = path
+    part = _part(document, before)
+    if isinstance(part, list):
+        part[int(last)] = None
+        empty = all(item is None for item in part)
+    else:
+        del part[last]
+        empty = not part
+    if empty and before:
+        _remove(document, before)
 
 
-def _pruned(value: Any) -> Any:
-    """Return a document without nulls and without parts that have become empty."""
+def _without_nulls(value: Any) -> Any:
+    """Return a document without nulls, which say nothing; an empty object or list may say something."""
     if not isinstance(value, dict):
         return value
-    kept = {name: _pruned(inner) for name, inner in value.items() if inner is not None}
-    return {name: inner for name, inner in kept.items() if inner not in ({}, [])}
+    return {name: _without_nulls(inner) for name, inner in value.items() if inner is not None}

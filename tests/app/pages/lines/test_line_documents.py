@@ -2,6 +2,8 @@ import json
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from app import convert
 from app.pages import examples
@@ -155,3 +157,44 @@ def test_what_is_kept_must_be_an_object(text: str) -> None:
     with pytest.raises(BadInput) as raised:
         to_document({"rest": text}, SI)
     assert raised.value.faults[0].pointer.startswith("/rest")
+
+
+@pytest.mark.parametrize(
+    "request_document",
+    [
+        {"line": {"wind": {"blow_out": {}, "profile": [{"position_m": 0.0, "factor": 0.7}]}}},
+        {"analysis": {"finite_element_loops": [], "wind_speeds_m_per_s": [4.0]}, "line": {}},
+        {"line": {"section": {"spans": [{"length_m": 150.0, "wind_profile": []}], "span_of_interest": 1}}},
+        {"line": {"devices": [{"type": "airflow_spoiler", "aerodynamics": {"vertical": [1.0, "x", 3.0]}}]}},
+        {"line": {"devices": [{"type": "airflow_spoiler", "aerodynamics": {"vertical": [1.0, 2.0]}}]}},
+        {"line": {"devices": [{"type": "spacer", "colour": {"is": "red"}}], "phases": [{}]}},
+    ],
+)
+def test_what_is_empty_or_wrong_is_not_lost(request_document: dict[str, Any]) -> None:
+    assert to_document(to_texts(request_document, SI), SI) == request_document
+
+
+def test_parts_that_are_in_fields_leave_nothing_behind() -> None:
+    request = {"line": {"wind": {"yaw_deg": 10.0, "profile": []}, "name": "A", "span": {"sag_m": None}}}
+    assert json.loads(to_texts(request, SI)["rest"]) == {"line": {"span": {}}}
+    assert to_texts({"line": {"ice": {"accretion": {"shape": "crescent"}}}}, SI)["rest"] == ""
+
+
+KNOWN = st.sampled_from(
+    ["line", "devices", "type", "spacer", "position_m", "between", "phases", "ice", "wind_speeds_m_per_s"]
+)
+JSON_VALUES = st.recursive(
+    st.floats(-1e3, 1e3).map(lambda number: round(number, 3)) | st.sampled_from(["spacer", "x"]),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KNOWN, inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@given(line=st.dictionaries(KNOWN, JSON_VALUES, max_size=5), analysis=st.dictionaries(KNOWN, JSON_VALUES, max_size=3))
+def test_no_document_loses_anything_in_the_form(line: dict[str, Any], analysis: dict[str, Any]) -> None:
+    request = {"line": line, "analysis": analysis}
+    made = to_document(to_texts(request, SI), SI)
+    for part, said in request.items():
+        assert made.get(part, {}) == {
+            name: value for name, value in said.items() if value != [] or name in made.get(part, {})
+        }
