@@ -18,6 +18,7 @@ class Bar:
     low: str
     high: str
     share: float | None
+    onset_share: float | None
     onset: tuple[str, str]
     start: float
     length: float
@@ -41,6 +42,7 @@ def bars(rows: Sequence[Row], units: Units) -> tuple[str, str, list[Bar]] | None
             low=units.number(row["lowest"]),
             high=units.number(row["highest"]),
             share=row["amplitude_total"],
+            onset_share=row["onset_total"],
             onset=(
                 units.number(row["onset_at_lowest_m_per_s"], "m/s"),
                 units.shown(row["onset_at_highest_m_per_s"], "m/s"),

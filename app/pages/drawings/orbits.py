@@ -56,7 +56,9 @@ def orbit_scale(motion: Motion, around: Surroundings) -> Scale:
     places = positions(around.line.get("bundle", {}))
     points = [point for wire in wires(motion, places) for point in wire] + places
     points += ellipse_points(around.ellipse) if around.ellipse else []
-    points += [place for _, place, _ in around.phases]
+    for _, (across, up), needed in around.phases:
+        reach = needed or 0.0
+        points += [(across - reach, up - reach), (across + reach, up + reach)]
     return fitting(points, SIZE, _MARGIN, least=0.05)
 
 

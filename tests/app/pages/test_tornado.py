@@ -8,7 +8,7 @@ from app.pages.measures import SI
 
 
 def row(path: str, low: float | None, high: float | None, share: float) -> dict[str, Any]:
-    onset = {"onset_at_lowest_m_per_s": 1.0, "onset_at_highest_m_per_s": None}
+    onset = {"onset_at_lowest_m_per_s": 1.0, "onset_at_highest_m_per_s": None, "onset_total": 0.5 * share}
     amplitude = {"vertical_at_lowest_m": low, "vertical_at_highest_m": high, "amplitude_total": share}
     return {"path": path, "lowest": 0.1, "highest": 0.2, **onset, **amplitude}
 
@@ -22,6 +22,7 @@ def test_bars_lie_between_the_amplitudes_of_the_ends() -> None:
     assert [bar.start for bar in bars] == pytest.approx([0.0, 0.0])
     assert [bar.length for bar in bars] == pytest.approx([100.0, 20.0])
     assert bars[0].onset == ("1.00", "\N{EN DASH}")
+    assert (bars[0].share, bars[0].onset_share) == (0.8, 0.4)
 
 
 def test_there_are_no_bars_without_samples_or_where_nothing_decides() -> None:

@@ -23,7 +23,7 @@ def test_the_foot_of_the_ellipse_lies_below_the_resting_wire() -> None:
 def test_everything_lies_within_the_drawing_at_one_scale() -> None:
     around = Surroundings(LINE, (6.0, 2.4, 1.8))
     scale = orbit_scale(MOTION, around)
-    for point in [*ellipse_points((6.0, 2.4, 1.8)), (1.0, 7.0), (0.0, -0.5)]:
+    for point in [*ellipse_points((6.0, 2.4, 1.8)), (1.0, 8.5), (2.5, 7.0), (0.0, -0.5)]:  # with the clearance
         x, y = scale.place(point)
         assert 0.0 < x < SIZE[0]
         assert 0.0 < y < SIZE[1]
