@@ -107,3 +107,17 @@ def test_a_study_shows_each_of_its_points(shared_client: httpx.Client, shared_se
     assert len({found[1] for found in sags if found}) == 2
     assert "span.length_m = 110" in read(shared_client, path).text
     assert read(shared_client, f"{path}?point=7").status == 404
+
+
+def test_a_line_that_stays_at_rest_has_its_page_and_its_report(
+    shared_client: httpx.Client, shared_settings: Settings
+) -> None:
+    twin = example("c11-twin")
+    damping = {**twin["damping"], "vertical_ratio": 0.5, "horizontal_ratio": 0.5}
+    request = {**short_request(), "line": {**twin, "damping": damping}}
+    path = service.finished(shared_client, shared_settings, request).replace("/v1/", "/pages/")
+    for address in (path, f"{path}/report"):
+        page = read(shared_client, address)
+        assert page.status == 200
+        assert "It does not gallop" in page.text
+    assert shared_client.get(f"{path}/curves").json()["pieces"] == []
