@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: setup demo test test-processes test-clients test-pages page-pictures test-faults reliability check bench capacity validation
+.PHONY: audit sbom lowest setup demo test test-processes test-clients test-pages page-pictures test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -71,6 +71,33 @@ check: setup
 bench: setup
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m benchmarks
+
+# Known faults of what is installed; it asks a database on the network.
+audit: setup
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[audit]'
+	$(BIN)/pip-audit --requirement constraints.txt --disable-pip --no-deps
+
+# What an installation holds, as CycloneDX; the image keeps its own as /opt/galloping/sbom.cdx.json.
+sbom: setup
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[audit]'
+	$(BIN)/cyclonedx-py environment --output-reproducible --output-file sbom.cdx.json $(BIN)/python
+
+# The tests that meet the dependencies most, with the lowest versions that pyproject.toml allows. Too slow for every run
+# of continuous integration; run it when a bound or a dependency changes. Warnings of old versions are no faults of ours.
+LOWEST := tests/app/runtime tests/app/http tests/app/security tests/app/storage tests/app/export tests/app/sheets \
+	tests/app/exchange tests/app/jobs tests/app/test_main.py tests/app/routes/test_jobs.py tests/app/routes/test_results.py \
+	tests/app/routes/test_batches.py tests/app/cli/test_lines.py tests/app/client tests/app/plots/test_registry.py \
+	tests/migrations tests/worker/test_courier.py tests/e2e/test_serve.py
+lowest: setup
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
+	rm -rf .venv-lowest
+	$(BIN)/uv venv --quiet --python $(BIN)/python .venv-lowest
+	$(BIN)/uv pip compile --quiet --resolution lowest-direct --only-binary :all: --no-binary galloping --extra all \
+		--no-emit-package galloping --output-file .venv-lowest/lowest.txt pyproject.toml
+	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --requirement .venv-lowest/lowest.txt
+	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --constraint .venv-lowest/lowest.txt pytest pytest-timeout \
+		hypothesis pyyaml trustme pypdf packaging openapi-spec-validator
+	PYTHONPATH=$(CURDIR) .venv-lowest/bin/python -m pytest -p no:xdist -o filterwarnings=default $(LOWEST)
 
 capacity: setup
 	$(BIN)/python -m benchmarks.capacity

@@ -3,6 +3,7 @@
 import logging
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -34,11 +35,13 @@ class RequestLog:
         begin = time.perf_counter()
         headers = Headers(scope=scope)
         ids = correlation.of_request(headers.get(REQUEST_ID), headers.get("traceparent"))
+        parent = ids.trace_parent
         status = 499  # nginx's code for a client that left before the answer
 
         async def send_with_id(message: Message) -> None:
-            nonlocal status
+            nonlocal status, parent
             if message["type"] == "http.response.start":
+                parent = correlation.trace_parent()  # of the request's span, which has ended when the line is written
                 status = message["status"]
                 MutableHeaders(scope=message)[REQUEST_ID] = ids.request_id or ""
             await send(message)
@@ -49,7 +52,8 @@ class RequestLog:
             finally:
                 seconds = time.perf_counter() - begin
                 self.observe(scope["method"], route_of(scope), status, seconds)
-                _log(scope, status, seconds)
+                with correlation.bound(replace(ids, trace_parent=parent)):
+                    _log(scope, status, seconds)
 
 
 def _log(scope: Scope, status: int, seconds: float) -> None:

@@ -6,20 +6,24 @@ killed, and workers need no port.
 """
 
 import os
+import platform
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from prometheus_client import CollectorRegistry, Histogram
-from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
+from prometheus_client import CollectorRegistry, Histogram, ProcessCollector
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, InfoMetricFamily, Metric
 from prometheus_client.exposition import choose_encoder
 from prometheus_client.multiprocess import MultiProcessCollector
 from sqlalchemy import case, func, select
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.convert import ENGINE_VERSION
 from app.jobs.webhooks import GIVEN_UP, Outcome
+from app.operation.workers import listed
+from app.runtime.version import SERVICE_VERSION
 from app.storage import counters
 from app.storage.counters import CounterName
 from app.storage.database import database_time
@@ -65,9 +69,19 @@ def text(requests: Requests, readers: sessionmaker[Session], accept: str) -> tup
         MultiProcessCollector(registry)  # type: ignore[no-untyped-call]
     else:
         registry.register(requests.registry)
+    registry.register(ProcessCollector(registry=None))
+    registry.register(_Build())
     registry.register(_Jobs(readers))
     encode, media_type = choose_encoder(accept)
     return encode(registry), media_type
+
+
+class _Build:
+    """Says which version answers."""
+
+    def collect(self) -> Iterator[Metric]:
+        build = {"version": SERVICE_VERSION, "engine": ENGINE_VERSION, "python": platform.python_version()}
+        yield InfoMetricFamily("galloping_build", "Versions of service, engine and Python", value=build)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,13 +95,22 @@ class _Jobs:
         try:
             with self.readers() as session:
                 totals = counters.totals(session)
-                families = [*_open_jobs(session), *_counted(totals), *_webhooks(session, totals)]
+                families = [*_open_jobs(session), *_counted(totals), *_webhooks(session, totals), *_workers(session)]
             up.add_metric([], 1.0)
         except SQLAlchemyError:
             families = []
             up.add_metric([], 0.0)
         yield up
         yield from families
+
+
+def _workers(session: Session) -> Iterator[Metric]:
+    now, seen = database_time(session), [worker.seen_at for worker in listed(session)]
+    yield GaugeMetricFamily("galloping_workers", "Workers that reported in the last hour and have not ended", len(seen))
+    silence = GaugeMetricFamily("galloping_workers_silent_seconds", "Time since the last report of any worker")
+    if seen:
+        silence.add_metric([], max(0.0, (now - max(seen)).total_seconds()))
+    yield silence
 
 
 def _open_jobs(session: Session) -> Iterator[Metric]:

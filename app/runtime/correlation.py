@@ -60,6 +60,12 @@ def trace_parent() -> str | None:
     return _current.get().trace_parent
 
 
+def trace_id() -> str | None:
+    """Return the id of the trace that the current work belongs to."""
+    parent = trace_parent()
+    return parent.split("-")[1] if parent else None
+
+
 def of_this_work() -> Ids:
     """Return the ids to store with a job that this request creates."""
     return Ids(request_id(), trace_parent())

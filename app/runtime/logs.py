@@ -47,7 +47,7 @@ def _add_ids(_logger: WrappedLogger, _method: str, event: EventDict) -> EventDic
     ids = correlation.current()
     found = {
         "request_id": ids.request_id,
-        "trace_id": ids.trace_id,
+        "trace_id": correlation.trace_id(),
         "job_id": ids.job_id,
         "attempt": ids.attempt,
     }

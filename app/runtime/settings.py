@@ -5,7 +5,7 @@ import re
 import secrets
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AliasChoices, Field, FilePath, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
@@ -14,6 +14,7 @@ from app.runtime.weak_secrets import weak_secrets
 
 _PREFIX = "GALLOPING_"
 _SECRET_FILE = "signing-secret"
+_SECRETS = ("database_url", "broker_url", "signing_secret")  # the addresses hold passwords
 _FORMER_SECRET_FILE = "cursor-secret"  # written by earlier versions
 
 _SECRET_NAMES = AliasChoices("GALLOPING_SIGNING_SECRET", "GALLOPING_CURSOR_SECRET")  # the second is deprecated
@@ -115,6 +116,14 @@ class Settings(BaseSettings):
     redispatch_seconds: Seconds = Field(default=15.0, description="A job unclaimed for this long is sent again")
     broker_timeout_seconds: Seconds = Field(default=1.0, description="Longest wait for the broker to answer")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _secrets_from_files(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """Read a secret that is not set from the file that `GALLOPING_..._FILE` names, as containers mount them."""
+        known = {name.lower().removeprefix(_PREFIX.lower()) for name in given}
+        files = {name: os.environ.get(f"{_PREFIX}{name.upper()}_FILE") for name in _SECRETS if name not in known}
+        return given | {name: _secret_in(name, file) for name, file in files.items() if file}
+
     @field_validator("data_dir")
     @classmethod
     def _absolute(cls, value: Path) -> Path:
@@ -179,6 +188,13 @@ class Settings(BaseSettings):
         plain = {k: v.get_secret_value() if isinstance(v, SecretStr) else str(v) for k, v in values.items()}
         plain["cors_origins"] = ",".join(self.cors_origins)
         return {_PREFIX + name.upper(): value for name, value in plain.items()}
+
+
+def _secret_in(name: str, file: str) -> str:
+    try:
+        return Path(file).read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ValueError(f"{_PREFIX}{name.upper()}_FILE: {file} cannot be read: {error}") from error
 
 
 @cache

@@ -1,13 +1,15 @@
 """Optional OpenTelemetry traces: a span for each request, and under it a span for its job."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 from opentelemetry import propagate, trace
 
 from app.runtime.correlation import Ids
 from app.runtime.settings import Settings
+from app.runtime.version import SERVICE_VERSION
 
 _FLUSH_SECONDS = 2.0
 
@@ -24,13 +26,22 @@ def configure(settings: Settings, process: str) -> None:
         return
     # Optional, and slow to load.
     from opentelemetry.exporter.otlp.proto.http.trace_exporter import OTLPSpanExporter  # noqa: PLC0415
-    from opentelemetry.sdk.resources import Resource  # noqa: PLC0415
+    from opentelemetry.sdk.resources import OTELResourceDetector, Resource  # noqa: PLC0415
     from opentelemetry.sdk.trace import TracerProvider  # noqa: PLC0415
     from opentelemetry.sdk.trace.export import BatchSpanProcessor  # noqa: PLC0415
 
-    provider = TracerProvider(resource=Resource.create({"service.name": f"galloping-{process}"}))
+    # OTEL_SERVICE_NAME and OTEL_RESOURCE_ATTRIBUTES come first, which they would not against attributes of a resource.
+    ours = {"service.name": f"galloping-{process}", "service.version": SERVICE_VERSION, "galloping.process": process}
+    named = OTELResourceDetector().detect()
+    provider = TracerProvider(resource=Resource.create(ours).merge(named))
     provider.add_span_processor(BatchSpanProcessor(OTLPSpanExporter(), schedule_delay_millis=1000))
     trace.set_tracer_provider(provider)
+
+
+def is_untraced(scope: Mapping[str, Any]) -> bool:
+    """Tell whether a request makes no span: the probes and scrapes of monitoring, which come every few seconds."""
+    path: str = scope.get("path", "").removeprefix(scope.get("root_path", ""))
+    return path == "/metrics" or path.startswith("/health/")
 
 
 def finish(**_: object) -> None:

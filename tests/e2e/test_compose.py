@@ -7,6 +7,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -91,6 +92,14 @@ def test_our_processes_have_one_blas_thread_and_no_privileges(services: dict[str
             assert f"{variable}=1" in image
         assert service["cap_drop"] == ["ALL"]
         assert service["security_opt"] == ["no-new-privileges:true"]
+        assert service["read_only"] is True
+        assert {place.partition(":")[0] for place in service["tmpfs"]} == {"/tmp", "/data"}
+    for service in services.values():
+        assert set(service["logging"]["options"]) == {"max-size", "max-file"}
+    assert all("mem_limit" in services[name] for name in services if name != "migrations")
+    assert re.search(r"^HEALTHCHECK .*--timeout=", image, re.MULTILINE)
+    labelled = re.search(r'image\.version="([^"]+)"', image)
+    assert labelled and labelled[1] == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     users = re.findall(r"^USER (\S+)$", image, re.MULTILINE)
     assert users and users[-1] not in ("root", "0")
     assert "--constraint constraints.txt" in image

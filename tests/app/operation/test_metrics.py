@@ -1,4 +1,5 @@
 import os
+import platform
 import signal
 from pathlib import Path
 from uuid import UUID
@@ -8,10 +9,12 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.convert import ENGINE_VERSION
 from app.jobs import job_records, leases
 from app.jobs.leases import Failure
-from app.operation import metrics
+from app.operation import metrics, workers
 from app.runtime.settings import Settings
+from app.runtime.version import SERVICE_VERSION
 from app.security.caller import LOCAL
 from app.storage.database import make_engine, session_factory
 from app.storage.migration import migrate
@@ -60,6 +63,22 @@ def test_requests_are_counted_by_the_template_of_their_route(own_client: httpx.C
     assert requests(samples, "/health/live") == {("HEAD", "2xx"): 1.0}
     assert requests(samples, "")["GET", "4xx"] == 5.0
     assert {method for name, labels in samples for key, method in labels if key == "method"} <= {"GET", "HEAD", "other"}
+
+
+def test_build_process_and_workers_are_told(own_client: httpx.Client, own_settings: Settings) -> None:
+    before = scrape(own_client)
+    assert value(before, "galloping_workers") == 0.0
+    assert not any(name == "galloping_workers_silent_seconds" for name, _ in before)
+    engine = make_engine(own_settings)
+    with session_factory(engine).begin() as session:
+        workers.report(session, own_settings, "w")
+    engine.dispose()
+    samples = scrape(own_client)
+    assert value(samples, "galloping_workers") == 1.0
+    assert 0.0 <= value(samples, "galloping_workers_silent_seconds") < 30.0
+    (build,) = [dict(labels) for name, labels in samples if name == "galloping_build_info"]
+    assert build == {"version": SERVICE_VERSION, "engine": ENGINE_VERSION, "python": platform.python_version()}
+    assert value(samples, "process_resident_memory_bytes") > 1e7
 
 
 def test_jobs_are_counted_as_the_database_has_them(settings: Settings, sessions: sessionmaker[Session]) -> None:

@@ -87,3 +87,28 @@ def test_signing_key_is_made_once_in_a_private_file(tmp_path: Path) -> None:
     assert len(next(iter(keys))) >= 40
     assert [stat.S_IMODE(path.stat().st_mode) for path in files] == [0o600]
     assert signing_key(Settings(data_dir=tmp_path / "other")) not in keys
+
+
+def test_secrets_may_stand_in_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    secrets = {
+        "DATABASE_URL": "postgresql://a:b@localhost/d",
+        "BROKER_URL": "redis://x@localhost",
+        "SIGNING_SECRET": "s3",
+    }
+    for name, text in secrets.items():
+        (tmp_path / name).write_text(f"{text}\n")
+        monkeypatch.setenv(f"GALLOPING_{name}_FILE", str(tmp_path / name))
+    settings = Settings()
+    assert settings.database_url == "postgresql+psycopg://a:b@localhost/d"
+    assert settings.broker_url == "redis://x@localhost"
+    assert settings.signing_secret == SecretStr("s3")
+    monkeypatch.setenv("GALLOPING_SIGNING_SECRET", "s4")  # what is set itself comes first
+    assert Settings().signing_secret == SecretStr("s4")
+    child = settings.environment()
+    assert child["GALLOPING_SIGNING_SECRET"] == "s3"
+
+
+def test_missing_file_of_a_secret_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GALLOPING_BROKER_URL_FILE", str(tmp_path / "none"))
+    with pytest.raises(ValidationError, match=r"GALLOPING_BROKER_URL_FILE: .*none cannot be read"):
+        Settings()

@@ -1,4 +1,5 @@
 import contextlib
+import json
 import sqlite3
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from app.main import create_app
+from app.runtime.version import SERVICE_VERSION
 from tests.app import service
 from tests.documents import hasty_settings, short_request
 from tests.embedded import serving, submit, wait_for
@@ -102,6 +104,38 @@ def test_request_and_job_are_spans_of_the_callers_trace(tmp_path: Path, monkeypa
     assert any(bytes.fromhex(trace_id) in body and bytes.fromhex(span_id) in body for body in worker)
     assert any(b"GET /v1/fields" in body for _, body in taken)
     assert any(location.rpartition("/")[2].encode() in body for body in worker)
+
+
+def test_the_operators_names_come_first_and_the_version_is_told(tmp_path: Path) -> None:
+    with collector() as (endpoint, taken):
+        own = {"OTEL_SERVICE_NAME": "span-safety", "OTEL_RESOURCE_ATTRIBUTES": "deployment.environment.name=trial"}
+        environment = {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint, "GALLOPING_DATA_DIR": str(tmp_path), **own}
+        subprocess.run([sys.executable, "-c", PROGRAM], env=environment, check=True, capture_output=True)
+    ((_, body),) = taken
+    assert b"span-safety" in body and b"galloping-worker" not in body
+    assert b"service.version" in body and SERVICE_VERSION.encode() in body
+    assert b"deployment.environment.name" in body and b"trial" in body
+
+
+def test_probes_make_no_spans_and_log_lines_carry_the_trace_of_their_request(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = hasty_settings(tmp_path).model_copy(update={"opentelemetry": True, "log_level": "debug"})
+    with collector() as (endpoint, taken):
+        monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", endpoint)
+        with serving(settings, free_port()) as (process, client):  # it asks for readiness until it is there
+            client.get("/metrics").raise_for_status()
+            client.get("/v1/fields").raise_for_status()
+            process.terminate()
+            assert process.wait(20.0) == 0
+    spans = b"".join(body for _, body in taken)
+    assert b"GET /v1/fields" in spans
+    assert b"/health/ready" not in spans and b"/metrics" not in spans
+    written = (tmp_path / "process.log").read_text().splitlines()
+    lines = [line for line in map(json.loads, (one for one in written if one.startswith("{"))) if "route" in line]
+    (logged,) = [line for line in lines if line["route"] == "/v1/fields"]
+    assert bytes.fromhex(logged["trace_id"]) in spans
+    assert not any("trace_id" in line for line in lines if line["route"] == "/metrics")
 
 
 def test_nothing_is_traced_unless_it_is_asked_for(tmp_path: Path) -> None:
