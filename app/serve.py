@@ -90,7 +90,7 @@ def serve(settings: Settings, host: str, port: int) -> int:
     """
     logs.configure(settings)
     migrate(settings)
-    if not is_loopback(host) and not _has_keys(settings):
+    if not is_loopback(host) and settings.oidc_issuer is None and not _has_keys(settings):
         raise Unguarded(f"other machines can reach {host}, and no key exists: create one with `galloping keys create`")
     with processes.until_stopped() as wait:
         api_process = processes.start(settings, f"{__package__}.serve", host, str(port))

@@ -79,7 +79,7 @@ class ProblemKind(Enum):
         "The request's address and header fields together are too large, or it has too many header fields.",
     )
     INTERNAL = ("internal", 500, "Internal error", "The service has a defect; the operator's log has the details.")
-    UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach its database; try again later.")
+    UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it needs; try again later.")
 
     def __init__(self, slug: str, status: int, title: str, description: str) -> None:
         """Store the parts of a kind as attributes."""

@@ -6,10 +6,12 @@ import secrets
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
+from urllib.parse import urlsplit
 
 from pydantic import AliasChoices, Field, FilePath, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
+from app.runtime.loopback import is_loopback
 from app.runtime.weak_secrets import weak_secrets
 
 _PREFIX = "GALLOPING_"
@@ -59,6 +61,15 @@ class Settings(BaseSettings):
         description="Secret that signs cursors and webhooks; without one the service makes one in data_dir",
     )
     key_cache_seconds: Seconds = Field(default=5.0, description="Longest time that a revoked key still works")
+    oidc_issuer: str | None = Field(default=None, description="OpenID Connect issuer whose tokens identify callers")
+    oidc_audience: str | None = Field(
+        default=None, description="Audience that a token must name; needed with an issuer"
+    )
+    oidc_jwks_url: str | None = Field(default=None, description="Address of the issuer's keys; it is asked if absent")
+    oidc_owner_claim: str = Field(default="sub", description="Claim that names the owner; dots lead into objects")
+    oidc_scope_claim: str = Field(default="scope", description="Claim with the scopes, a text with blanks or a list")
+    oidc_scope_prefix: str = Field(default="galloping:", description="What precedes read, submit, cancel in the claim")
+    oidc_keys_seconds: Seconds = Field(default=300.0, description="After this long the issuer's keys are fetched anew")
     reads_per_minute: Count = Field(default=60_000, description="Most GETs a minute with one owner's keys")
     changes_per_minute: Count = Field(default=6_000, description="Most other requests a minute with one owner's keys")
     strangers_per_minute: Count = Field(default=300, description="Most unfamiliar keys a minute from one address")
@@ -168,6 +179,16 @@ class Settings(BaseSettings):
             raise ValueError("hard_time_limit_seconds must be greater than soft_time_limit_seconds")
         if self.heartbeat_seconds > self.lease_seconds / 2.0:
             raise ValueError("heartbeat_seconds must be at most half of lease_seconds")
+        return self
+
+    @model_validator(mode="after")
+    def _private_issuer(self) -> "Settings":
+        if self.oidc_issuer is not None and not self.oidc_audience:
+            raise ValueError("oidc_audience must be set with oidc_issuer")
+        for address in filter(None, (self.oidc_issuer, self.oidc_jwks_url)):
+            parts = urlsplit(address)
+            if parts.scheme != "https" and not (parts.scheme == "http" and is_loopback(parts.hostname or "")):
+                raise ValueError(f"{address} must begin with https://")
         return self
 
     @model_validator(mode="after")

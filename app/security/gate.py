@@ -1,4 +1,4 @@
-"""Authentication, authorization and quotas for every request. Addresses not listed as open need a key."""
+"""Authentication, authorization and quotas for every request. Addresses not listed as open need a key or a token."""
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -19,6 +19,7 @@ from app.runtime.settings import Settings
 from app.security import keys, sessions
 from app.security.caller import LOCAL, Caller, Scope
 from app.security.quotas import Meter, Quota, Standing
+from app.security.tokens import IssuerUnavailable, NotAccepted, is_token, tokens_of
 
 _OPEN = ("/docs", "/health", "/openapi.json", "/pages/assets", "/pages/sign-in", "/problems")
 _PAGES = "/pages"
@@ -49,8 +50,10 @@ class Gate:
         self._settings = settings
         self._meter = meter
         self._callers = ExpiringCache(partial(_look_up, readers, writers), settings.key_cache_seconds)
+        tokens = tokens_of(settings)
+        self._bearers = ExpiringCache(tokens.caller, settings.key_cache_seconds) if tokens else None
         self._unguarded: ExpiringCache[str, bool] = ExpiringCache(
-            lambda _: _is_unguarded(readers), settings.key_cache_seconds
+            lambda _: tokens is None and _is_unguarded(readers), settings.key_cache_seconds
         )
         self._reads = Quota("reads", settings.reads_per_minute)
         self._changes = Quota("changes", settings.changes_per_minute)
@@ -86,11 +89,14 @@ class Gate:
         if needed is not None and needed not in caller.scopes:
             detail = f"The key lacks the scope {needed}."
             raise _refused(ProblemKind.FORBIDDEN, detail, error="insufficient_scope", scope=needed)
-        if caller.key_id is None:
+        if caller is LOCAL:
             return caller, None
         return caller, await self._take(self._reads if needed is Scope.READ else self._changes, caller.owner)
 
     async def _caller(self, scope: types.Scope, headers: Headers) -> Caller:
+        token = _bearer(headers)
+        if self._bearers is not None and token is not None and is_token(token):
+            return await self._caller_of_token(self._bearers, scope, token)
         digest = self._digest(scope, headers)
         if digest is None:
             if _is_from_this_machine(scope, headers) and await self._unguarded.get(""):
@@ -98,13 +104,28 @@ class Gate:
             detail = "Send a key as Authorization: Bearer; a service without keys answers its own machine only."
             raise _refused(ProblemKind.UNAUTHENTICATED, detail)
         if not self._callers.holds(digest):
-            # An unfamiliar key costs a database query, so limit how many one client address may try.
-            await self._take(self._strangers, str((scope.get("client") or ("",))[0]))
+            await self._count_stranger(scope)
         caller = await self._callers.get(digest)
         if caller is None:
             detail = "The key is unknown, revoked or expired."
             raise _refused(ProblemKind.UNAUTHENTICATED, detail, error="invalid_token")
         return caller
+
+    async def _caller_of_token(self, bearers: ExpiringCache[str, Caller], scope: types.Scope, token: str) -> Caller:
+        if not bearers.holds(token):
+            await self._count_stranger(scope)
+        try:
+            return await bearers.get(token)
+        except NotAccepted as error:
+            detail = f"The token is not accepted: {error}."
+            raise _refused(ProblemKind.UNAUTHENTICATED, detail, error="invalid_token") from error
+        except IssuerUnavailable as error:
+            detail = "The issuer of tokens does not give its keys, so the token cannot be checked."
+            raise ProblemError(ProblemKind.UNAVAILABLE, detail, headers={"Retry-After": "5"}) from error
+
+    async def _count_stranger(self, scope: types.Scope) -> None:
+        """Limit how many unfamiliar keys and tokens one client address may try: each costs a query or a signature."""
+        await self._take(self._strangers, str((scope.get("client") or ("",))[0]))
 
     def _digest(self, scope: types.Scope, headers: Headers) -> str | None:
         """Return the digest of the key that a request shows, itself or by its session."""
