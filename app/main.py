@@ -28,6 +28,7 @@ from app.operation import metrics
 from app.pages import assets, frame, views
 from app.routes import (
     aerodynamics,
+    batch_changes,
     batch_intake,
     batch_ranking,
     batch_results,
@@ -136,7 +137,7 @@ def _add_addresses(app: Service) -> None:
     """Add the routes of the API, the pages, and the files that both need."""
     for module in (jobs, job_changes, remedies, lines, previews, results, pictures):
         app.include_router(module.router)
-    for module in (batch_intake, batches, batch_results):
+    for module in (batch_intake, batches, batch_changes, batch_results):
         app.include_router(module.router)
     for module in (batch_ranking, clearance, events, deliveries, aerodynamics, own_aerodynamics, own_conductors):
         app.include_router(module.router)

@@ -124,6 +124,12 @@ def outcome(session: Session, batch_id: UUID) -> str:
     return hashlib.sha256(repr(session.execute(statement).all()).encode()).hexdigest()
 
 
+def relabel(session: Session, caller: Caller, batch: Batch, name: str | None, tags: dict[str, str]) -> None:
+    """Give a batch another name and other tags."""
+    batch.name, batch.tags = name, tags or None
+    audit.record(session, caller, AuditAction.BATCH_RELABELLED, batch.id)
+
+
 def cancel(session: Session, caller: Caller, batch_id: UUID, *, may_remove: bool = True) -> CancelOutcome:
     """End queued chunks at once and ask running ones to stop; remove a finished batch, if it may be."""
     if _locked(session, caller.owner, batch_id) is None:

@@ -185,16 +185,12 @@ def cancel(session: Session, caller: Caller, job_id: UUID, *, may_remove: bool =
     return CancelOutcome.REMOVED
 
 
-def relabel(session: Session, caller: Caller, job: Job, labels: Mapping[str, Any]) -> None:
-    """Change those of a job's name, asset_id and tags that are given; None removes one, or all tags."""
-    for name in ("name", "asset_id"):
-        if name in labels:
-            setattr(job, name, labels[name])
-    if "tags" in labels:
-        kept = {} if labels["tags"] is None else {tag.key: tag.value for tag in job.tags}
-        changed = {key: value for key, value in {**kept, **(labels["tags"] or {})}.items() if value is not None}
-        session.execute(delete(JobTag).where(JobTag.job_id == job.id))
-        insert_rows(session, JobTag, [{"job_id": job.id, "key": key, "value": changed[key]} for key in sorted(changed)])
+def relabel(session: Session, caller: Caller, job: Job, tags: Mapping[str, str], **names: str | None) -> None:
+    """Give a job other tags, and those of another name and asset_id that are given."""
+    for name, value in names.items():
+        setattr(job, name, value)
+    session.execute(delete(JobTag).where(JobTag.job_id == job.id))
+    insert_rows(session, JobTag, [{"job_id": job.id, "key": key, "value": value} for key, value in tags.items()])
     audit.record(session, caller, AuditAction.JOB_RELABELLED, job.id)
 
 

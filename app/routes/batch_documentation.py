@@ -49,6 +49,8 @@ _SUMMARY: dict[str, Any] = {
     "id": _BATCH,
     "status": "accepted",
     "progress": 0.0,
+    "name": None,
+    "tags": {},
     "lines": _COUNTS,
     "created_at": "2026-11-22T10:00:00+00:00",
     "started_at": None,

@@ -70,6 +70,8 @@ def batch_summary(batch: Batch, counts: Counts) -> dict[str, Any]:
         "id": str(batch.id),
         "status": counts.status.value,
         "progress": counts.progress,
+        "name": batch.name,
+        "tags": batch.tags or {},
         "lines": line_counts(counts, batch.rejected_lines),
         "created_at": batch.created_at.isoformat(),
         "started_at": counts.started_at.isoformat() if counts.started_at else None,

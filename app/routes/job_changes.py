@@ -49,10 +49,11 @@ def change_job_labels(
 
     What is absent stays; null removes a label.
     """
-    given = {name: getattr(labels, name) for name in labels.model_fields_set}
+    names = {name: getattr(labels, name) for name in labels.model_fields_set - {"tags"}}
     with writers.begin() as session:
         job = find_job(session, caller, job_id)
-        job_records.relabel(session, caller, job, given)
+        tags = labels.changed_tags({tag.key: tag.value for tag in job.tags})
+        job_records.relabel(session, caller, job, tags, **names)
         session.flush()
         session.refresh(job)
         document = job_document(job)

@@ -22,7 +22,7 @@ from app.schemas.environment import (
     Wind,
 )
 from app.schemas.fields import Document
-from app.schemas.labels import JobLabels
+from app.schemas.labels import BatchLabels, JobLabels
 from app.schemas.line import Bundle, Conductor, Line, Phase, PhaseLine, Span, Support, Supports
 from app.schemas.measured import CoefficientRow, MeasuredCoefficients
 from app.schemas.placement import PendulumChoice, Placement, SpoilerChoice
@@ -35,6 +35,7 @@ __all__ = [
     "AirflowSpoiler",
     "Analysis",
     "Axis",
+    "BatchLabels",
     "BlowOut",
     "Bundle",
     "Climate",

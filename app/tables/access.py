@@ -22,6 +22,7 @@ class AuditAction(StrEnum):
     JOB_REMOVED = "job_removed"
     BATCH_SUBMITTED = "batch_submitted"
     BATCH_RESUBMITTED = "batch_resubmitted"
+    BATCH_RELABELLED = "batch_relabelled"
     BATCH_CANCELLED = "batch_cancelled"
     BATCH_REMOVED = "batch_removed"
     PRUNED = "pruned"

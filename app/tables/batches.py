@@ -27,6 +27,8 @@ class Batch(Base):
     rejected_lines: Mapped[int] = mapped_column(default=0)
     owner: Mapped[str] = mapped_column(String(64))
     notes: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
+    name: Mapped[str | None] = mapped_column(Text)
+    tags: Mapped[dict[str, str] | None] = mapped_column(JSON(none_as_null=True))
 
 
 class BatchItem(Base):
