@@ -20,7 +20,8 @@ demo: setup
 	$(BIN)/python -m app.cli.demo --output demo-output
 
 # Tests that start, kill and restart whole processes, or run whole commands one after another: they mostly wait.
-PROCESSES := tests/e2e tests/worker/test_lost_processes.py tests/worker/test_batches.py tests/worker/test_priorities.py \
+PROCESSES := tests/e2e tests/engine/kernels/test_sanitized.py \
+	tests/worker/test_lost_processes.py tests/worker/test_batches.py tests/worker/test_priorities.py \
 	tests/app/test_serve.py tests/app/operation tests/app/routes/test_idempotent_crashes.py tests/app/cli/test_demo.py \
 	tests/benchmarks/test_walkthrough.py
 
