@@ -13,6 +13,7 @@ from app.cli.options import AnalysisFile, DataDirectory, DefaultsFile, LineFile,
 if TYPE_CHECKING:
     from app.runtime.settings import Settings
 
+INTERRUPTED = 130  # as shells count a program that Ctrl-C ended
 _PATIENCE_SECONDS = 5.0  # a person is waiting
 
 Host = Annotated[str, typer.Option(help="Address to listen on.")]
@@ -94,8 +95,11 @@ def submit(  # noqa: PLR0913, PLR0917 - the options of a command are its argumen
             if not wait:
                 write(job.model_dump(mode="json"), output)
                 return
-            with progress_bar() as show:
-                job = service.wait(job, show)
+            try:
+                with progress_bar() as show:
+                    job = service.wait(job, show)
+            except KeyboardInterrupt:
+                end(f"job {job.id} goes on; its result will be at {url}/v1/jobs/{job.id}/results", INTERRUPTED)
             if job.status == "dismissed":
                 end("the job was cancelled", FAILED)
             write(json.loads(service.download(job, "results")), output)
