@@ -76,10 +76,14 @@ class LocalCurves:
 def local_curves(lines: Sequence[Line], profile: StaticProfile, section_points: Sections) -> LocalCurves:
     """Return the curves at the quadrature points, of a device, else of an ice segment, else of the span."""
     numbers: dict[Aerodynamics, int] = {}
+    stretches: dict[int, list[tuple[float, float, int]]] = {}  # of each line, which a stack may repeat
     which = np.empty(section_points.local.shape, dtype=np.intp)
     for line, place, x in zip(lines, which, positions(profile, section_points.local), strict=True):
-        for start, stop, aerodynamics in coefficients_along(line):
-            place[(x >= start) & (x < stop)] = numbers.setdefault(aerodynamics, len(numbers))
+        if id(line) not in stretches:
+            parts = coefficients_along(line)
+            stretches[id(line)] = [(start, stop, numbers.setdefault(one, len(numbers))) for start, stop, one in parts]
+        for start, stop, number in stretches[id(line)]:
+            place[(x >= start) & (x < stop)] = number
     static = np.array([0.0 if one.measured is None else one.measured.static_angle for one in numbers])
     tabulated = np.array([one.measured is not None for one in numbers])
     angle = np.where(tabulated[which], static[which] + section_points.twist, 0.0)
