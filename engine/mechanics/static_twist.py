@@ -35,7 +35,7 @@ from engine.mechanics.finite_elements import (
 from engine.mechanics.free_sections import Differences, differences
 from engine.mechanics.interpolation import strain_points
 from engine.mechanics.static_profile import StaticProfile
-from engine.numerics.newton import NewtonOptions, newton, solve_systems
+from engine.numerics.newton import NewtonOptions, downhill, newton, solve_systems
 from engine.spec import GRAVITY, Line
 
 FIRST_GUESS = 0.1  # rad at mid-span
@@ -284,23 +284,3 @@ def _held(tangent: FloatArray, held: BoolArray) -> FloatArray:
     """Decouple held freedoms and give each a stiffness of one."""
     free = ~held
     return np.asarray(tangent * (free[:, :, None] & free[:, None, :]) + held[:, :, None] * np.eye(held.shape[1]))
-
-
-def _are_positive_definite(matrices: FloatArray) -> bool:
-    """Return whether all of a stack are, several times faster than by their eigenvalues."""
-    try:
-        np.linalg.cholesky(matrices)
-    except np.linalg.LinAlgError:
-        return False
-    return True
-
-
-def downhill(tangent: FloatArray) -> FloatArray:
-    """Replace negative eigenvalues by their absolute values: (lines, freedoms, freedoms)."""
-    if _are_positive_definite(tangent):
-        return tangent
-    upward = np.flatnonzero(~(np.linalg.eigvalsh(tangent)[:, 0] > 0.0))
-    values, vectors = np.linalg.eigh(tangent[upward])
-    result = tangent.copy()
-    result[upward] = (vectors * np.abs(values)[:, None, :]) @ vectors.swapaxes(-1, -2)
-    return result

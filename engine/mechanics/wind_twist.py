@@ -10,9 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled
-from engine.mechanics.static_twist import downhill
 from engine.mechanics.torsional_elements import TorsionalElements, energy_derivatives, is_convex
-from engine.numerics.newton import NewtonOptions, newton
+from engine.numerics.newton import NewtonOptions, downhill, newton
 from engine.outcome import Outcome
 
 OPTIONS = NewtonOptions(tolerance=1e-10, largest_step=0.25, iterations=100)

@@ -10,15 +10,15 @@ from app.convert import study
 _HYBRID_SECONDS = {
     "source": (0.003, 0.0003),
     "full": (0.004, 0.0004),
-    "unexpanded": (0.07, 0.01),
-    "table": (0.07, 0.012),
+    "unexpanded": (0.07, 0.008),
+    "table": (0.02, 0.0015),
 }  # for each number of loops
 _HYBRID_DIRECT_SECONDS = (0.6, 0.2)
 _FINITE_ELEMENT_SECONDS = {
     "source": (0.4, 0.01),
     "full": (0.6, 0.01),
     "unexpanded": (0.6, 0.05),
-    "table": (0.25, 0.05),
+    "table": (0.05, 0.02),
 }
 _FINITE_ELEMENT_DIRECT_SECONDS = (45.0, 1.5)
 _FULL_MODES_SECONDS = 0.003

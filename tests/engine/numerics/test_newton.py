@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.arrays import FloatArray, IntArray
-from engine.numerics.newton import NewtonOptions, System, newton
+from engine.numerics.newton import NewtonOptions, System, downhill, newton
 from engine.outcome import Outcome
 
 
@@ -68,3 +68,9 @@ def test_empty_stack_is_solved() -> None:
     found = newton(quadratics(np.zeros(0)), np.zeros((0, 2)), np.ones((0, 2)))
     assert found.x.shape == (0, 2)
     assert found.converged.shape == (0,)
+
+
+def test_downhill_tangents_have_the_absolute_eigenvalues_whatever_stands_beside_them() -> None:
+    convex, saddle = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([[1.0, 2.0], [2.0, 1.0]])  # eigenvalues 1, 3; -1, 3
+    assert downhill(np.stack([convex, saddle])) == pytest.approx(np.stack([convex, convex]), rel=1e-14)
+    assert downhill(convex[None]).tolist() == [convex.tolist()]
