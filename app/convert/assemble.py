@@ -114,13 +114,16 @@ def _compare(gathered: Gathered, line: spec.Line, options: schemas.Analysis) -> 
     """Check a line against the options of an analysis, and apart from these against its physics, to find all faults."""
     loops, more_loops = tuple(options.loops), tuple(options.finite_element_loops)
     closure, competition = spec.Closure(options.closure), spec.LoopCompetition(options.loop_competition)
+    apart = Gathered()  # the analysis by itself says what is wrong with its loops
+    own = apart.attempt("", lambda: _without_physics(loops, more_loops, closure)) or _NEUTRAL_ANALYSIS
     bare = replace(
-        _without_physics(loops, more_loops, closure),
+        own,
         loop_competition=competition,
         models=tuple(spec.Model(model) for model in options.models),
         device_effect=spec.DeviceEffect(options.device_effect),
     )
-    for choice in (bare, spec.with_physics(line, _NEUTRAL_ANALYSIS, parts.physics(options))):
+    physical = apart.attempt("", lambda: spec.with_physics(line, _NEUTRAL_ANALYSIS, parts.physics(options)))
+    for choice in (bare, physical or _NEUTRAL_ANALYSIS):
         gathered.attempt("", partial(spec.check_compatible, line, choice))
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any
 
+from anyio import to_thread
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from sqlalchemy.exc import OperationalError
@@ -117,7 +118,7 @@ class ProblemError(HTTPException):
 def problem_document(kind: ProblemKind, detail: str, instance: str, faults: Sequence[Fault] = ()) -> dict[str, Any]:
     """Return the problem document for one occurrence, with at most `MOST_FAULTS` faults."""
     listed = [{"pointer": f.pointer, "code": f.code, "detail": f.detail} for f in faults[:MOST_FAULTS]]
-    more = f" Only the first {MOST_FAULTS} of {len(faults)} faults are listed." if len(faults) > MOST_FAULTS else ""
+    more = f" Only the first {MOST_FAULTS} faults are listed." if len(faults) > MOST_FAULTS else ""
     return {
         "type": f"/problems/{kind.slug}",
         "title": kind.title,
@@ -156,6 +157,8 @@ def invalid_document(faults: Sequence[Fault]) -> ProblemError:
 
 
 def _count(faults: Sequence[Fault]) -> str:
+    if len(faults) > MOST_FAULTS:
+        return f"The document has more than {MOST_FAULTS} faults."
     return f"The document has {len(faults)} fault{'s' if len(faults) != 1 else ''}."
 
 
@@ -202,14 +205,18 @@ def _methods(request: Request) -> str:
 
 async def _on_validation(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    errors = error.errors()
+    return _respond(request, await to_thread.run_sync(validation_problem, error.errors(), error.body))
+
+
+def validation_problem(errors: Sequence[Any], document: object) -> ProblemError:
+    """Return the problem for what the schemas of a route found; the faults of a large document take seconds to name."""
     places = {wrong["loc"][0] for wrong in errors}
     if "path" in places:
-        return _respond(request, ProblemError(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description))
+        return ProblemError(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description)
     if "body" not in places:
-        return _respond(request, ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=faults_of(errors)))
+        return ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=faults_of(errors))
     faults = faults_of([wrong for wrong in errors if wrong["loc"][0] == "body"], skip=1)
-    return _respond(request, invalid_document(convert.with_further_faults(error.body, faults)))
+    return invalid_document(convert.with_further_faults(document, faults))
 
 
 async def _on_database(request: Request, error: Exception) -> Response:

@@ -3,14 +3,16 @@
 from collections.abc import Callable, Coroutine, Iterator
 from typing import Any
 
+from anyio import to_thread
 from fastapi import Request, Response
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 from pydantic import BaseModel
 
-from app.http.problems import ProblemError, ProblemKind, invalid_document
+from app.http.problems import ProblemError, ProblemKind, invalid_document, validation_problem
 from app.schemas.faults import BadInput, Fault, json_pointer, parse_json
 
+_QUICK_BYTES = 32_768  # read and checked sooner than a thread is switched to; a line has some 1,000
 _READING = frozenset({"GET", "HEAD"})
 
 
@@ -65,9 +67,16 @@ class StrictJsonRoute(KnownParametersRoute):
         async def strict(request: Request) -> Response:
             if takes_body:
                 _require_json(request)
-            return await handler(_StrictRequest(request, self.prepared))
+            return await handler(_StrictRequest(request, self.prepared, self._check))
 
         return strict
+
+    def _check(self, document: Any) -> None:
+        """Raise the problem of a document that the schema refuses."""
+        assert self.body_field is not None, "only routes with a body check one"
+        _, errors = self.body_field.validate(document, {}, loc=("body",))
+        if errors:
+            raise validation_problem(errors, document)
 
     async def prepared(self, request: Request, document: Any) -> Any:
         """Return the document that the schema is to read; a kind of route may change what was posted.
@@ -82,15 +91,26 @@ class StrictJsonRoute(KnownParametersRoute):
 
 
 class _StrictRequest(Request):
-    def __init__(self, request: Request, prepare: Callable[[Request, Any], Coroutine[Any, Any, Any]]) -> None:
+    def __init__(
+        self,
+        request: Request,
+        prepare: Callable[[Request, Any], Coroutine[Any, Any, Any]],
+        check: Callable[[Any], None],
+    ) -> None:
         super().__init__(request.scope, request.receive)
-        self._prepare = prepare
+        self._prepare, self._check = prepare, check
 
     async def json(self) -> Any:
+        body = await self.body()
         try:
-            return await self._prepare(self, parse_json(await self.body()))
+            if len(body) <= _QUICK_BYTES:
+                return await self._prepare(self, parse_json(body))
+            # FastAPI checks it again on the event loop, which is quick where there is nothing to complain of.
+            document = await self._prepare(self, await to_thread.run_sync(parse_json, body))
+            await to_thread.run_sync(self._check, document)
         except BadInput as error:
             raise invalid_document(error.faults) from error
+        return document
 
 
 def _require_json(request: Request) -> None:

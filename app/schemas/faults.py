@@ -13,6 +13,12 @@ from app.schemas.meant import meant
 from app.schemas.units import WrongUnit
 
 MOST_FAULTS = 1000
+MOST_VALUES = 200_000
+"""Values of a JSON text, told by the marks between them; a measured table of 10,000 rows has 50,000."""
+MOST_NAMES = 50_000
+"""Names in a JSON text, told by the colons behind them."""
+_MOST_MEMBERS = 1000  # names of one object; the largest of a document has some 50
+_MOST_SUGGESTED = 50  # each looks through all names of fields
 _MOST_CHARACTERS = 200
 _MOST_SHOWN = 80
 
@@ -56,17 +62,29 @@ def parse_json(raw: bytes) -> Any:
     Raises
     ------
     BadInput
-        If the text is not JSON, neither UTF-8 nor UTF-16, nested too deeply, or an object repeats a name.
+        If the text is not JSON, neither UTF-8 nor UTF-16, nested too deeply, has more than `MOST_VALUES` values or
+        `MOST_NAMES` names, or an object repeats a name.
     """
     try:
         raw = _in_utf8(raw)
+        _check_size(raw)
         value = from_json(raw)
         repeated = list(islice(_repeated_names(raw.decode()), MOST_FAULTS))
+    except BadInput:
+        raise
     except ValueError as error:
         raise BadInput([Fault("", "json_invalid", f"not valid JSON: {error}")]) from error
     if repeated:
         raise BadInput(repeated)
     return value
+
+
+def _check_size(raw: bytes) -> None:
+    """Refuse a text whose values alone would cost; counting its bytes costs a thousandth of reading them."""
+    for most, what, marks in ((MOST_VALUES, "values", (b",", b"[", b"{")), (MOST_NAMES, "names", (b":",))):
+        found = sum(map(raw.count, marks))
+        if found > most:
+            raise BadInput([Fault("", "too_many", f"has some {found} {what}; a document may have at most {most}")])
 
 
 def _in_utf8(raw: bytes) -> bytes:
@@ -91,6 +109,9 @@ def _repeated_names(text: str) -> Iterator[Fault]:
     def note(pairs: Sequence[tuple[str, Any]]) -> None:
         nonlocal unique
         unique = unique and len(dict(pairs)) == len(pairs)
+        if len(pairs) > _MOST_MEMBERS:
+            detail = f"an object has {len(pairs)} names, the first of them {pairs[0][0][:_MOST_SHOWN]!r}"
+            raise BadInput([Fault("", "too_many", f"{detail}; it may have at most {_MOST_MEMBERS}")])
 
     json.loads(text, object_pairs_hook=note, parse_int=str, parse_float=str)
     if not unique:
@@ -116,6 +137,8 @@ def json_pointer(tokens: Iterable[object]) -> str:
 def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0, root: str = "") -> list[Fault]:
     """Convert pydantic's errors to faults that show the value found, if the errors contain it.
 
+    One more than `MOST_FAULTS` are converted at most, which tells that there are more.
+
     Parameters
     ----------
     errors : iterable of mappings
@@ -124,15 +147,16 @@ def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0, root: str =
     root : str
         Beginning of every pointer.
     """
-    return [_fault(error, error["loc"][skip:], root) for error in errors]
+    taken = enumerate(islice(errors, MOST_FAULTS + 1))
+    return [_fault(error, error["loc"][skip:], root, suggests=place < _MOST_SUGGESTED) for place, error in taken]
 
 
-def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str) -> Fault:
+def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str, *, suggests: bool) -> Fault:
     tokens = [token for i, token in enumerate(location) if not _is_branch(location, i)]
     if error["type"] == "union_tag_not_found":
         tokens.append("type")
     code, detail = _wording(error)
-    if code == "unknown_field":
+    if code == "unknown_field" and suggests:
         detail += meant([*root.split("/")[1:], *tokens])
     return Fault(root + json_pointer(tokens), code, detail[: 2 * _MOST_CHARACTERS] + _found(error))
 

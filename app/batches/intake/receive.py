@@ -148,10 +148,10 @@ def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:
 
 def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Iterator[list[dict[str, Any]]]:
     """Yield the rows of the lines in blocks; stop early if an atomic batch has too many faults."""
-    while block := list(islice(lines, _LINES_A_BLOCK)):
-        if draft.taken + len(block) > settings.max_batch_lines:
+    items_found = (_item(draft, document) for document in lines)  # one document is held, not those of a block
+    while items := list(islice(items_found, _LINES_A_BLOCK)):
+        if draft.taken > settings.max_batch_lines:
             raise BadInput([Fault("/lines", "too_long", f"a batch may have at most {settings.max_batch_lines} lines")])
-        items = [_item(draft, document) for document in block]
         if draft.atomic and len(draft.faults) >= MOST_FAULTS:
             return
         yield items

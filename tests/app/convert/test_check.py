@@ -1,12 +1,13 @@
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app import convert
+from app.schemas import Analysis
 from app.schemas.faults import BadInput, Fault
 from tests.app.lines import FULL_LINE, changed, faults
 
@@ -355,3 +356,46 @@ def test_the_design_wind_is_asked_for_where_no_wind_speeds_are_named() -> None:
     with pytest.raises(BadInput) as caught:
         convert.read({"line": {**line, "design_wind_m_per_s": -3.0}})
     assert [fault.pointer for fault in caught.value.faults] == ["/line/design_wind_m_per_s"]
+
+
+def test_too_many_loops_beside_the_default_ones_are_named() -> None:
+    many = {"loops": [1, 2, 3, 4, 5, 6, 7]}
+    (fault,) = faults({"line": FULL_LINE, "analysis": many})
+    assert fault.pointer.startswith("/analysis")
+    assert "6 different numbers" in fault.detail
+
+
+LOOPS = st.lists(st.integers(1, 8), max_size=10, unique=True)
+
+
+def words(kind: object) -> list[str]:
+    """Return the words that a field takes, if it takes any."""
+    if get_origin(kind) is Literal:
+        return list(get_args(kind))
+    return [word for part in get_args(kind) for word in words(part) if isinstance(word, str)]
+
+
+OPTIONS = {name: words(field.annotation) for name, field in Analysis.model_fields.items() if name != "models"}
+ANALYSES = st.fixed_dictionaries(
+    {},
+    optional={
+        **{name: st.sampled_from(choices) for name, choices in OPTIONS.items() if choices},
+        "loops": LOOPS.filter(bool),
+        "finite_element_loops": LOOPS,
+        "harmonics": st.integers(1, 20),
+        "critical_wind_limit_m_per_s": st.floats(0.1, 100.0),
+        "wind_speeds_m_per_s": st.lists(st.floats(0.1, 100.0), max_size=20),
+    },
+)
+
+
+@settings(max_examples=150)
+@given(ANALYSES)
+def test_no_analysis_that_the_schema_allows_is_a_defect(analysis: dict[str, Any]) -> None:
+    Analysis.model_validate(analysis)
+    for fault in faults({"line": FULL_LINE, "analysis": analysis}):
+        assert fault.pointer
+    try:
+        convert.read_analysis(analysis)
+    except BadInput as error:
+        assert all(fault.pointer.startswith("/analysis") for fault in error.faults)

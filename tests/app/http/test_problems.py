@@ -1,6 +1,7 @@
 import json
 import socket
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.http import strict_routes
 from app.http.problems import MEDIA_TYPE, ProblemKind, problem_document
 from app.reference.source_lines import example
 from app.runtime.settings import Settings
@@ -127,10 +129,47 @@ def test_what_is_no_document_is_422(shared_client: httpx.Client, body: bytes) ->
 
 
 def test_a_document_with_very_many_faults_gets_a_bounded_answer(shared_client: httpx.Client) -> None:
-    body = json.dumps({"line": example("c11-twin"), **{f"x{i}": 1 for i in range(50_000)}}).encode()
+    devices = [{"type": "spacer", "position_m": 1.0, **{f"x{i}": 1 for i in range(60)}} for _ in range(20)]
+    body = json.dumps({"line": {**example("c11-twin"), "devices": devices}}).encode()
     answer = post(shared_client, body)
     assert len(problem(answer, 422)["errors"]) == 1000
-    assert "50000 faults" in answer.json()["detail"]
+    assert "more than 1000 faults. Only the first 1000 faults are listed." in answer.json()["detail"]
+
+
+@pytest.mark.parametrize(
+    ("body", "detail"),
+    [
+        (json.dumps({f"x{i}": 0 for i in range(1001)}), "an object has 1001 names, the first of them 'x0'"),
+        (json.dumps([{"x": 0}] * 50_001), "some 50001 names; a document may have at most 50000"),
+        ("[" + "1," * 200_000 + "1]", "some 200001 values; a document may have at most 200000"),
+    ],
+)
+def test_a_document_whose_names_or_values_alone_would_cost_is_one_fault(
+    shared_client: httpx.Client, body: str, detail: str
+) -> None:
+    (fault,) = problem(post(shared_client, body.encode()), 422)["errors"]
+    assert (fault["code"], fault["pointer"]) == ("too_many", "")
+    assert detail in fault["detail"]
+
+
+def test_a_large_document_is_read_and_checked_beside_the_event_loop(
+    shared_client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    threads: list[str] = []
+
+    def noted(function: Callable[..., Any]) -> Callable[..., Any]:
+        def called(*given: Any) -> Any:
+            threads.append(threading.current_thread().name)
+            return function(*given)
+
+        return called
+
+    for name in ("parse_json", "validation_problem"):
+        monkeypatch.setattr(strict_routes, name, noted(getattr(strict_routes, name)))
+    body = json.dumps({"line": {**example("c11-twin"), "devices": [{"type": "nothing"}] * 5000}}).encode()
+    problem(post(shared_client, body), 422)
+    assert len(threads) == 2
+    assert all(name.startswith("AnyIO worker thread") for name in threads), threads
 
 
 @pytest.mark.parametrize(
@@ -224,7 +263,7 @@ def test_the_document_of_a_problem_lists_a_thousand_faults_at_most() -> None:
     faults = [Fault("/a", "b", "c")] * 1001
     document = problem_document(ProblemKind.INVALID_DOCUMENT, "So it is.", "/x", faults)
     assert len(document["errors"]) == 1000
-    assert document["detail"] == "So it is. Only the first 1000 of 1001 faults are listed."
+    assert document["detail"] == "So it is. Only the first 1000 faults are listed."
     assert document["type"] == "/problems/invalid-document"
 
 

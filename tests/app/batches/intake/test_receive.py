@@ -2,6 +2,7 @@ import json
 import tracemalloc
 from collections.abc import Iterator
 from typing import Any
+from weakref import WeakSet
 
 import pytest
 from sqlalchemy import func, select
@@ -132,3 +133,25 @@ def _peak(sessions: sessionmaker[Session], settings: Settings, text: bytes, line
         return tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
+
+
+class _Watched(dict[str, Any]):
+    __hash__ = object.__hash__  # type: ignore[assignment]  # a WeakSet takes nothing else
+
+
+def test_one_document_is_held_at_a_time(sessions: sessionmaker[Session], settings: Settings) -> None:
+    held: list[int] = []
+    alive: WeakSet[_Watched] = WeakSet()
+
+    def lines() -> Iterator[object]:
+        for _ in range(20):
+            document = _Watched()
+            alive.add(document)
+            held.append(len(alive))
+            yield document
+            del document
+
+    with pytest.raises(BadInput):
+        receive(sessions, settings, LOCAL, Incoming({}, lines()), atomic=False)
+    assert len(held) == 20
+    assert max(held) <= 2
