@@ -6,20 +6,38 @@ placements is found as a whole, by its job.
 """
 
 import hashlib
+import logging
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 from uuid import UUID
 
 import orjson
-from sqlalchemy import ARRAY, ColumnElement, String, Table, and_, bindparam, exists, func, insert, literal, select
+from sqlalchemy import (
+    ARRAY,
+    ColumnElement,
+    String,
+    Table,
+    and_,
+    bindparam,
+    exists,
+    func,
+    insert,
+    literal,
+    select,
+    update,
+)
 from sqlalchemy.orm import Session
 
 from app.convert import NumberedLine, PointResult
 from app.jobs import job_records
 from app.storage import counters
-from app.storage.stored_results import RANKING_FIGURES, STATIC, unpacked
+from app.storage.stored_results import RANKING_FIGURES, STATIC, CorruptResult, unpacked
 from app.tables import Job, JobEventKind, JobStatus, PointRow
+
+_POINTS = 100  # of a study that are held at once
+
+_logger = logging.getLogger(__name__)
 
 _LINE_ALONE = {"line", "analysis"}
 
@@ -37,8 +55,8 @@ def find(
 ) -> list[Source | None]:
     """Return for each owner and document the stored results of the same input by this engine version, labels ignored.
 
-    Many lines cost one query, and one more for each that is found; each study or placement costs one. The rows to copy
-    are locked until the transaction ends, so that nobody removes them.
+    Many lines cost one query, and one more for each that is found; each study or placement costs one, and
+    one more to read its points. What is corrupt is reported and not found. The rows to copy are locked until the transaction ends, so that nobody removes them.
     """
     hashes = [hash_of(owner, document) for owner, document in requests]
     wanted = {line_hash for line_hash in hashes if line_hash is not None}
@@ -62,11 +80,30 @@ def _known(session: Session, hashes: Collection[str], engine_version: str) -> Co
 
 def _found_line(session: Session, line_hash: str, engine_version: str) -> Source | None:
     # Any match will do: an ORDER BY would make the database choose another index than the one on the input.
-    statement = select(PointRow.job_id, PointRow.point, PointRow.batch_id).where(
-        PointRow.input_hash == line_hash, *_usable(engine_version)
-    )
+    columns = PointRow.job_id, PointRow.point, PointRow.batch_id, PointRow.tables, PointRow.orbits
+    statement = select(*columns).where(PointRow.input_hash == line_hash, *_usable(engine_version))
     row = session.execute(statement.limit(1).with_for_update(read=True, key_share=True)).one_or_none()
-    return Source(row.job_id, row.point if row.batch_id is not None else None) if row is not None else None
+    if row is None or not _is_sound(session, row):
+        return None
+    return Source(row.job_id, row.point if row.batch_id is not None else None)
+
+
+def _is_sound(session: Session, row: Any) -> bool:
+    """Tell whether a point is what was stored; report one that is not, and let nobody find it again."""
+    try:
+        unpacked(row.tables), unpacked(row.orbits)
+    except CorruptResult as error:
+        _logger.error("the stored result of point %d of job %s is corrupt: %s", row.point, row.job_id, error)
+        place = PointRow.job_id == row.job_id, PointRow.point == row.point
+        session.execute(update(PointRow).where(*place).values(input_hash=None))
+        return False
+    return True
+
+
+def _are_sound(session: Session, job_id: UUID) -> bool:
+    columns = select(PointRow.job_id, PointRow.point, PointRow.tables, PointRow.orbits)
+    points = session.execute(columns.where(PointRow.job_id == job_id).order_by(PointRow.point)).yield_per(_POINTS)
+    return all(_is_sound(session, row) for row in points)
 
 
 def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engine_version: str) -> Source | None:
@@ -74,7 +111,9 @@ def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engi
     usable = Job.status == JobStatus.SUCCESSFUL, Job.engine_version == engine_version
     statement = select(Job.id).where(*same, *usable).order_by(Job.id).limit(1)
     job_id = session.scalar(statement.with_for_update(read=True, key_share=True))
-    return Source(job_id) if job_id is not None else None
+    if job_id is None or not _are_sound(session, job_id):
+        return None
+    return Source(job_id)
 
 
 def adopt(job: Job, source: Source, engine_version: str) -> None:
@@ -139,14 +178,15 @@ def _usable(engine_version: str) -> tuple[ColumnElement[bool], ...]:
 def stored(session: Session, wanted: Mapping[int, str], engine_version: str) -> list[PointResult]:
     """Return the stored results of these lines by this engine version, under the lines' numbers.
 
-    A line computed several times has several copies; one of them is read.
+    A line computed several times has several copies; one of them is read. A corrupt one is reported and left out.
     """
     same = PointRow.input_hash.in_(set(wanted.values()))
     place = func.row_number().over(partition_by=PointRow.input_hash).label("place")
     copies = select(PointRow.job_id, PointRow.point, place).where(same, *_usable(engine_version)).subquery()
     one = PointRow.job_id == copies.c.job_id, PointRow.point == copies.c.point, copies.c.place == 1
     found = {row.input_hash: row for row in session.scalars(select(PointRow).join(copies, and_(*one)))}
-    return [_as_result(found[value], number) for number, value in wanted.items() if value in found]
+    sound = {value: row for value, row in found.items() if _is_sound(session, row)}
+    return [_as_result(sound[value], number) for number, value in wanted.items() if value in sound]
 
 
 def _as_result(row: PointRow, number: int) -> PointResult:

@@ -34,6 +34,10 @@ _THREAD = threading.local()
 _LEVEL = 1  # higher levels take longer and do not shrink rows of numbers
 
 
+class CorruptResult(Exception):
+    """Raised when a stored result is not what was stored."""
+
+
 def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"], batch_id: UUID | None = None) -> None:
     """Insert the results of points of a job, or of lines of a batch's chunk, in one statement.
 
@@ -44,7 +48,7 @@ def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"],
     """
     if points_found:
         place = {"job_id": job_id, "batch_id": batch_id}
-        compressor = zstandard.ZstdCompressor(level=_LEVEL)
+        compressor = _packer()
         insert_rows(session, PointRow, [{**place, **_as_columns(point, compressor)} for point in points_found])
 
 
@@ -56,9 +60,29 @@ def ranking_columns(row: Any) -> dict[str, float | bool | None]:
     return {**shown, UNKNOWN_MOTIONS: unknown}
 
 
+def packed(text: bytes) -> bytes:
+    """Return a text as it is stored: compressed, with a checksum."""
+    return _packer().compress(text)
+
+
+def _packer() -> zstandard.ZstdCompressor:
+    return zstandard.ZstdCompressor(level=_LEVEL, write_checksum=True)
+
+
 def unpacked(packed: bytes | None) -> bytes:
-    """Return the JSON text of a packed column; for a point that failed, that of tables without rows."""
-    return NO_TABLES if packed is None else _unpacker().decompress(packed)
+    """Return the JSON text of a packed column; for a point that failed, that of tables without rows.
+
+    Raises
+    ------
+    CorruptResult
+        If it is not what was stored, as its checksum tells.
+    """
+    if packed is None:
+        return NO_TABLES
+    try:
+        return _unpacker().decompress(packed)
+    except zstandard.ZstdError as error:
+        raise CorruptResult(str(error)) from error
 
 
 def _unpacker() -> zstandard.ZstdDecompressor:

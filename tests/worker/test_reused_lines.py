@@ -16,6 +16,8 @@ from app.reference.source_lines import example
 from app.runtime.settings import Settings
 from app.security import keys
 from app.security.caller import LOCAL, Scope
+from app.storage import stored_results
+from app.storage.stored_results import CorruptResult
 from app.tables import PointRow
 from tests.app import service
 from tests.app.known_documents import CONTRACT
@@ -206,3 +208,35 @@ def test_lines_in_engineers_forms_keep_what_is_assumed_of_them(client: httpx.Cli
     assert again["lines"]["reused"] == 2
     assert [line["assumptions"] for line in told(client, again)] == [known["assumptions"], []]
     assert finished(client, settings, [KNOWN], uncertainty={"samples": 8})["lines"]["reused"] == 0
+
+
+def test_a_corrupt_result_is_reported_and_computed_anew(
+    client: httpx.Client, settings: Settings, sessions: sessionmaker[Session], caplog: pytest.LogCaptureFixture
+) -> None:
+    first = service.finished(client, settings, {"line": TWIN, "analysis": SHORT})
+    kept = client.get(f"{first}/results/limit-cycles").json()
+    with sessions.begin() as session:
+        (row,) = session.scalars(select(PointRow))
+        assert row.tables is not None
+        place = len(row.tables) // 2
+        row.tables = row.tables[:place] + bytes([row.tables[place] ^ 1]) + row.tables[place + 1 :]
+    assert client.get(f"{first}/results/limit-cycles").status_code == 500, "other numbers are never given"
+    batch = client.post("/v1/batches", json={"lines": [TWIN], "analysis": SHORT}).raise_for_status()
+    done = service.work_off(client, settings, batch.headers["Location"])
+    assert (done["status"], done["lines"]["reused"]) == ("successful", 0)
+    assert "is corrupt" in caplog.text
+    again = client.post("/v1/jobs", json={"line": TWIN, "analysis": SHORT}).raise_for_status().json()
+    assert again["status"] == "successful", "the sound copy is found"
+    assert client.get(f"/v1/jobs/{again['id']}/results/limit-cycles").json() == kept
+
+
+@pytest.mark.parametrize("bit", range(0, 8 * 300, 97))
+def test_no_flipped_bit_passes_as_another_number(bit: int) -> None:
+    text = json.dumps([{"vertical_m": number / 7.0} for number in range(60)]).encode()
+    packed = bytearray(stored_results.packed(text))
+    packed[bit // 8] ^= 1 << bit % 8
+    try:
+        found = stored_results.unpacked(bytes(packed))
+    except CorruptResult:
+        return
+    assert found == text
