@@ -1,4 +1,4 @@
-"""Cut the text of a document with a list into its members and the items, such as the features of GeoJSON.
+"""Cut the text of a GeoJSON document into its members and its features, one after another, however long it is.
 
 Libraries that parse JSON as a stream stop at the first text that is not JSON. Here only the brackets are followed, and
 each feature is parsed by itself, so that a bad one spoils no other.
@@ -32,7 +32,7 @@ class FeatureTexts:
     whole: bool = False
 
 
-def cut_features(pieces: Iterable[bytes], most_bytes: int, name: str = "features") -> FeatureTexts:
+def cut_features(pieces: Iterable[bytes], most_bytes: int) -> FeatureTexts:
     """Cut a document up to its features; they are cut while they are taken.
 
     Parameters
@@ -41,8 +41,6 @@ def cut_features(pieces: Iterable[bytes], most_bytes: int, name: str = "features
         The text in UTF-8.
     most_bytes : int
         Longest feature, and longest text of everything beside them.
-    name : str
-        The member whose list is cut.
 
     Raises
     ------
@@ -51,7 +49,7 @@ def cut_features(pieces: Iterable[bytes], most_bytes: int, name: str = "features
     BodyTooLarge
         If a part is longer than the bound.
     """
-    text = _Text(iter(pieces), most_bytes, name)
+    text = _Text(iter(pieces), most_bytes)
     if text.peek() != b"{":
         raise _invalid("must be a JSON object")
     text.at += 1
@@ -68,10 +66,10 @@ def _members(text: "_Text", members: dict[str, bytes]) -> bool:
         if text.peek() == b"}" and not members:
             break
         name = _name(text)
-        if name == text.listed and text.peek() == b"[":
-            if name in members:
+        if name == "features" and text.peek() == b"[":
+            if "features" in members:
                 raise _repeated(name)
-            members[name] = b"[]"
+            members["features"] = b"[]"
             text.at += 1
             return True
         if name in members:
@@ -80,7 +78,7 @@ def _members(text: "_Text", members: dict[str, bytes]) -> bool:
         size += len(members[name])
         if size > text.most_bytes or len(members) > _MOST_MEMBERS:
             bound = f"{text.most_bytes} bytes or more than {_MOST_MEMBERS}"
-            raise BodyTooLarge(f"The members beside the {text.listed} are longer than {bound}.")
+            raise BodyTooLarge(f"The members beside the features are longer than {bound}.")
         if text.peek() != b",":
             break
         text.at += 1
@@ -103,17 +101,17 @@ def _features(text: "_Text", members: dict[str, bytes]) -> Iterator[bytes]:
     if text.peek() != b"]":
         while True:
             number += 1
-            yield text.value(f"{text.listed[:-1]} {number}: ")
+            yield text.value(f"feature {number}: ")
             if text.peek() != b",":
                 break
             text.at += 1
     if text.peek() != b"]":
-        raise _invalid(f"expected a comma or the end of the list behind {text.listed[:-1]} {number}")
+        raise _invalid(f"expected a comma or the end of the list behind feature {number}")
     text.at += 1
     if text.peek() == b",":
         text.at += 1
         if _members(text, members):
-            raise _repeated(text.listed)
+            raise _repeated("features")
     else:
         _end(text)
 
@@ -140,7 +138,6 @@ class _Text:
 
     pieces: Iterator[bytes]
     most_bytes: int
-    listed: str
     buffer: bytes = b""
     at: int = 0
     is_complete: bool = field(default=False)
@@ -201,9 +198,7 @@ class _Text:
 
     def _grow(self, place: str) -> None:
         if len(self.buffer) - self.at > self.most_bytes:
-            raise BodyTooLarge(
-                f"One of the {self.listed}, or a member beside them, is longer than {self.most_bytes} bytes."
-            )
+            raise BodyTooLarge(f"A feature, or a member beside the features, is longer than {self.most_bytes} bytes.")
         if not self.more() and self.is_complete:
             raise _invalid(f"{place}the text ends within a value")
 

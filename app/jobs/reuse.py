@@ -55,8 +55,9 @@ def find(
 ) -> list[Source | None]:
     """Return for each owner and document the stored results of the same input by this engine version, labels ignored.
 
-    Many lines cost one query, and one more for each that is found; each study or placement costs one, and
-    one more to read its points. What is corrupt is reported and not found. The rows to copy are locked until the transaction ends, so that nobody removes them.
+    Many lines cost one query, and one more for each that is found; each study or placement costs one, and one more to
+    read its points. What is corrupt is reported and not found. The rows to copy are locked until the transaction ends,
+    so that nobody removes them.
     """
     hashes = [hash_of(owner, document) for owner, document in requests]
     wanted = {line_hash for line_hash in hashes if line_hash is not None}

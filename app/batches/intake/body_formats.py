@@ -10,7 +10,6 @@ from typing import IO, Any
 
 from app.convert.known.wrapping import without_wrapper
 from app.exchange.cim import read_segments
-from app.exchange.feature_texts import cut_features
 from app.exchange.features import read_features
 from app.schemas.faults import BadInput, BodyTooLarge, Fault, parse_json
 from app.sheets.columns import Columns
@@ -76,7 +75,7 @@ def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
 
 
 def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
-    """Read a whole body `{"lines": [...], "analysis": {...}}`, whose lines are parsed one by one as they are taken.
+    """Read a whole body `{"lines": [...], "analysis": {...}}`.
 
     Raises
     ------
@@ -85,31 +84,24 @@ def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
     BadInput
         If the body is not such an object.
     """
-    cut = cut_features(as_utf8(_bounded(pieces, most_bytes)), most_bytes, "lines")
-    texts = list(cut.texts)
-    if cut.whole:
-        wrapper = '{"lines": [<the lines>], "analysis": {...}}, where analysis may be absent'
-        bare = without_wrapper({name: parse_json(text) for name, text in cut.members.items()}, wrapper)
-        if bare is not None:
-            raise BadInput([bare])
-    faults = [Fault(f"/{name[:200]}", "unknown_field", "unknown field") for name in cut.members if name not in _KNOWN]
-    if cut.whole:
+    body = bytearray()
+    for piece in pieces:
+        body += piece
+        if len(body) > most_bytes:
+            raise BodyTooLarge(f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV.")
+    document = parse_json(bytes(body), bounded=False)
+    bare = without_wrapper(document, '{"lines": [<the lines>], "analysis": {...}}, where analysis may be absent')
+    if bare is not None:
+        raise BadInput([bare])
+    if not isinstance(document, dict):
+        raise BadInput([Fault("", "not_an_object", "must be an object with lines and analysis")])
+    faults = [Fault(f"/{name[:200]}", "unknown_field", "unknown field") for name in document if name not in _KNOWN]
+    if not isinstance(document.get("lines"), list):
         faults.append(Fault("/lines", "list_type", "must be a list of lines"))
     if faults:
         raise BadInput(faults)
-    said = {name: parse_json(text) for name, text in cut.members.items()}
-    return Incoming(
-        said.get("analysis", {}), map(_parsed, texts), said.get("webhook_url"), defaults=said.get("defaults")
-    )
-
-
-def _bounded(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
-    taken = 0
-    for piece in pieces:
-        taken += len(piece)
-        if taken > most_bytes:
-            raise BodyTooLarge(f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV.")
-        yield piece
+    lines, defaults = iter(document["lines"]), document.get("defaults")
+    return Incoming(document.get("analysis", {}), lines, document.get("webhook_url"), defaults=defaults)
 
 
 def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:
