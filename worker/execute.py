@@ -2,8 +2,6 @@
 
 import itertools
 import logging
-import os
-import signal
 import threading
 import time
 from collections.abc import Iterator, Mapping
@@ -104,19 +102,6 @@ class Pulse:
                 self._beat()
             except SQLAlchemyError as error:
                 _logger.warning("the job missed a heartbeat: %s", error)
-        if self.verdict is not Beat.GO_ON and not self._stopped.wait(self._settings.cancel_seconds):
-            self._end_process()
-
-    def _end_process(self) -> None:
-        """End the process with its job, whose computation does not come to a point; the pool replaces it."""
-        if self.verdict is Beat.CANCEL:
-            try:
-                with self._sessions.begin() as session:
-                    leases.dismiss(session, self._held)
-            except SQLAlchemyError as error:
-                _logger.warning("the job is dismissed when its lease expires: %s", error)
-        _logger.warning("the job does not stop, so its process ends")
-        os.kill(os.getpid(), signal.SIGKILL)
 
     def _beat(self) -> None:
         latest = self._latest

@@ -88,9 +88,6 @@ class Settings(BaseSettings):
 
     lease_seconds: Seconds = Field(default=30.0, description="A worker silent for this long loses its job")
     heartbeat_seconds: Seconds = Field(default=1.0, description="Time between a worker's two reports on its job")
-    cancel_seconds: Seconds = Field(
-        default=10.0, description="Time for a cancelled job to stop before its process ends"
-    )
     max_attempts: Count = Field(default=3, description="Attempts before a job fails because its workers were lost")
     soft_time_limit_seconds: Seconds = Field(default=3600.0, description="A job that runs longer fails")
     hard_time_limit_seconds: Seconds = Field(default=3660.0, description="A process that runs a job longer is killed")

@@ -1,8 +1,6 @@
-import signal
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing import get_context
 from uuid import UUID
 
 import pytest
@@ -17,7 +15,6 @@ from app.runtime.settings import Settings
 from app.schemas.placement import EXAMPLE
 from app.security.caller import LOCAL
 from app.storage import stored_results
-from app.storage.database import make_engine, session_factory
 from app.tables import FailureKind, Job, JobStatus
 from tests.documents import (
     add_job,
@@ -195,28 +192,3 @@ def test_a_point_that_a_defect_took_says_so(
     job = look(sessions, job_id)
     assert (job.status, job.failure_kind) == (JobStatus.FAILED, FailureKind.INTERNAL)
     assert count_points(sessions, job_id) == 2
-
-
-def test_a_cancelled_job_that_comes_to_no_point_ends_with_its_process(
-    sessions: sessionmaker[Session], settings: Settings
-) -> None:
-    """The job runs in a process of its own, which a computation without points never gives back."""
-    hasty = settings.model_copy(update={"cancel_seconds": 0.3})
-    job_id = add_job(sessions, short_request())
-    process = get_context("spawn").Process(target=_without_points, args=(hasty, job_id))
-    process.start()
-    wait_until(lambda: look(sessions, job_id).status is JobStatus.RUNNING, 60.0, "the start of the job")
-    with sessions.begin() as session:
-        job_records.cancel(session, LOCAL, job_id)
-    process.join(30.0)
-    assert process.exitcode == -signal.SIGKILL
-    assert look(sessions, job_id).status is JobStatus.DISMISSED
-
-
-def _without_points(settings: Settings, job_id: UUID) -> None:
-    def hanging(_: object) -> Iterator[Advance]:
-        time.sleep(120.0)
-        yield Advance(0.0, "")
-
-    convert.run = hanging  # type: ignore[assignment]
-    execute(session_factory(make_engine(settings)), settings, job_id, "here")

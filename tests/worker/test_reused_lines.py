@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator
 from typing import Any
+from uuid import UUID
 
 import httpx
 import pytest
@@ -220,7 +221,8 @@ def test_a_corrupt_result_is_reported_and_computed_anew(
         assert row.tables is not None
         place = len(row.tables) // 2
         row.tables = row.tables[:place] + bytes([row.tables[place] ^ 1]) + row.tables[place + 1 :]
-    assert client.get(f"{first}/results/limit-cycles").status_code == 500, "other numbers are never given"
+    with sessions() as session, pytest.raises(CorruptResult):
+        list(stored_results.rows(session, UUID(first.rpartition("/")[2]), "limit_cycles"))
     batch = client.post("/v1/batches", json={"lines": [TWIN], "analysis": SHORT}).raise_for_status()
     done = service.work_off(client, settings, batch.headers["Location"])
     assert (done["status"], done["lines"]["reused"]) == ("successful", 0)
@@ -230,7 +232,7 @@ def test_a_corrupt_result_is_reported_and_computed_anew(
     assert client.get(f"/v1/jobs/{again['id']}/results/limit-cycles").json() == kept
 
 
-@pytest.mark.parametrize("bit", range(0, 8 * 300, 97))
+@pytest.mark.parametrize("bit", range(0, 8 * 200, 97))
 def test_no_flipped_bit_passes_as_another_number(bit: int) -> None:
     text = json.dumps([{"vertical_m": number / 7.0} for number in range(60)]).encode()
     packed = bytearray(stored_results.packed(text))
