@@ -97,8 +97,8 @@ WIDE static void generate(Workspace *w, const Model *model, const Monodromies *w
                 elastic += inverse[i * m + k] * (speed * speed * w->gradient[k * n + j] - model->stiffness[k * m + j]);
                 viscous += inverse[i * m + k] * (speed * w->gradient[k * n + m + j] - model->damping[k * m + j]);
             }
-            block[i * n + j] = elastic / (omega * omega);
-            block[i * n + m + j] = viscous / omega;
+            block[i * n + j] = elastic * (1.0 / (omega * omega));
+            block[i * n + m + j] = viscous * (1.0 / omega);
         }
 }
 
@@ -131,11 +131,11 @@ WIDE static void exponentiate(Workspace *w, Lanes *result)
     multiply(n, square, a, cube);
     multiply(n, square, square, fourth);
     for (ptrdiff_t e = 0; e < w->count; e++)
-        high[e] = a[e] / 120.0 + square[e] / 720.0 + cube[e] / 5040.0 + fourth[e] / 40320.0
-                  + (e % (n + 1) ? 0.0 : 1.0 / 24.0);
+        high[e] = a[e] * (1.0 / 120.0) + square[e] * (1.0 / 720.0) + cube[e] * (1.0 / 5040.0)
+                  + fourth[e] * (1.0 / 40320.0) + (e % (n + 1) ? 0.0 : 1.0 / 24.0);
     multiply(n, fourth, high, result);
     for (ptrdiff_t e = 0; e < w->count; e++)
-        result[e] += a[e] + square[e] / 2.0 + cube[e] / 6.0 + (e % (n + 1) ? 0.0 : 1.0);
+        result[e] += a[e] + square[e] * 0.5 + cube[e] * (1.0 / 6.0) + (e % (n + 1) ? 0.0 : 1.0);
 }
 
 /* Multiply the matrices of all lanes, later ones on the left. */

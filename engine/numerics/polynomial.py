@@ -28,11 +28,20 @@ def count(variables: int, degree: int) -> int:
 
 
 def powers(x: FloatArray, degree: int = DEGREE) -> FloatArray:
-    """Evaluate all monomials up to a degree at x (..., variables): shape (..., monomials)."""
-    terms = [x]
-    for index, factor in _products(x.shape[-1])[: degree - 1]:
-        terms.append(terms[-1][..., index] * x[..., factor])
-    return np.concatenate(terms, axis=-1)
+    """Evaluate all monomials up to a degree at x (..., variables): shape (..., monomials), one by one in memory."""
+    variables = x.shape[-1]
+    terms = np.empty((sum(count(variables, d + 1) for d in range(degree)), *x.shape[:-1]))
+    terms[:variables] = np.moveaxis(x, -1, 0)
+    below, end = [(i, i) for i in range(variables)], variables  # place and last factor of those of one degree less
+    for _ in range(degree - 1):
+        here: list[tuple[int, int]] = []
+        for place, last in below:
+            size = variables - last
+            np.multiply(terms[place], terms[last:variables], out=terms[end : end + size])
+            here += [(end + i, last + i) for i in range(size)]
+            end += size
+        below = here
+    return np.moveaxis(terms, 0, -1)
 
 
 @lru_cache
@@ -55,7 +64,7 @@ def slopes(table: FloatArray) -> FloatArray:
     The first entry of the last axis is the constant; the others are in the order of `monomials`.
     """
     index, factor = _derivative_map(_variables_of(table.shape[-1]))
-    return np.asarray(table[..., index] * factor)
+    return np.asarray(np.take(table, index, axis=-1) * factor)  # several times as fast as an index on the last axis
 
 
 def _variables_of(size: int) -> int:
