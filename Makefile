@@ -97,7 +97,8 @@ lowest: setup
 		--no-emit-package galloping --output-file .venv-lowest/lowest.txt pyproject.toml
 	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --requirement .venv-lowest/lowest.txt
 	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --constraint .venv-lowest/lowest.txt pytest pytest-timeout \
-		hypothesis pyyaml trustme pypdf packaging openapi-spec-validator
+		pytest-xdist hypothesis pyyaml trustme pypdf packaging openapi-spec-validator
+	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --no-deps --editable .
 	PYTHONPATH=$(CURDIR) .venv-lowest/bin/python -m pytest -p no:xdist -o filterwarnings=default $(LOWEST)
 
 capacity: setup

@@ -1,6 +1,6 @@
 """Schemas of result rows, generated from the columns that the engine declares: description, unit and example."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import Enum
 from inspect import cleandoc
 from types import UnionType
@@ -71,8 +71,17 @@ def _inlined(kind: Any) -> Any:
     if isinstance(kind, UnionType):
         return Union[tuple(_inlined(part) for part in get_args(kind))]  # noqa: UP007 - of parts known at run time
     if isinstance(kind, type) and issubclass(kind, Enum):
-        return Annotated[Literal[tuple(member.value for member in kind)], AfterValidator(kind)]
+        return Annotated[Literal[tuple(member.value for member in kind)], AfterValidator(_member_of(kind))]
     return kind
+
+
+def _member_of(kind: type[Enum]) -> Callable[[Any], Enum]:
+    """Return a function from a word to its member; from Python 3.12 on pydantic takes no enum as a function."""
+
+    def member(word: Any) -> Enum:
+        return kind(word)
+
+    return member
 
 
 # Type checkers cannot see models created at run time, so show them the engine's rows with the same attributes.
