@@ -164,7 +164,7 @@ def _value(part: schemas.Document, name: str) -> Any:
         return tuple(given)
     if isinstance(given, Range):
         return given.pair
-    return math.radians(given) if unit == {"unit": "deg"} else given
+    return math.radians(given) if unit == {"x-unit": "deg"} else given
 
 
 def climate(part: schemas.Climate) -> spec.Climate:

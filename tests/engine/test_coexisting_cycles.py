@@ -25,13 +25,14 @@ def with_light_damping(subconductors: int, length: float, tension: float) -> Lin
     return replace(line, damping=damping, span=Span(length, horizontal_tension=tension))
 
 
-# The figures are those at which direct integration stays.
+# The figures are those at which direct integration stays. That of the triple was read at the first antinode, 1.637 m up
+# and down; it is largest sideways in the middle, where its vertical mode has 0.966 of the first antinode.
 @pytest.mark.parametrize(
     ("line", "loops", "wind", "expected"),
     [
         (source_line(1), 3, 20.0, [(0.017, 0.256), (2.50, 1.431)]),
         (with_light_damping(4, 234.8, 38_621.0), 2, 9.83, [(0.099, 2.455), (1.073, 3.586)]),
-        (with_light_damping(3, 356.4, 19_391.0), 3, 19.37, [(1.637, 3.755)]),
+        (with_light_damping(3, 356.4, 19_391.0), 3, 19.37, [(1.637 * 0.966, 3.755)]),
     ],
     ids=["single", "quad", "triple"],
 )

@@ -48,7 +48,7 @@ def peak(client: httpx.Client, address: str) -> tuple[int, int]:
     length = 0
     tracemalloc.start()
     try:
-        with client.stream("GET", address) as answer:
+        with client.stream("GET", address, headers={"Accept-Encoding": "identity"}) as answer:
             answer.raise_for_status()
             for piece in answer.iter_raw():
                 length += len(piece)
