@@ -1,7 +1,8 @@
 """Kinds of routes that take what they know and refuse everything else."""
 
-from collections.abc import Callable, Coroutine, Iterator
-from typing import Any
+from collections import Counter
+from collections.abc import Callable, Collection, Coroutine, Iterator
+from typing import Any, get_args, get_origin
 
 from anyio import to_thread
 from fastapi import Request, Response
@@ -17,37 +18,52 @@ _READING = frozenset({"GET", "HEAD"})
 
 
 class KnownParametersRoute(APIRoute):
-    """A route that refuses unknown query parameters, since a slip in a name would do or show something else.
+    """A route that refuses unknown and repeated query parameters, since a slip in them would do or show something else.
 
-    Pages are read with whatever a link adds to their address.
+    Pages are read with whatever a link adds to their address. Only parameters that take a list may be repeated.
     """
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         """Return the handler that looks at the names of the parameters first."""
         handler = super().get_route_handler()
-        known, strict = frozenset(_parameters(self.dependant)), self.include_in_schema
+        kinds, strict = dict(_parameters(self.dependant)), self.include_in_schema
+        single = frozenset(name for name, kind in kinds.items() if not _is_list(kind))
 
         async def knowing(request: Request) -> Response:
-            if request.scope["query_string"] and (strict or request.method not in _READING):
-                _refuse_unknown(request, known)
+            if request.scope["query_string"]:
+                if strict or request.method not in _READING:
+                    _refuse_unknown(request, kinds.keys())
+                _refuse_repeated(request, single)
             return await handler(request)
 
         return knowing
 
 
-def _parameters(dependant: Dependant) -> Iterator[str]:
-    """Yield the names of the query parameters that a route and what it depends on take."""
+def _parameters(dependant: Dependant) -> Iterator[tuple[str, Any]]:
+    """Yield the names and types of the query parameters that a route and what it depends on take."""
     for field in dependant.query_params:
         kind = field.field_info.annotation
         if isinstance(kind, type) and issubclass(kind, BaseModel):
-            yield from (inner.alias or name for name, inner in kind.model_fields.items())
+            yield from ((inner.alias or name, inner.annotation) for name, inner in kind.model_fields.items())
         else:
-            yield field.alias
+            yield field.alias, kind
     for inner in dependant.dependencies:
         yield from _parameters(inner)
 
 
-def _refuse_unknown(request: Request, known: frozenset[str]) -> None:
+def _is_list(kind: Any) -> bool:
+    return get_origin(kind) is list or any(_is_list(inner) for inner in get_args(kind))
+
+
+def _refuse_repeated(request: Request, single: Collection[str]) -> None:
+    counts = Counter(name for name, _ in request.query_params.multi_items() if name in single)
+    detail = "must be given once; this parameter takes one value"
+    faults = [Fault(json_pointer(["query", name]), "repeated", detail) for name, count in counts.items() if count > 1]
+    if faults:
+        raise ProblemError(ProblemKind.INVALID_PARAMETER, "See errors.", faults=faults)
+
+
+def _refuse_unknown(request: Request, known: Collection[str]) -> None:
     unknown = [name for name in request.query_params if name not in known]
     if unknown:
         named = f"known are {', '.join(sorted(known))}" if known else "there are none here"
