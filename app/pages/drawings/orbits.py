@@ -18,6 +18,7 @@ SIZE = (420.0, 420.0)
 _MARGIN = 34.0
 _CORNERS = 72
 _LEAST_WIRE = 3.0
+_BELOW_NOTES = 48.0  # the words at the top, and the arrow of the wind, end here; a grid line there has no figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +110,8 @@ def _grid(scale: Scale, units: Units) -> Iterator[Markup]:
                 yield element("text", text, x=x + 2.0, y=SIZE[1] - 3.0, class_="figures")
             elif y < SIZE[1] - 16.0:
                 yield element("line", x1=0.0, x2=SIZE[0], y1=y, y2=y, class_="grid")
-                yield element("text", text, x=2.0, y=y - 2.0, class_="figures")
+                if y > _BELOW_NOTES:
+                    yield element("text", text, x=2.0, y=y - 2.0, class_="figures")
     said = words().drawings
     yield element("text", said.axes.format(unit=unit.name), x=SIZE[0] - 4.0, y=14.0, class_="note")
 

@@ -1,3 +1,5 @@
+import re
+
 import pytest
 
 from app.pages.drawings.orbits import SIZE, Surroundings, ellipse_points, orbit_picture, orbit_scale
@@ -40,3 +42,14 @@ def test_the_picture_has_a_path_for_each_wire_and_names_the_phases() -> None:
     assert "top &lt;b&gt;" in drawn
     assert "ellipse" not in drawn
     assert "[ft]" in str(orbit_picture(MOTION, Surroundings(LINE, None), FEET, "Orbits"))
+
+
+@pytest.mark.parametrize("height", [0.4, 1.0, 3.0, 7.0, 9.3, 12.0, 14.5, 23.0, 61.0])
+def test_no_figure_of_the_grid_lies_on_the_words_at_the_top(height: float) -> None:
+    line = {**LINE, "phases": [{"name": "top", "y_m": height, "z_m": 0.0}]}
+    for units in (SI, FEET):
+        drawn = str(orbit_picture(MOTION, Surroundings(line, None), units, "Orbits"))
+        figures = re.findall(r'<text x="2" y="([^"]+)" class="figures">', drawn)
+        assert figures
+        # The arrow of the wind ends at 32; figures are some 11 high above their foot.
+        assert min(float(foot) - 11.0 for foot in figures) > 32.0
