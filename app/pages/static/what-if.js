@@ -1,4 +1,5 @@
 // Follows the sliders of a line: asks for its curves as they move, one request at a time, and keeps the last curve.
+// A form without an address for curves has sliders alone: its line takes too long to follow.
 "use strict";
 (() => {
   const form = document.getElementById("what-if");
@@ -6,8 +7,8 @@
   const words = JSON.parse(form.dataset.words);
   const message = document.getElementById("message");
   const verdict = document.getElementById("verdict");
-  const answer = verdict.querySelector(".answer");
-  const sentence = verdict.querySelector(".lead");
+  const answer = verdict?.querySelector(".answer");
+  const sentence = verdict?.querySelector(".lead");
   const figures = document.getElementById("figures");
   const LONGEST_WAIT = 60;
   let before = null;
@@ -77,6 +78,7 @@
   }
   // One request after the other: whatever moves meanwhile is asked for when the answer is there.
   async function follow() {
+    if (!form.dataset.curves) return;
     moved = true;
     if (asking) return;
     asking = true;

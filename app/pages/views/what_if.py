@@ -22,6 +22,7 @@ from app.pages.recipes import said
 from app.pages.result_parts import facts
 from app.pages.submitting import checked, submit
 from app.pages.views.result import Point
+from app.pages.what_if.documents import ties_phases
 from app.pages.what_if.moved_lines import as_job, loops_looked_at, speeds_of, to_look
 from app.pages.what_if.sliders import Slider, sliders
 from app.pages.wording import word_for, words
@@ -65,6 +66,8 @@ async def curves_of_moved_line(
     """
     units = units_of(request)
     base = await to_thread.run_sync(lambda: _base(readers, caller, (job_id, point), units))
+    if ties_phases(base.explicit):
+        raise ProblemError(ProblemKind.TAKES_TOO_LONG, words().what_if.tied)
     document = to_look(base.request, base.explicit, base.sliders, fields)
     try:
         sound = await to_thread.run_sync(lambda: checked(request, document))
@@ -140,6 +143,7 @@ def _shown(request: Request, base: _Base, fields: Mapping[str, str], faults: Any
         base=base,
         values=values,
         faults=faults,
+        follows=not ties_phases(base.explicit),
         loops=count,
         script_words=json.dumps(texts),
         chart_words=json.dumps({**vars(said_words.chart), "before": own.before, "at": own.wind_now}),

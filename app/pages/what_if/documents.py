@@ -43,6 +43,11 @@ def pendulum(line: Line) -> int | None:
     return next((i for i, device in enumerate(devices) if device.get("type") == "detuning_pendulum"), None)
 
 
+def ties_phases(line: Line) -> bool:
+    """Return whether an interphase spacer ties phases, which the finite element model alone computes."""
+    return any(device.get("type") == "interphase_spacer" for device in line.get("devices") or ())
+
+
 def places_along(line: Line) -> Iterator[Place]:
     """Yield the places of all distances along the span."""
     lists: tuple[Place, ...] = (("devices",), ("ice", "segments"), ("wind", "profile"))

@@ -66,3 +66,15 @@ def test_what_cannot_be_computed_is_refused_in_words(shared_client: httpx.Client
     answer = send(shared_client, f"/pages/jobs/{other}/what-if", {"span": "80"})
     assert answer.status_code == 422
     assert "cannot be computed with these values" in answer.text
+
+
+def test_a_line_with_tied_phases_says_why_no_curve_follows_and_becomes_a_job(shared_client: httpx.Client) -> None:
+    spacer = {"type": "interphase_spacer", "position_m": 62.94, "mass_kg": 30.0, "between": ["this", "top"]}
+    line = {**examples.line("c11-twin"), "devices": [spacer], "phases": [{"name": "top", "y_m": 7.0}]}
+    address = f"/pages/jobs/{service.submit(shared_client, {'line': line})['id']}/what-if"
+    page = read(shared_client, address)
+    assert "An interphase spacer ties phases of this line" in page.text
+    assert "data-curves" not in page.text
+    refused = shared_client.post(f"{address}/curves", data={"mark": page.fields["mark"]})
+    assert (refused.status_code, refused.json()["type"].rpartition("/")[2]) == (422, "takes-too-long")
+    assert send(shared_client, address, {"damping_vertical_ratio": "0.9"}).status_code == 303
