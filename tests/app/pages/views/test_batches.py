@@ -106,3 +106,13 @@ def test_progress_ends_with_the_whole_page_and_a_batch_is_removed(shared_client:
     gone = send(shared_client, f"{waiting}/cancel", {"remove": "yes"})
     assert gone.headers["location"] == "/pages/batches"
     assert shared_client.get(waiting).status_code == 404
+
+
+def test_a_batch_shows_its_name_and_its_tags_on_its_page_and_in_the_list(shared_client: httpx.Client) -> None:
+    batch = posted(shared_client).json()["id"]
+    labels = {"name": "Winter check", "tags": {"region": "north"}}
+    shared_client.patch(f"/v1/batches/{batch}", json=labels).raise_for_status()
+    shown = read(shared_client, f"/pages/batches/{batch}").text
+    assert "Winter check Batch of" in shown
+    assert "region north" in shown
+    assert "Winter check region: north" in read(shared_client, "/pages/batches").text
