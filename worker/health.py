@@ -4,6 +4,7 @@ import sys
 import time
 from pathlib import Path
 
+from app.runtime.private_files import make_private_folder
 from app.runtime.settings import Settings, get_settings
 
 _SWEEPS = 15.0
@@ -18,7 +19,7 @@ def show_life(settings: Settings) -> None:
     OSError
         If the data directory cannot be written to.
     """
-    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    make_private_folder(settings.data_dir)
     _file(settings).touch()
 
 

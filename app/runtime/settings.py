@@ -12,6 +12,7 @@ from pydantic import AliasChoices, Field, FilePath, SecretStr, field_validator, 
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from app.runtime.loopback import is_loopback
+from app.runtime.private_files import make_private_folder
 from app.runtime.weak_secrets import weak_secrets
 
 _PREFIX = "GALLOPING_"
@@ -234,11 +235,11 @@ def signing_key(settings: Settings) -> bytes:
     """
     if settings.signing_secret is not None:
         return settings.signing_secret.get_secret_value().encode()
-    settings.data_dir.mkdir(parents=True, exist_ok=True)
     path, former = settings.data_dir / _SECRET_FILE, settings.data_dir / _FORMER_SECRET_FILE
     if former.exists():
         return former.read_bytes()
     if not path.exists():
+        make_private_folder(settings.data_dir)
         _keep_secret(path)
     return path.read_bytes()
 

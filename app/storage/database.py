@@ -23,6 +23,7 @@ from sqlalchemy import (
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.functions import func
 
+from app.runtime.private_files import keep_private, make_private_file, make_private_folder
 from app.runtime.settings import Settings
 from app.tables import Base, UtcDateTime
 
@@ -35,6 +36,8 @@ _CLOCK = "database time of this transaction"
 def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
     """Create the engine for the configured database; create the directory of an SQLite file if it is missing.
 
+    Other users of the machine cannot read a database in `data_dir`; one made earlier is taken from them.
+
     SQLite: write-ahead log, foreign keys, a busy timeout, and every transaction begins as a writer (`BEGIN IMMEDIATE`)
     unless its session comes from `session_factory(..., read_only=True)`. A reader that became a writer midway would
     fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use. An impatient engine
@@ -43,7 +46,7 @@ def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
     Raises
     ------
     OSError
-        If the directory cannot be created.
+        If the directory cannot be created or written to, or the file cannot be created.
     """
     url = make_url(settings.database_url)
     create = partial(create_engine, url, json_serializer=_json_text)
@@ -54,11 +57,21 @@ def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
         pool = {"pool_size": _THREADS, "max_overflow": 0}
         return create(pool_pre_ping=True, connect_args={"connect_timeout": 10}, **pool)
     if url.database:
-        Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+        _make_folder(Path(url.database), settings.data_dir)
     engine = create(connect_args={"timeout": _IMPATIENT["connect_timeout"] if impatient else _BUSY_SECONDS})
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine
+
+
+def _make_folder(file: Path, data_dir: Path) -> None:
+    if file.parent != data_dir:  # the operator chose this place, and who may read it
+        file.parent.mkdir(parents=True, exist_ok=True)
+        return
+    make_private_folder(data_dir)
+    make_private_file(file)
+    for beside in data_dir.glob(f"{file.name}-*"):  # new ones get the mode of the database
+        keep_private(beside)
 
 
 def session_factory(engine: Engine, *, read_only: bool = False) -> sessionmaker[Session]:

@@ -109,3 +109,19 @@ def test_insert_on_a_lost_connection_is_an_operational_error(sessions: sessionma
         insert_rows(session, BatchItem, [row])
     with sessions() as session:
         assert session.scalars(select(BatchItem)).all() == []
+
+
+def test_other_users_cannot_read_the_embedded_database(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "data")
+    migrate(settings)
+    file = settings.data_dir / "galloping.sqlite3"
+    assert file.stat().st_mode & 0o777 == 0o600
+    assert settings.data_dir.stat().st_mode & 0o777 == 0o700
+    for path in (file, settings.data_dir):
+        path.chmod(0o755)
+    engine = make_engine(settings)  # as of a directory that an earlier version made
+    with engine.connect():
+        held = {path.name: path.stat().st_mode & 0o777 for path in settings.data_dir.iterdir()}
+    engine.dispose()
+    assert set(held.values()) == {0o600}, held
+    assert settings.data_dir.stat().st_mode & 0o777 == 0o700
