@@ -1,7 +1,9 @@
 """Health checks, metrics, and the pages that explain problem types."""
 
+import shutil
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from anyio import create_task_group, move_on_after, to_thread
@@ -25,6 +27,7 @@ router = APIRouter(tags=["service"])
 _OK: dict[str, Any] = {"status": "ok", "checks": {"database": "ok", "migrations": "ok", "broker": "ok"}}
 _DOWN: dict[str, Any] = {"status": "unavailable", "checks": {**_OK["checks"], "broker": "cannot be reached"}}
 _PATIENCE_SECONDS = 3.0
+_LEAST_BYTES = 4_000_000  # some commits of the write-ahead log
 
 
 @router.get(
@@ -48,7 +51,7 @@ def check_live() -> JSONResponse:
     },
 )
 async def check_ready(request: Request, settings: SettingsOf) -> JSONResponse:
-    """Check that the database is reachable and migrated and the broker is reachable; answer 503 if not, within 3 s.
+    """Check database (reachable, migrated, with room on its disk) and broker; answer 503 if not ready, within 3 s.
 
     Without the broker the service still accepts work, and does it when the broker is back.
     """
@@ -100,7 +103,16 @@ def _database_checks(prober: Engine) -> dict[str, str]:
             newest = is_newest(connection)
     except SQLAlchemyError:
         return {"database": "cannot be reached", "migrations": "unknown"}
-    return {"database": "ok", "migrations": "ok" if newest else "not the newest"}
+    return {
+        "database": "ok" if _has_room(prober) else "its disk is full",
+        "migrations": "ok" if newest else "not the newest",
+    }
+
+
+def _has_room(prober: Engine) -> bool:
+    """Tell whether the disk of an embedded database has room to write; a server looks after its own."""
+    file = prober.url.database
+    return prober.dialect.name != "sqlite" or not file or shutil.disk_usage(Path(file).parent).free > _LEAST_BYTES
 
 
 def _broker_check(settings: Settings) -> dict[str, str]:

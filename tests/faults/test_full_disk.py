@@ -85,6 +85,9 @@ def test_a_full_disk_refuses_work_and_loses_none(small_disk: Path) -> None:
                     break
                 accepted.append(answer.headers["Location"])
             assert state(client, first) in ("running", "accepted", "successful")  # reads go on
+            assert client.get("/v1/jobs?limit=1").is_success  # the first list, whose cursor is signed
+            ready = client.get("/health/ready")
+            assert (ready.status_code, ready.json()["checks"]["database"]) == (503, "its disk is full")
             time.sleep(2.0 * settings.lease_seconds)  # the job's end cannot be stored, and its lease runs out
         freed = time.monotonic()
         accepted.append(client.post("/v1/jobs", json=short_request()).raise_for_status().headers["Location"])

@@ -1,10 +1,13 @@
 import asyncio
 import contextlib
+import shutil
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import httpx
+import pytest
 from fastapi import FastAPI
 from sqlalchemy import text
 from sqlalchemy.orm import Session, sessionmaker
@@ -60,3 +63,12 @@ def test_servers_that_never_answer_are_told_in_time(tmp_path: Path) -> None:
 async def ask(app: FastAPI, path: str) -> httpx.Response:
     async with httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://test") as client:
         return await client.get(path)
+
+
+def test_a_full_disk_is_not_ready(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with service.running(service.sqlite_settings(tmp_path)) as client:
+        assert client.get("/health/ready").json()["checks"]["database"] == "ok"
+        monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=4096))
+        answer = client.get("/health/ready")
+    assert answer.status_code == 503
+    assert answer.json()["checks"]["database"] == "its disk is full"
