@@ -1,9 +1,13 @@
 """A result: from the first click to the verdict, the chart, and the downloads."""
 
+import csv
+import json
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
+from xml.etree import ElementTree
 
-import httpx
+import openpyxl
 import pytest
 from playwright.sync_api import Page, expect
 
@@ -57,16 +61,39 @@ def test_the_chart_says_what_is_under_the_pointer(open_page: Open, finished_job:
     expect(page.locator(".reading")).to_contain_text("m/s")
 
 
-@pytest.mark.parametrize("form", ["CSV", "XLSX", "Parquet", "JSON"])
-def test_the_verdict_is_downloaded_in_every_form(open_page: Open, finished_job: str, form: str) -> None:
-    page = open_page(finished_job)
-    with page.expect_download() as waiting:
-        page.locator("a[href*='/results/verdict?']", has_text=form).click()
-    assert Path(waiting.value.path()).stat().st_size > 100
+def is_csv(content: bytes) -> bool:
+    head, *rows = csv.reader(content.decode("utf-8-sig").splitlines())
+    return len(head) > 1 and bool(rows)
 
 
-def test_pictures_are_downloaded(open_page: Open, finished_job: str, service: str) -> None:
+READS: dict[str, Callable[[bytes], object]] = {
+    "csv": is_csv,
+    "xlsx": lambda content: openpyxl.load_workbook(BytesIO(content)).active,
+    "parquet": lambda content: content[:4] == content[-4:] == b"PAR1",
+    "json": json.loads,
+    "svg": lambda content: ElementTree.fromstring(content).tag == "{http://www.w3.org/2000/svg}svg",
+    "png": lambda content: content.startswith(b"\x89PNG\r\n\x1a\n"),
+    "pdf": lambda content: content.startswith(b"%PDF-") and b"%%EOF" in content[-32:],
+}
+
+
+@pytest.mark.parametrize("form", READS)
+def test_every_download_is_a_file_of_its_kind(open_page: Open, finished_job: str, form: str) -> None:
     page = open_page(finished_job)
-    for address in page.locator("a[href*='/plots/']").evaluate_all("links => links.map(link => link.href)"):
-        assert httpx.get(address, timeout=60.0).status_code == 200
-        assert address.startswith(service)
+    links = page.locator(f"#downloads ~ * a[download$='.{form}']").all()
+    assert links
+    for link in links:
+        with page.expect_download(timeout=60_000) as waiting:
+            link.click()
+        assert waiting.value.suggested_filename.endswith(f".{form}")
+        assert READS[form](Path(waiting.value.path()).read_bytes()), link.get_attribute("href")
+
+
+def test_the_request_is_given_as_curl_and_as_python(open_page: Open, finished_job: str, service: str) -> None:
+    page = open_page(finished_job)
+    texts = page.locator("#downloads ~ details pre").all_text_contents()
+    curl, python, document = texts
+    assert curl.startswith(f"curl -X POST {service}/v1/jobs ")
+    assert json.loads(curl.partition("<<'END'\n")[2].removesuffix("\nEND")) == json.loads(document)
+    compile(python, "request.py", "exec")
+    assert json.loads(document)["line"]
