@@ -11,7 +11,7 @@ def test_the_report_of_a_job_is_a_page_and_a_file(shared_client: httpx.Client, k
     assert known_job in page.text
     pictures = [address for address in page.addresses if address.endswith("point=0")]
     assert len(pictures) == 2
-    for address in page.addresses:
+    for address in set(page.addresses) - {"data:,"}:  # no icon is asked for
         assert shared_client.get(address).status_code == 200, address
     answer = shared_client.get(f"/pages/jobs/{known_job}/report.pdf", timeout=60.0)
     assert answer.status_code == 200
