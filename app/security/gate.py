@@ -23,7 +23,7 @@ from app.security.tokens import IssuerUnavailable, NotAccepted, is_token, tokens
 
 _OPEN = ("/docs", "/health", "/openapi.json", "/pages/assets", "/pages/sign-in", "/problems")
 _PAGES = "/pages"
-_FORWARDED = (b"forwarded", b"x-forwarded-for")
+_FORWARDED = (b"forwarded", b"via", b"x-forwarded-for", b"x-forwarded-host", b"x-forwarded-proto", b"x-real-ip")
 _NEEDED = {"GET": Scope.READ, "POST": Scope.SUBMIT, "PUT": Scope.SUBMIT, "PATCH": Scope.SUBMIT, "DELETE": Scope.CANCEL}
 
 Headers = Mapping[bytes, bytes]
@@ -172,7 +172,8 @@ def _is_from_this_machine(scope: types.Scope, headers: Headers) -> bool:
     service through a name that resolves to this machine (DNS rebinding).
     """
     server, client = (str((scope.get(end) or ("",))[0]) for end in ("server", "client"))
-    forwarded = any(name in headers for name in _FORWARDED)
+    # Older nginx speaks HTTP/1.0 to what it forwards to, and adds no field, unless it is told to.
+    forwarded = scope.get("http_version") == "1.0" or any(name in headers for name in _FORWARDED)
     return is_loopback(server) and is_loopback(client) and is_loopback(_host(headers)) and not forwarded
 
 

@@ -1,6 +1,7 @@
 """Keys in use: who is let through to what, on SQLite with its folder and on PostgreSQL with Redis."""
 
 import asyncio
+import socket
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -289,6 +290,19 @@ def test_without_keys_only_this_machine_is_served(tmp_path: Path) -> None:
     assert status(host="[") == 401
     assert status(**{"X-Forwarded-For": "10.0.0.7"}) == 401
     assert status(Forwarded="for=10.0.0.7") == 401
+    for name in ("Via", "X-Forwarded-Host", "X-Forwarded-Proto", "X-Real-IP"):
+        assert status(**{name: "10.0.0.7"}) == 401, name
+
+
+def test_without_keys_a_proxy_that_speaks_http_1_0_is_not_this_machine(tmp_path: Path) -> None:
+    answers = []
+    with service.running(service.sqlite_settings(tmp_path)) as client:
+        for version in ("1.1", "1.0"):
+            with socket.create_connection((client.base_url.host, client.base_url.port or 80), timeout=20.0) as proxy:
+                head = f"GET /v1/jobs HTTP/{version}\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n"
+                proxy.sendall(head.encode())
+                answers.append(proxy.recv(12)[-3:])
+    assert answers == [b"200", b"401"]
 
 
 def test_security_headers_are_on_every_answer(tmp_path: Path) -> None:
