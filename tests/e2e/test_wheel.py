@@ -82,7 +82,7 @@ def _serving(command: list[str], folder: Path, port: int) -> Iterator[httpx.Clie
             arguments, cwd=folder, env=_environment(), stdout=log, stderr=log, start_new_session=True
         )
     try:
-        with httpx.Client(base_url=f"http://127.0.0.1:{port}") as client:
+        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0) as client:
             wait_until(lambda: process.poll() is not None or is_ready(client), 60.0, "readiness")
             assert process.poll() is None, (folder / "log").read_text()
             yield client
