@@ -91,17 +91,8 @@ def create_app(settings: Settings | None = None) -> Service:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         yield
-        for calls in (app.state.inbox, app.state.messages, app.state.statuses):  # in the order of their work
-            await calls.close()
-        await meter.close()
-        for watch in (app.state.job_watch, app.state.batch_watch):
-            await watch.close()
-        for workshop in (app.state.studio, app.state.printers):
-            workshop.close()
-        app.state.sender.close()
+        await _close(app)
         database.dispose()
-        app.state.prober.dispose()
-        telemetry.finish()
 
     app = Service(
         **about(settings),
@@ -131,6 +122,21 @@ def create_app(settings: Settings | None = None) -> Service:
         cors.install(app, settings.cors_origins)
     _add_addresses(app)
     return app
+
+
+async def _close(app: Service) -> None:
+    """End what the application holds: calls in the order of their work, watches, processes and connections."""
+    state = app.state
+    for calls in (state.inbox, state.messages, state.statuses):
+        await calls.close()
+    await state.meter.close()
+    for watch in (state.job_watch, state.batch_watch):
+        await watch.close()
+    for workshop in (state.studio, state.printers):
+        workshop.close()
+    state.sender.close()
+    state.prober.dispose()
+    telemetry.finish()
 
 
 def _add_addresses(app: Service) -> None:
