@@ -38,14 +38,14 @@ class CancelOutcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class JobFilters:
-    """Filters for a list of jobs; None or empty matches any job, and every tag must match.
+    """Filters for a list of jobs; None or empty matches any job. Every tag must match: one of None by its key alone.
 
     Chunks appear only in the list of their batch.
     """
 
     status: JobStatus | None = None
     asset_id: str | None = None
-    tags: Mapping[str, str] = field(default_factory=dict)
+    tags: Mapping[str, str | None] = field(default_factory=dict)
     batch_id: UUID | None = None
     created_after: datetime | None = None
     created_before: datetime | None = None
@@ -219,6 +219,6 @@ def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
     if filters.longest_seconds is not None:
         conditions.append(seconds <= filters.longest_seconds)
     for key, value in filters.tags.items():
-        tagged = select(JobTag.job_id).where(JobTag.key == key, JobTag.value == value)
-        conditions.append(Job.id.in_(tagged))
+        tagged = select(JobTag.job_id).where(JobTag.key == key)
+        conditions.append(Job.id.in_(tagged if value is None else tagged.where(JobTag.value == value)))
     return conditions

@@ -62,7 +62,7 @@ class ListQuery(BaseModel):
             400 if a tag is not key:value, or a key appears twice.
         """
         pairs = [text.partition(":") for text in self.tag]
-        tags = {key: value for key, _, value in pairs}
+        tags: dict[str, str | None] = {key: value for key, _, value in pairs}
         if len(tags) != len(pairs) or not all(key and colon and value for key, colon, value in pairs):
             raise query_fault("tag", "a tag is key:value, each key at most once")
         return JobFilters(self.status, self.asset_id, tags, self.batch_id, self.created_after, self.created_before)
