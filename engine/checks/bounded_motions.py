@@ -35,7 +35,7 @@ def bounded_motions(
         Starts of cycles, approximate, from the motions that did not diverge, and the places where every start diverged.
     """
     speed = of_each_member(model, wind_speeds)[member, wind]
-    state = spread_starts(model, member, speed, LEVELS, np.random.default_rng(SEED))
+    state = spread_starts(model, member, speed, LEVELS, np.random.default_rng(SEED), alike=True)
     place = np.repeat(np.arange(member.size), state.shape[1])
     state = state.reshape(place.size, -1)
     diverged, at_rest = _ends(model, member[place], speed[place], state, place)

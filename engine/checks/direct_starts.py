@@ -36,6 +36,8 @@ def spread_starts(
     wind_speed: FloatArray,
     levels: tuple[float, ...],
     generator: np.random.Generator,
+    *,
+    alike: bool = False,
 ) -> FloatArray:
     """Draw random starts of several sizes, directions and phases.
 
@@ -48,6 +50,8 @@ def spread_starts(
         Sizes: rad of torsion, or of the change of wind direction by vertical motion.
     generator : numpy.random.Generator
         Source of the phases and of the division of mixed starts between the coordinates.
+    alike : bool
+        Draw once for all cases, so that the starts of a case do not depend on which others are beside it.
 
     Returns
     -------
@@ -57,8 +61,8 @@ def spread_starts(
     m = model.mass.shape[-1]
     largest, rate = _largest_amplitudes(model, member, wind_speed)
     shares = np.tile(np.concatenate([np.eye(m), np.zeros((1, m))]), (len(levels), 1))
-    shares = np.tile(shares, (member.size, 1, 1))
-    shares[:, m :: m + 1] = np.sqrt(generator.dirichlet(np.ones(m), (member.size, len(levels))))
+    shares = np.tile(shares, (1 if alike else member.size, 1, 1))
+    shares[:, m :: m + 1] = np.sqrt(generator.dirichlet(np.ones(m), (shares.shape[0], len(levels))))
     phase = generator.uniform(0.0, 2.0 * np.pi, shares.shape)
     # Give every coordinate at least a thousandth, so that no start lies in an invariant subspace.
     amplitude = np.repeat(levels, m + 1)[:, None] * np.maximum(shares, 1e-3) * largest[:, None]
@@ -101,7 +105,7 @@ def direct_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
     count = winds.shape[-1]
     chosen = np.unique(np.linspace(0, count - 1, WINDS).round().astype(np.intp))[:count]
     member, wind = np.repeat(usable, chosen.size), np.tile(chosen, usable.size)
-    state = spread_starts(model, member, winds[member, wind], LEVELS, np.random.default_rng(0))
+    state = spread_starts(model, member, winds[member, wind], LEVELS, np.random.default_rng(0), alike=True)
     per_case = state.shape[1]
     member, wind, state = np.repeat(member, per_case), np.repeat(wind, per_case), state.reshape(-1, state.shape[-1])
     index, orbits = settled_cycles(model, member, winds[member, wind], state, harmonics)
