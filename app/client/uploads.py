@@ -80,12 +80,14 @@ def opened(lines: Lines, analysis: Mapping[str, Any], defaults: Mapping[str, Any
 
 
 def _of_cells(frame: Any) -> Any:
-    """Return a frame whose lists and objects, such as devices, are JSON as cells hold it."""
-    return frame.apply(lambda column: column.map(lambda cell: json.dumps(cell) if _is_nested(cell) else cell))
+    """Return a frame whose lists, arrays and objects, such as devices, are JSON as cells hold it."""
+    return frame.apply(lambda column: column.map(_cell))
 
 
-def _is_nested(cell: object) -> bool:
-    return isinstance(cell, (list, dict))
+def _cell(cell: Any) -> Any:
+    if isinstance(cell, (list, tuple, dict)) or getattr(cell, "ndim", False):
+        return json.dumps(cell, default=lambda array: array.tolist())  # Parquet's lists are read as arrays
+    return cell
 
 
 def frame(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":

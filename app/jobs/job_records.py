@@ -13,6 +13,7 @@ from sqlalchemy import ColumnElement, Select, delete, extract, func, select, tup
 from sqlalchemy.orm import Session, defer, sessionmaker
 from uuid_utils.compat import uuid7
 
+from app.reference.text_forms import written_forms
 from app.runtime import correlation
 from app.runtime.correlation import Ids
 from app.security import audit
@@ -204,9 +205,11 @@ def _of(owner: str, job_id: UUID) -> Select[Job]:
 
 
 def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
-    equal = {Job.status: filters.status, Job.asset_id: filters.asset_id}
     conditions = [Job.batch_id.is_(None) if filters.batch_id is None else Job.batch_id == filters.batch_id]
-    conditions += [column == value for column, value in equal.items() if value is not None]
+    if filters.status is not None:
+        conditions.append(Job.status == filters.status)
+    if filters.asset_id is not None:
+        conditions.append(Job.asset_id.in_(written_forms(filters.asset_id)))
     if filters.created_after is not None:
         conditions.append(Job.created_at > filters.created_after)
     if filters.created_before is not None:
@@ -219,6 +222,8 @@ def _conditions(filters: JobFilters) -> list[ColumnElement[bool]]:
     if filters.longest_seconds is not None:
         conditions.append(seconds <= filters.longest_seconds)
     for key, value in filters.tags.items():
-        tagged = select(JobTag.job_id).where(JobTag.key == key)
-        conditions.append(Job.id.in_(tagged if value is None else tagged.where(JobTag.value == value)))
+        tagged = select(JobTag.job_id).where(JobTag.key.in_(written_forms(key)))
+        if value is not None:
+            tagged = tagged.where(JobTag.value.in_(written_forms(value)))
+        conditions.append(Job.id.in_(tagged))
     return conditions

@@ -11,6 +11,7 @@ from uuid_utils.compat import uuid7
 
 from app.convert import OwnRows
 from app.reference.catalogue_row import CatalogueRow, name_key
+from app.reference.text_forms import written_forms
 from app.storage.database import database_time
 from app.tables import OwnAerodynamics, OwnConductor
 
@@ -50,7 +51,8 @@ def put_aerodynamics(session: Session, owner: str, name: str, document: Mapping[
 
 def _put(session: Session, table: type[Kept], owner: str, contents: Mapping[str, Mapping[str, Any]]) -> list[Kept]:
     keys = [name_key(name) for name in contents]
-    session.execute(delete(table).where(table.owner == owner, table.key.in_(keys)))
+    stored = frozenset().union(*map(written_forms, keys))
+    session.execute(delete(table).where(table.owner == owner, table.key.in_(stored)))
     kept = session.scalar(select(func.count(table.id)).where(table.owner == owner)) or 0
     if kept + len(keys) > MOST_KEPT:
         raise TooMany(f"an owner keeps at most {MOST_KEPT} of them, and has {kept} beside these")

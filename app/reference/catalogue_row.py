@@ -3,12 +3,14 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from app.reference.text_forms import folded
+
 _WIRES = frozenset({"aluminium_wires", "steel_wires"})
 
 
 def name_key(name: str) -> str:
-    """Return a name without case and extra spaces, as conductors are compared by it."""
-    return " ".join(name.casefold().split())
+    """Return a name in one form, without case and extra spaces, as conductors are compared by it."""
+    return " ".join(folded(name).split())
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from importlib.resources import files
 
 import app
 from app.reference.catalogue_row import CatalogueRow, name_key
+from app.reference.text_forms import folded
 
 # Field -> published column and factor to SI.
 _NUMBERS: Mapping[str, tuple[str, float]] = {
@@ -28,7 +29,7 @@ def search(text: str, own: Sequence[CatalogueRow] = ()) -> list[CatalogueRow]:
 
     An owner's own rows come first, and hide the shipped ones of the same name or designation.
     """
-    words = text.casefold().split()
+    words = folded(text).split()
     return [row for row in _with_own(own) if all(word in _searched(row) for word in words)]
 
 
@@ -78,7 +79,7 @@ def _with_own(own: Sequence[CatalogueRow]) -> Iterator[CatalogueRow]:
 
 
 def _searched(row: CatalogueRow) -> str:
-    return "\n".join((row.name, row.designation, row.type, row.stranding or "")).casefold()
+    return folded("\n".join((row.name, row.designation, row.type, row.stranding or "")))
 
 
 @cache

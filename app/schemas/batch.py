@@ -6,14 +6,14 @@ from pydantic import Field
 
 from app.reference.source_lines import example
 from app.schemas.analysis import Analysis
-from app.schemas.fields import Document, Label
+from app.schemas.fields import Document, Reference
 from app.schemas.line import Line
 
 
 class BatchLine(Line):
     """A line of a batch: the fields of a line, and the caller's own reference beside them."""
 
-    reference: Label | None = Field(
+    reference: Reference | None = Field(
         default=None, description="The caller's reference, given back with the results", examples=["row-17"]
     )
 

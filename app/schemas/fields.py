@@ -3,8 +3,9 @@
 from functools import cache
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
+from app.reference.text_forms import composed
 from app.schemas.units import any_unit, in_unit
 
 LENGTH_LIMIT_M = 5000.0
@@ -18,8 +19,10 @@ _NULL = "\0null"
 # Names contain no control characters, and PostgreSQL cannot store NUL.
 _PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 
-Label = Annotated[str, Field(min_length=1, max_length=200, pattern=_PRINTABLE)]
-TagKey = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f:]*$")]
+# A caller matches rows by it, so it is given back character by character.
+Reference = Annotated[str, Field(min_length=1, max_length=200, pattern=_PRINTABLE)]
+Label = Annotated[Reference, AfterValidator(composed)]
+TagKey = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f:]*$"), AfterValidator(composed)]
 
 
 class Document(BaseModel):

@@ -23,14 +23,14 @@ from app.exchange.defaults import checked_defaults, filled
 from app.owned import records
 from app.runtime.settings import Settings
 from app.schemas.faults import MOST_FAULTS, BadInput, Fault, json_pointer
-from app.schemas.fields import Label
+from app.schemas.fields import Reference
 from app.security.caller import Caller
 from app.sheets.columns import Computed, PlacedLine
 
 _LINES_A_BLOCK = 500
 _FAULTS_A_LINE = 20
 _FAULTS_SHOWN = 100
-_LABEL: TypeAdapter[str] = TypeAdapter(Label)
+_REFERENCE: TypeAdapter[str] = TypeAdapter(Reference)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +223,7 @@ def _split(document: object) -> tuple[str | None, object]:
         fields = {k: v for k, v in document.items() if k != "reference"} if isinstance(document, dict) else document
         return None, fields
     try:
-        reference = _LABEL.validate_python(document["reference"], strict=True)
+        reference = _REFERENCE.validate_python(document["reference"], strict=True)
     except ValidationError as error:
         detail = "must be a text of 1 to 200 characters without control characters"
         raise BadInput([Fault("/reference", "label", detail)]) from error

@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 from urllib.parse import urlencode
 
+from app.reference.text_forms import composed, folded
+
 Feature = Mapping[str, Any]
 ANSWERS = ("yes", "no", "undecided")
 _MOST_TAGS = 100  # that are offered; any other can be typed
@@ -32,8 +34,8 @@ class Wanted:
         """Tell whether a line is wanted."""
         line = feature["properties"]
         texts = (line["name"], line["reference"], line["asset_id"], line["number"])
-        named = any(self.name.casefold() in str(text).casefold() for text in texts if text is not None)
-        tagged = any(self.tag in {key, f"{key}:{value}"} for key, value in feature["tags"].items())
+        named = any(folded(self.name) in folded(str(text)) for text in texts if text is not None)
+        tagged = any(composed(self.tag) in {key, f"{key}:{value}"} for key, value in feature["tags"].items())
         return (
             (not self.gallops or line["gallops"] == self.gallops)
             and (not self.name or named)

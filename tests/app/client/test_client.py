@@ -113,7 +113,9 @@ def test_lines_are_sent_from_an_iterable_a_frame_or_a_file(client: Client, tmp_p
 
 
 def test_a_frame_may_have_booleans_lists_gaps_and_an_index(client: Client) -> None:
-    first, second, third = lines(3)  # only one of them has devices
+    first, second, third = lines(3)  # only one of them has devices, only two a bundle
+    first["wind"]["profile"] = [{"position_m": 0.0, "factor": 0.9}]
+    third = {**{name: part for name, part in example("c11-single").items() if name != "bundle"}, "reference": "c"}
     first["supports"] = {"left": {"dead_end": True}, "right": {"dead_end": False}}
     second["devices"] = [{"type": "detuning_pendulum", "position_m": 40.0, "mass_kg": 12.0, "arm_m": 0.3}]
     frame = pd.json_normalize([first, second, third])

@@ -1,8 +1,11 @@
+import csv
 import gzip
+import io
 import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -35,6 +38,17 @@ def test_a_data_frame_becomes_csv_with_its_analysis_in_the_address() -> None:
     assert body == b"reference,span.length_m\na,90.0\n"
     assert upload.headers == {"Content-Type": "text/csv"}
     assert upload.query(atomic=False) == "analysis=%7B%22loops%22%3A+%5B1%5D%7D"
+
+
+def test_arrays_in_cells_are_sent_as_lists() -> None:
+    device = {"type": "spacer", "position_m": np.float64(25.0)}
+    nested = {"devices": np.array([device]), "ice.aerodynamics.vertical": np.array([1.0, -2.0]), "bundle.x": (1, 2)}
+    body, _ = sent(pd.DataFrame([{"reference": "a", **nested}, {"reference": "b"}]), ANALYSIS)
+    first, second = csv.DictReader(io.StringIO(body.decode()))
+    assert json.loads(first["devices"]) == [device]
+    assert json.loads(first["ice.aerodynamics.vertical"]) == [1.0, -2.0]
+    assert json.loads(first["bundle.x"]) == [1, 2]
+    assert list(second.values()) == ["b", "", "", ""]
 
 
 @pytest.mark.parametrize(

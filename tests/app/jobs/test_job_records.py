@@ -106,6 +106,19 @@ def test_filters(sessions: sessionmaker[Session]) -> None:
     assert found(JobFilters(created_before=south.created_at)) == [north.id]
 
 
+@pytest.mark.parametrize("asked", ["Br\u00e5", "Bra\u030a"])
+@pytest.mark.parametrize("stored", ["Br\u00e5", "Bra\u030a"])
+def test_labels_that_earlier_versions_stored_are_found_in_either_form(
+    sessions: sessionmaker[Session], stored: str, asked: str
+) -> None:
+    with sessions.begin() as session:
+        job_id = create_job(session, LOCAL, DOCUMENT, asset_id=stored, tags={stored: stored}).id
+        create_job(session, LOCAL, DOCUMENT, asset_id="Bra", tags={"Bra": "Bra"})
+    with sessions() as session:
+        for filters in (JobFilters(asset_id=asked), JobFilters(tags={asked: asked})):
+            assert ids(job_records.page(session, LOCAL.owner, filters, None, 10)) == [job_id]
+
+
 def test_cancel_ends_a_queued_job_at_once(sessions: sessionmaker[Session]) -> None:
     job_id = add_job(sessions)
     assert cancel(sessions, job_id) is CancelOutcome.DISMISSED

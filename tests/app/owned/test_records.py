@@ -1,5 +1,6 @@
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import asdict, replace
+from datetime import UTC, datetime
 from uuid import uuid4
 
 import pytest
@@ -13,6 +14,7 @@ from app.storage.migration import migrate
 from app.tables import OwnAerodynamics, OwnConductor
 
 (DRAKE,) = named("795 kcmil 26/7")
+NOW = datetime(2026, 11, 1, tzinfo=UTC)
 
 
 @pytest.fixture
@@ -44,6 +46,18 @@ def test_a_row_takes_the_place_of_the_one_with_its_name(sessions: sessionmaker[S
         records.put_aerodynamics(session, "me", "D", {"a": 1})
         records.put_aerodynamics(session, "me", "d", {"a": 2})
         assert [row.document for row in records.kept(session, OwnAerodynamics, "me")] == [{"a": 2}]
+
+
+def test_a_name_is_the_same_in_either_form_of_its_accents(sessions: sessionmaker[Session]) -> None:
+    with sessions.begin() as session:
+        session.add(
+            OwnConductor(
+                id=uuid4(), created_at=NOW, owner="me", key="a\u030ase", name="A\u030ase", figures=asdict(DRAKE)
+            )
+        )  # as an earlier version stored it
+        records.put_conductors(session, "me", [replace(DRAKE, name="\u00c5se", mass_kg_per_m=1.7)])
+        records.put_conductors(session, "me", [replace(DRAKE, name="A\u030ase", mass_kg_per_m=1.8)])
+        assert [row.mass_kg_per_m for row in records.conductor_rows(session, "me")] == [1.8]
 
 
 def test_an_owner_keeps_a_limited_number(sessions: sessionmaker[Session], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 
 from app.answers.reference import ConductorRow
@@ -55,6 +57,13 @@ def test_all_words_are_sought_in_any_case(text: str, designations: list[str]) ->
 )
 def test_a_conductor_is_found_by_its_designation_or_by_its_whole_name(name: str, designations: list[str]) -> None:
     assert [row.designation for row in conductors.named(name)] == designations
+
+
+def test_accents_may_be_written_in_either_form() -> None:
+    (drake,) = conductors.named("drake")
+    own = [replace(drake, name="A\u030ase", designation="ours")]
+    assert conductors.search("\u00e5SE", own) == conductors.search("a\u030ase", own) == own
+    assert conductors.named("\u00c5se", conductors.NamedRows.of(own)) == own
 
 
 def test_no_two_rows_are_the_same_conductor() -> None:

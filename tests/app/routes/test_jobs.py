@@ -103,6 +103,15 @@ def test_a_tag_may_hold_colons_in_its_value(client: httpx.Client) -> None:
     assert [item["id"] for item in found] == [job["id"]]
 
 
+def test_accents_are_found_in_either_form(client: httpx.Client) -> None:
+    composed, decomposed = "Br\u00e5l\u00f8s", "Bra\u030al\u00f8s"
+    job = service.submit(client, labelled(asset_id=decomposed, tags={"site": decomposed}))
+    assert (job["asset_id"], job["tags"]) == (composed, {"site": composed})
+    for text in (composed, decomposed):
+        for query in ({"asset_id": text}, {"tag": f"site:{text}"}):
+            assert [item["id"] for item in client.get("/v1/jobs", params=query).json()["jobs"]] == [job["id"]]
+
+
 def test_jobs_are_found_by_asset_status_and_time(
     client: httpx.Client, settings: Settings, sessions: sessionmaker[Session]
 ) -> None:

@@ -55,6 +55,17 @@ def test_lines_keep_numbers_references_and_defaults(sessions: sessionmaker[Sessi
     assert batch is not None and batch.analysis["closure"] == "exact"
 
 
+def test_labels_are_kept_in_one_form_and_references_as_they_are(
+    sessions: sessionmaker[Session], settings: Settings
+) -> None:
+    decomposed = "Bra\u030al\u00f8s"
+    line = {**TWIN, "reference": decomposed, "asset_id": decomposed, "tags": {decomposed: decomposed}}
+    (item,) = items(sessions, take(sessions, settings, [line]))
+    composed = "Br\u00e5l\u00f8s"
+    assert (item.reference, item.asset_id) == (decomposed, composed)
+    assert item.document is not None and item.document["tags"] == {composed: composed}
+
+
 def test_valid_lines_are_cut_into_chunks_and_others_keep_their_faults(
     sessions: sessionmaker[Session], settings: Settings
 ) -> None:

@@ -49,6 +49,13 @@ def test_lines_are_wanted_by_a_tag_or_by_its_key() -> None:
     assert overview(FEATURES, Wanted(tag="region:nor")).numbers == set()
 
 
+def test_accents_of_what_is_wanted_may_be_written_in_either_form() -> None:
+    lines = [feature(1, reference="Bra\u030al\u00f8s", tags={"\u00f8y": "Sj\u00e6lland \u00e5"}), feature(2)]
+    assert overview(lines, Wanted(name="br\u00e5L")).numbers == {1}
+    assert overview(lines, Wanted(tag="\u00f8y:Sj\u00e6lland a\u030a")).numbers == {1}
+    assert overview(lines, Wanted(name="bral")).numbers == set()
+
+
 def test_what_is_wanted_stays_in_the_address() -> None:
     assert Wanted().query == ""
     assert Wanted("yes", "a&b", "region:north").query == "gallops=yes&name=a%26b&tag=region%3Anorth"
