@@ -5,7 +5,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from app.runtime.processes import environment
@@ -16,12 +16,12 @@ Process = subprocess.Popen[bytes]
 
 
 @contextlib.contextmanager
-def running(settings: Settings, *arguments: str) -> Iterator[Process]:
-    """Run Python with these arguments and settings; at the end every process of its group is killed."""
+def running(settings: Settings, *arguments: str, extra: Mapping[str, str] | None = None) -> Iterator[Process]:
+    """Run Python with these arguments, settings and variables; at the end every process of its group is killed."""
     with (settings.data_dir / "process.log").open("ab") as log:
         process = subprocess.Popen(
             [sys.executable, *arguments],
-            env=environment(settings),
+            env={**environment(settings), **(extra or {})},
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,
@@ -34,9 +34,9 @@ def running(settings: Settings, *arguments: str) -> Iterator[Process]:
 
 
 @contextlib.contextmanager
-def running_worker(settings: Settings) -> Iterator[Process]:
+def running_worker(settings: Settings, extra: Mapping[str, str] | None = None) -> Iterator[Process]:
     """Run a worker whose pool is up, so that it has children of children."""
-    with running(settings, "-m", "worker") as process:
+    with running(settings, "-m", "worker", extra=extra) as process:
         wait_until(lambda: len(pool_children(process)) == settings.worker_processes, what="the pool")
         yield process
 

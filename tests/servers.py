@@ -8,7 +8,7 @@ import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from signal import Signals
 from uuid import uuid4
@@ -78,12 +78,14 @@ def postgres_directory() -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def postgres_running(directory: Path, port: int, ending: Signals = Signals.SIGINT) -> Iterator[str]:
+def postgres_running(
+    directory: Path, port: int, ending: Signals = Signals.SIGINT, extra: Mapping[str, str] | None = None
+) -> Iterator[str]:
     """Run a PostgreSQL on its files, and end it by a signal: SIGINT closes its connections, SIGQUIT is a crash."""
     quick = ["-c", "fsync=off", "-c", "full_page_writes=off", "-c", "unix_socket_directories="]
     where = ["-D", str(directory / "data"), "-p", str(port), "-c", "listen_addresses=127.0.0.1"]
     address = f"postgresql://galloping@127.0.0.1:{port}/postgres"
-    with _process([binary("postgres"), *where, *quick], directory, ending) as alive:
+    with _process([binary("postgres"), *where, *quick], directory, ending, extra) as alive:
         wait_until(lambda: alive() and _answers(lambda: _connect(address), psycopg.Error), what="PostgreSQL")
         yield address
 
@@ -134,11 +136,18 @@ def _directory() -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def _process(command: Sequence[str], directory: Path, ending: Signals = Signals.SIGINT) -> Iterator[Callable[[], bool]]:
+def _process(
+    command: Sequence[str],
+    directory: Path,
+    ending: Signals = Signals.SIGINT,
+    extra: Mapping[str, str] | None = None,
+) -> Iterator[Callable[[], bool]]:
     """Run a server with its output in a file, give a check that it still runs, and end it by its own id."""
     log = directory / "log"
     with log.open("ab") as output:
-        process = subprocess.Popen(command, stdout=output, stderr=output, cwd=directory, **_account())  # type: ignore[call-overload]
+        process = subprocess.Popen(  # type: ignore[call-overload]
+            command, stdout=output, stderr=output, cwd=directory, env={**os.environ, **(extra or {})}, **_account()
+        )
 
     def alive() -> bool:
         if process.poll() is not None:

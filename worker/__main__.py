@@ -18,7 +18,7 @@ from app.storage.database import make_engine, session_factory
 from worker.courier import courier
 from worker.health import show_life
 from worker.presence import presence
-from worker.sweep import release, sweep
+from worker.sweep import ClockKeeper, release, sweep
 from worker.tasks import OWNER
 
 _POLL_SECONDS = 0.2
@@ -45,17 +45,18 @@ def _supervise(sessions: sessionmaker[Session], settings: Settings, owner: str) 
         presence(sessions, settings, owner) as show_presence,
         courier(sessions, settings),
     ):
+        clock = ClockKeeper(sessions, settings)
         pool = _start_pool(settings, owner)
         while not wait(settings.sweep_seconds):
             if pool.poll() is not None:
                 _logger.warning("the pool exited with code %s; starting it again", pool.returncode)
-                _repair(sessions, settings, owner)
+                _give_back(sessions, settings, owner)
                 pool = _start_pool(settings, owner)
-            _repair(sessions, settings)
+            _repair(sessions, settings, clock)
             show_presence()
         _drain(sessions, settings, owner, pool)
-        _repair(sessions, settings, owner)
-        _repair(sessions, settings)  # sends the released jobs now, before another worker's sweep finds them
+        _give_back(sessions, settings, owner)
+        _repair(sessions, settings, clock)  # sends the released jobs now, before another worker's sweep finds them
 
 
 def _drain(sessions: sessionmaker[Session], settings: Settings, owner: str, pool: processes.Child) -> None:
@@ -83,13 +84,18 @@ def _start_pool(settings: Settings, owner: str) -> processes.Child:
     return processes.start(settings, f"{__package__}.tasks", extra={OWNER: owner})
 
 
-def _repair(sessions: sessionmaker[Session], settings: Settings, owner: str | None = None) -> None:
+def _repair(sessions: sessionmaker[Session], settings: Settings, clock: ClockKeeper) -> None:
     try:
-        if owner is None:
-            sweep(sessions, settings)
-            show_life(settings)
-        else:
-            release(sessions, settings, owner)
+        clock.look()
+        sweep(sessions, settings)
+        show_life(settings)
+    except SQLAlchemyError as error:
+        _logger.warning("the database failed; the next sweep tries again: %s", error)
+
+
+def _give_back(sessions: sessionmaker[Session], settings: Settings, owner: str) -> None:
+    try:
+        release(sessions, settings, owner)
     except SQLAlchemyError as error:
         _logger.warning("the database failed; the next sweep tries again: %s", error)
 

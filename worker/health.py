@@ -26,7 +26,7 @@ def show_life(settings: Settings) -> None:
 def is_alive(settings: Settings, now: float) -> bool:
     """Tell whether the worker of this data directory swept recently; `now` is in seconds since the epoch."""
     patience = max(_LEAST_SECONDS, _SWEEPS * settings.sweep_seconds)
-    return _file(settings).exists() and now - _file(settings).stat().st_mtime < patience
+    return _file(settings).exists() and abs(now - _file(settings).stat().st_mtime) < patience
 
 
 def _file(settings: Settings) -> Path:

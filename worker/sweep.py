@@ -12,9 +12,35 @@ from app.batches import batch_records
 from app.jobs import idempotency, leases
 from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.runtime.settings import Settings
-from app.storage import counters
+from app.storage import counters, steady_clock
 
 _logger = logging.getLogger(__name__)
+
+
+class ClockKeeper:
+    """Moves the steady clock on before every sweep of a process, and says when the database's clock was set."""
+
+    def __init__(self, sessions: sessionmaker[Session], settings: Settings) -> None:
+        """Take what a look needs."""
+        self._sessions, self._settings = sessions, settings
+        self._since: float | None = None
+
+    def look(self) -> None:
+        """Move the clock on.
+
+        Raises
+        ------
+        sqlalchemy.exc.SQLAlchemyError
+            If the database fails.
+        """
+        with self._sessions.begin() as session:
+            step = steady_clock.move_on(session, self._since)
+            if step is None:
+                return
+            if step.is_known:
+                _logger.warning("the database's clock was set by %.0f s; leases go on", -step.by.total_seconds())
+                leases.shorten(session, self._settings.lease_seconds)
+        self._since = step.noted_at
 
 
 def sweep(sessions: sessionmaker[Session], settings: Settings) -> int:

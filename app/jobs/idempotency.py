@@ -16,7 +16,7 @@ from sqlalchemy import ColumnElement, and_, delete, or_, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
-from app.storage.database import database_time
+from app.storage.steady_clock import steady_time
 from app.tables import IdempotencyKey
 
 KEPT = timedelta(hours=24)
@@ -97,7 +97,7 @@ def renew(session: Session, key: Key, lease: timedelta) -> None:
     KeyTaken
         If another request has taken the key.
     """
-    _change(session, key, {"expires_at": database_time(session) + lease})
+    _change(session, key, {"expires_at": steady_time(session) + lease})
 
 
 def finish(session: Session, key: Key, request: str, answer: Answer) -> None:
@@ -108,7 +108,7 @@ def finish(session: Session, key: Key, request: str, answer: Answer) -> None:
     KeyTaken
         If another request has taken the key.
     """
-    end = database_time(session) + KEPT
+    end = steady_time(session) + KEPT
     _change(session, key, {"expires_at": end, "fingerprint": request, **_columns(answer)})
 
 
@@ -128,14 +128,14 @@ def find(session: Session, key: Key) -> tuple[str, Answer] | None:
 
 def forget_expired(session: Session) -> None:
     """Delete expired keys; keep a key without an answer longer, for a sender that is only slow."""
-    now = database_time(session)
+    now = steady_time(session)
     over = and_(IdempotencyKey.expires_at <= now, IdempotencyKey.status.is_not(None))
     session.execute(delete(IdempotencyKey).where(or_(over, IdempotencyKey.expires_at <= now - KEPT)))
 
 
 def _take(session: Session, lifetime: timedelta, wanted: Sequence[tuple[Key, Mapping[str, object]]]) -> set[UUID]:
     """Insert keys, or take over expired ones, in one statement; return the holders of the keys taken."""
-    now = database_time(session)
+    now = steady_time(session)
     rows = [
         {"owner": key.owner, "key": key.value, "holder": key.holder, "expires_at": now + lifetime, **values}
         for key, values in wanted

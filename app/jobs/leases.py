@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from uuid import UUID
 
 from sqlalchemy import ColumnElement, CursorResult, and_, false, func, or_, select, update
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from app.jobs.job_records import record
 from app.runtime.correlation import Ids
@@ -22,6 +22,7 @@ from app.runtime.settings import Settings
 from app.storage import counters, stored_results
 from app.storage.counters import CounterName
 from app.storage.database import database_moment, database_time
+from app.storage.steady_clock import steady_time
 from app.tables import FailureKind, Job, JobEventKind, JobStatus
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class Failure:
 
 def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> Claim | None:
     """Claim an accepted job by compare-and-set; None if it is running, ended or gone, as after a repeated message."""
-    now = database_time(session)
+    steady, now = steady_time(session), database_time(session)
     statement = (
         update(Job)
         .where(Job.id == job_id, Job.status == JobStatus.ACCEPTED)
@@ -72,7 +73,8 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
             progress=0.0,
             step="",
             lease_owner=owner,
-            lease_expires_at=now + timedelta(seconds=lease_seconds),
+            lease_expires_at=steady + timedelta(seconds=lease_seconds),
+            claimed_at=steady,
             dispatched_at=func.coalesce(Job.dispatched_at, now),
         )
         .returning(Job.attempt, Job.document, Job.batch_id, Job.owner, Job.request_id, Job.trace_parent)
@@ -83,12 +85,12 @@ def claim(session: Session, job_id: UUID, owner: str, lease_seconds: float) -> C
         return None
     record(session, job_id, JobEventKind.RUNNING, attempt=taken.attempt, detail=owner)
     ids = Ids(taken.request_id, taken.trace_parent, str(job_id), taken.attempt)
-    return Claim(job_id, taken.attempt, taken.document, taken.batch_id, ids, now, taken.owner)
+    return Claim(job_id, taken.attempt, taken.document, taken.batch_id, ids, steady, taken.owner)
 
 
 def heartbeat(session: Session, held: Claim, lease_seconds: float, progress: float, step: str) -> Beat:
     """Renew the lease, store the progress, and tell whether to go on."""
-    end = database_time(session) + timedelta(seconds=lease_seconds)
+    end = steady_time(session) + timedelta(seconds=lease_seconds)
     statement = (
         update(Job)
         .where(*_guard(held))
@@ -125,15 +127,24 @@ def release_expired(session: Session, settings: Settings, owner: str | None = No
     A released job returns to the queue until its attempts are used up; then it fails because its workers were lost. A
     job with a requested cancel is dismissed, and one that exceeded the hard time limit fails for that reason.
     """
-    now = database_time(session)
-    lost = Job.lease_owner == owner if owner else Job.lease_expires_at <= now
+    lost = Job.lease_owner == owner if owner else Job.lease_expires_at <= steady_time(session)
     statement = select(Job).where(Job.status == JobStatus.RUNNING, lost).limit(_JOBS_A_SWEEP)
     released = list(session.scalars(statement.with_for_update(skip_locked=True, of=Job)))
     for job in released:
-        _release(session, job, settings, now)
+        _release(session, job, settings)
     if released:
         counters.add(session, CounterName.LEASES, "returned" if owner else "expired", count=len(released))
     return len(released)
+
+
+def shorten(session: Session, lease_seconds: float) -> None:
+    """End each lease in `lease_seconds` at the latest, since some were given by a clock that was ahead for a moment.
+
+    A worker that lives renews its lease with its next heartbeat.
+    """
+    end = steady_time(session) + timedelta(seconds=lease_seconds)
+    statement = update(Job).where(Job.status == JobStatus.RUNNING, Job.lease_expires_at > end)
+    session.execute(statement.values(lease_expires_at=end).execution_options(synchronize_session=False))
 
 
 def holds_jobs(session: Session, owner: str) -> bool:
@@ -153,9 +164,9 @@ def take_undispatched(
     now = database_time(session)
     never_sent = and_(
         Job.dispatched_at.is_(None),
-        or_(Job.attempt > 0, Job.created_at <= now - timedelta(seconds=settings.sweep_seconds)),
+        or_(Job.attempt > 0, _is_far(Job.created_at, now, settings.sweep_seconds)),
     )
-    overdue = Job.dispatched_at <= now - timedelta(seconds=settings.redispatch_seconds)
+    overdue = _is_far(Job.dispatched_at, now, settings.redispatch_seconds)
     wanted = or_(never_sent, overdue if queue_is_empty else false())
     of_batch = Job.batch_id.is_not(None) if chunks else Job.batch_id.is_(None)
     statement = select(Job.id).where(Job.status == JobStatus.ACCEPTED, of_batch, wanted)
@@ -180,6 +191,12 @@ def _set_dispatched(
 ) -> None:
     statement = update(Job).where(Job.id.in_(job_ids), Job.status == JobStatus.ACCEPTED).values(dispatched_at=moment)
     session.execute(statement.execution_options(synchronize_session=False))
+
+
+def _is_far(moment: InstrumentedAttribute[Any], now: datetime, seconds: float) -> ColumnElement[bool]:
+    """Tell whether a moment is long past, or so far ahead that the clock was set back since."""
+    length = timedelta(seconds=seconds)
+    return or_(moment <= now - length, moment >= now + length)
 
 
 def time_limit_sentence(settings: Settings) -> str:
@@ -209,7 +226,7 @@ def _end(
             point.failure is None for point in points
         )  # null unless it is a chunk
         changes["reused_lines"] = sum(point.reused for point in points) if held.batch_id is not None else None
-    now = database_time(session)
+    steady, now = steady_time(session), database_time(session)
     over = {"finished_at": now, "lease_owner": None, "lease_expires_at": None, "step": ""}
     statement = update(Job).where(*_guard(held)).values(**over, **changes)
     ended = session.execute(statement.execution_options(synchronize_session=False))
@@ -217,25 +234,25 @@ def _end(
         return False
     stored_results.store(session, held.job_id, points, held.batch_id)
     record(session, held.job_id, JobEventKind(changes["status"].value), attempt=held.attempt, detail=detail)
-    _count_end(session, held, changes, now)
+    _count_end(session, held, changes, steady)
     return True
 
 
 def _count_end(session: Session, held: Claim, changes: dict[str, Any], now: datetime) -> None:
-    seconds = (now - (held.claimed_at or now)).total_seconds()
+    seconds = max(0.0, (now - (held.claimed_at or now)).total_seconds())
     chunk = held.batch_id is not None
     counters.add_end(session, changes["status"], changes.get("failure_kind"), chunk=chunk, seconds=seconds)
 
 
-def _release(session: Session, job: Job, settings: Settings, now: datetime) -> None:
+def _release(session: Session, job: Job, settings: Settings) -> None:
     """Release one locked job."""
-    kind, failure = _verdict(job, settings, now)
+    kind, failure = _verdict(job, settings, steady_time(session))
     job.lease_owner = job.lease_expires_at = None
     job.step = ""
     if kind is JobEventKind.RELEASED:
         job.status, job.dispatched_at, job.started_at, job.progress = JobStatus.ACCEPTED, None, None, 0.0
     else:
-        job.status, job.finished_at = JobStatus(kind.value), now
+        job.status, job.finished_at = JobStatus(kind.value), database_time(session)
         counters.add_end(session, job.status, failure.kind if failure else None, chunk=job.batch_id is not None)
     if failure is not None:
         job.failure_kind, job.failure_detail, job.failed_lines = failure.kind, failure.detail, job.lines
@@ -247,7 +264,7 @@ def _verdict(job: Job, settings: Settings, now: datetime) -> tuple[JobEventKind,
     limit = timedelta(seconds=settings.hard_time_limit_seconds)
     if job.cancel_requested:
         return JobEventKind.DISMISSED, None
-    if job.started_at is not None and job.started_at + limit <= now:
+    if job.claimed_at is not None and job.claimed_at + limit <= now:
         return JobEventKind.FAILED, Failure(FailureKind.TIME_LIMIT, time_limit_sentence(settings))
     if job.attempt >= settings.max_attempts:
         sentence = f"The service gave up the job because its worker was lost in each of {job.attempt} attempts."

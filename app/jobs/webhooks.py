@@ -23,6 +23,7 @@ from app.runtime.settings import Settings, signing_key
 from app.storage import counters
 from app.storage.counters import CounterName
 from app.storage.database import database_time
+from app.storage.steady_clock import steady_time
 from app.tables import ENDED, Batch, DeliveryState, Job, WebhookDelivery
 
 _ROWS_A_QUERY = 200
@@ -167,7 +168,7 @@ def send_again(session: Session, deliveries: Sequence[WebhookDelivery]) -> None:
     for delivery in deliveries:
         if delivery.payload is not None:
             delivery.state, delivery.attempts = DeliveryState.PENDING.value, 0
-            delivery.next_attempt_at = database_time(session)
+            delivery.next_attempt_at = steady_time(session)
 
 
 def enlist(session: Session, root_path: str = "") -> int:
@@ -196,7 +197,7 @@ def take_due(session: Session, share: Share, lease_seconds: float) -> list[Messa
 
     When the lease ends, other processes take the messages whose outcome was not recorded.
     """
-    now, taken, count = database_time(session), [], share.copy()
+    now, taken, count = steady_time(session), [], share.copy()
     while count.room > 0 and (found := _oldest_due(session, now, count)):
         for delivery in found:
             if count.add(delivery.owner, delivery.receiver):
@@ -231,14 +232,13 @@ def note(session: Session, settings: Settings, message: Message, attempt: Attemp
         counters.add(session, CounterName.WEBHOOKS, GIVEN_UP)
     else:
         pause = settings.webhook_retry_seconds * _GROWTH ** (message.attempt - 1)
-        delivery.next_attempt_at = now + timedelta(seconds=pause)
+        delivery.next_attempt_at = steady_time(session) + timedelta(seconds=pause)
 
 
 def _write(session: Session, delivery: WebhookDelivery, kind: str, data: dict[str, Any]) -> None:
-    now = database_time(session)
-    message = {"type": f"{kind}.{data['status']}", "timestamp": now.isoformat(), "data": data}
+    message = {"type": f"{kind}.{data['status']}", "timestamp": database_time(session).isoformat(), "data": data}
     delivery.payload = json.dumps(message, separators=(",", ":"))
-    delivery.state, delivery.next_attempt_at = DeliveryState.PENDING.value, now
+    delivery.state, delivery.next_attempt_at = DeliveryState.PENDING.value, steady_time(session)
 
 
 def _of_job(job: Job, root_path: str) -> dict[str, Any]:

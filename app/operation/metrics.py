@@ -27,6 +27,7 @@ from app.runtime.version import SERVICE_VERSION
 from app.storage import counters
 from app.storage.counters import CounterName
 from app.storage.database import database_time
+from app.storage.steady_clock import steady_time
 from app.tables import DeliveryState, Job, JobStatus, WebhookDelivery
 
 Totals = Mapping[tuple[str, str], tuple[int, float]]
@@ -105,7 +106,7 @@ class _Jobs:
 
 
 def _workers(session: Session) -> Iterator[Metric]:
-    now, seen = database_time(session), [worker.seen_at for worker in listed(session)]
+    now, seen = steady_time(session), [worker.seen_at for worker in listed(session)]
     yield GaugeMetricFamily("galloping_workers", "Workers that reported in the last hour and have not ended", len(seen))
     silence = GaugeMetricFamily("galloping_workers_silent_seconds", "Time since the last report of any worker")
     if seen:
@@ -130,7 +131,7 @@ def _open_jobs(session: Session) -> Iterator[Metric]:
         waiting.add_metric([kind], accepted.count if accepted else 0)
         unsent.add_metric([kind], accepted.unsent if accepted else 0)
         running.add_metric([kind], held.count if held else 0)
-        age.add_metric([kind], (now - accepted.oldest).total_seconds() if accepted else 0.0)
+        age.add_metric([kind], max(0.0, (now - accepted.oldest).total_seconds()) if accepted else 0.0)
     yield from (waiting, unsent, running, age)
 
 
@@ -182,7 +183,7 @@ def _webhooks(session: Session, totals: Totals) -> Iterator[Metric]:
     given_up = CounterMetricFamily("galloping_webhooks_given_up", "Webhook messages given up after the last attempt")
     pending = GaugeMetricFamily("galloping_webhooks_pending", "Webhook messages in progress or waiting to be sent")
     late = GaugeMetricFamily("galloping_webhook_late_seconds", "Delay of the oldest due webhook message")
-    now = database_time(session)
+    now = steady_time(session)
     due = func.min(WebhookDelivery.next_attempt_at)
     open_ones = select(func.count(), due).where(WebhookDelivery.state == DeliveryState.PENDING.value)
     count, oldest = session.execute(open_ones).one()

@@ -13,6 +13,7 @@ from app.operation import workers
 from app.runtime.settings import Settings
 from app.storage.database import database_time, make_engine, session_factory
 from app.storage.migration import is_newest
+from app.storage.steady_clock import TOLERANCE, steady_time, unnoted_step
 from app.tables import Job, JobStatus
 
 GOOD = "ok"
@@ -57,12 +58,16 @@ class Queues:
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """The part of the status that comes from the database."""
+    """The part of the status that comes from the database.
+
+    `clock_went_back_seconds` is the step of the database's clock that no worker has allowed for yet, else zero.
+    """
 
     jobs: Work
     chunks: Work
     leases: Leases
     workers: Sequence[WorkerState]
+    clock_went_back_seconds: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +84,9 @@ class Status:
         faults = [f"The {name} {state}." for name, state in self._parts() if state != GOOD]
         if self.contents is None:
             return faults
+        if self.contents.clock_went_back_seconds > TOLERANCE.total_seconds():
+            step = f"{self.contents.clock_went_back_seconds:.0f} s"
+            faults.append(f"The database's clock has gone back by {step}, and no worker has run since.")
         if all(worker.silent for worker in self.contents.workers):
             faults.append("No worker is running.")
         faults += [
@@ -125,12 +133,13 @@ def _queues(settings: Settings) -> Queues | None:
 
 
 def _contents(session: Session, settings: Settings) -> Contents:
-    now = database_time(session)
+    now, steady = database_time(session), steady_time(session)
     return Contents(
         jobs=_work(session, now, chunks=False),
         chunks=_work(session, now, chunks=True),
-        leases=_leases(session, now),
-        workers=_workers(session, settings, now),
+        leases=_leases(session, steady),
+        workers=_workers(session, settings, steady),
+        clock_went_back_seconds=unnoted_step(session).total_seconds(),
     )
 
 
@@ -139,7 +148,7 @@ def _work(session: Session, now: datetime, *, chunks: bool) -> Work:
     counted = select(Job.status, func.count(), func.min(Job.created_at)).where(kind).group_by(Job.status)
     found = {status: (count, oldest) for status, count, oldest in session.execute(counted)}
     _, oldest = found.get(JobStatus.ACCEPTED, (0, None))
-    waiting = (now - oldest).total_seconds() if oldest else None
+    waiting = max(0.0, (now - oldest).total_seconds()) if oldest else None
     return Work({status: found.get(status, (0, None))[0] for status in JobStatus}, waiting)
 
 

@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 from app.convert import ENGINE_VERSION
 from app.runtime.settings import Settings
 from app.storage.database import database_time
+from app.storage.steady_clock import steady_time
 from app.tables import Worker
 
 _FORGOTTEN_AFTER = timedelta(hours=1)
@@ -16,10 +17,11 @@ _FORGOTTEN_AFTER = timedelta(hours=1)
 
 def report(session: Session, settings: Settings, name: str) -> None:
     """Record that a worker is alive, and forget workers that have long been silent."""
-    now = database_time(session)
+    now = steady_time(session)
     worker = session.get(Worker, name)
     if worker is None:
-        worker = Worker(name=name, started_at=now, processes=settings.worker_processes, version=ENGINE_VERSION)
+        started_at = database_time(session)
+        worker = Worker(name=name, started_at=started_at, processes=settings.worker_processes, version=ENGINE_VERSION)
         session.add(worker)
     worker.seen_at = now
     session.execute(delete(Worker).where(Worker.seen_at < now - _FORGOTTEN_AFTER))

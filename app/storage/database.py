@@ -94,9 +94,14 @@ def database_time(session: Session) -> datetime:
     read_in, moment = session.info.get(_CLOCK, (None, None))
     if read_in is None or read_in is not session.get_transaction():
         moment = session.execute(select(func.clock_timestamp(type_=UtcDateTime))).scalar_one()
-        session.info[_CLOCK] = session.get_transaction(), moment
+        keep_database_time(session, moment)
     found: datetime = moment
     return found
+
+
+def keep_database_time(session: Session, moment: datetime) -> None:
+    """Let `database_time` return a moment that another query of this transaction has read."""
+    session.info[_CLOCK] = session.get_transaction(), moment
 
 
 def database_moment(session: Session) -> datetime | ColumnElement[datetime]:

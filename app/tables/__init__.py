@@ -1,4 +1,4 @@
-"""The SQL tables: jobs with tags and events, batches, results, keys, audit, workers. One schema for both databases."""
+"""The SQL tables: jobs, batches, results, keys, audit, workers, clock and more. One schema for both databases."""
 
 from app.tables.access import ApiKey, AuditAction, AuditEvent
 from app.tables.base import ENDED, Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
@@ -8,6 +8,7 @@ from app.tables.idempotency import IdempotencyKey
 from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.owned import OwnAerodynamics, OwnConductor
 from app.tables.results import PointRow
+from app.tables.steady_clock import SteadyClock
 from app.tables.webhooks import DeliveryState, WebhookDelivery
 from app.tables.workers import Worker
 
@@ -31,6 +32,7 @@ __all__ = [
     "OwnAerodynamics",
     "OwnConductor",
     "PointRow",
+    "SteadyClock",
     "UtcDateTime",
     "WebhookDelivery",
     "Worker",

@@ -16,7 +16,8 @@ class Job(Base):
 
     batch_id, lines, failed_lines and reused_lines belong to a chunk and are null for any other job. request_id and
     trace_parent come from the request that created the job. reused_from is the job or chunk whose results were copied;
-    it may have been deleted since.
+    it may have been deleted since. lease_expires_at and claimed_at are of the steady clock, all other moments of the
+    database's.
     """
 
     __tablename__ = "jobs"
@@ -58,6 +59,7 @@ class Job(Base):
     trace_parent: Mapped[str | None] = mapped_column(String(correlation.TRACE_PARENT_LENGTH))
     reused_from: Mapped[UUID | None]
     reused_lines: Mapped[int | None]
+    claimed_at: Mapped[datetime | None]
 
     tags: Mapped[list["JobTag"]] = relationship(order_by="JobTag.key", lazy="selectin", passive_deletes=True)
     events: Mapped[list["JobEvent"]] = relationship(order_by="JobEvent.id", lazy="select", passive_deletes=True)

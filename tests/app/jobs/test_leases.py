@@ -1,5 +1,7 @@
 from concurrent.futures import ThreadPoolExecutor
+from datetime import timedelta
 from threading import Barrier
+from types import SimpleNamespace
 from uuid import UUID, uuid4
 
 import pytest
@@ -10,9 +12,13 @@ from app.jobs import job_records, leases
 from app.jobs.leases import Beat, Claim, Failure
 from app.runtime.settings import Settings
 from app.security.caller import LOCAL
-from app.storage import stored_results
+from app.storage import counters, steady_clock, stored_results
+from app.storage.counters import CounterName
+from app.storage.database import database_time
 from app.tables import FailureKind, JobStatus
 from tests.documents import add_job, count_points, history, look, point_result
+from tests.servers import wait_until
+from worker.sweep import ClockKeeper
 
 LONG = 60.0
 OVER = -1.0  # a lease that has run out as it is given
@@ -37,8 +43,8 @@ def test_claim_gives_document_attempt_and_lease(sessions: sessionmaker[Session])
     assert held is not None
     assert (held.job_id, held.attempt, held.document) == (job_id, 1, {"line": {"b": 1, "a": [2.5]}})
     assert (job.status, job.attempt, job.lease_owner) == (JobStatus.RUNNING, 1, "here")
-    assert job.started_at is not None and job.lease_expires_at is not None
-    assert (job.lease_expires_at - job.started_at).total_seconds() == pytest.approx(LONG)
+    assert job.claimed_at is not None and job.lease_expires_at is not None
+    assert (job.lease_expires_at - job.claimed_at).total_seconds() == LONG
     assert history(sessions, job_id) == [("accepted", 0), ("running", 1)]
 
 
@@ -150,6 +156,85 @@ def test_failed_job_keeps_document_attempt_sentence_and_rows(sessions: sessionma
     assert (job.status, job.failure_kind) == (JobStatus.FAILED, FailureKind.NO_CONVERGENCE)
     assert (job.failure_detail, job.attempt, job.document) == ("It did not converge.", 1, {"line": {"kept": True}})
     assert count_points(sessions, job_id) == 1
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """Give the clock of the database, which a test sets by its `set_by`."""
+    found = SimpleNamespace(set_by=timedelta(0))
+    for module in (steady_clock, leases):
+        monkeypatch.setattr(module, "database_time", lambda session: database_time(session) + found.set_by)
+    return found
+
+
+def sweep(keeper: ClockKeeper, sessions: sessionmaker[Session], settings: Settings) -> int:
+    keeper.look()
+    return give_back(sessions, settings)
+
+
+@pytest.mark.parametrize("hours", [-1, 2])
+def test_a_clock_that_is_set_ends_no_lease_of_a_living_worker(
+    sessions: sessionmaker[Session], settings: Settings, clock: SimpleNamespace, hours: int
+) -> None:
+    strict = settings.model_copy(update={"hard_time_limit_seconds": 3700.0})
+    keeper = ClockKeeper(sessions, strict)
+    keeper.look()
+    job_id = add_job(sessions)
+    held = take(sessions, job_id)
+    clock.set_by = timedelta(hours=hours)
+    assert sweep(keeper, sessions, strict) == 0
+    with sessions.begin() as session:
+        assert leases.heartbeat(session, held, LONG, 0.5, "") is Beat.GO_ON
+    assert sweep(keeper, sessions, strict) == 0
+    with sessions.begin() as session:
+        assert leases.finish(session, held, [point_result()])
+        _, seconds = counters.totals(session)[CounterName.JOBS.value, "successful"]
+    assert 0.0 <= seconds < LONG
+    assert history(sessions, job_id) == [("accepted", 0), ("running", 1), ("successful", 1)]
+
+
+@pytest.mark.parametrize("hours", [-1, 2])
+def test_a_lease_of_a_lost_worker_ends_though_the_clock_is_set(
+    sessions: sessionmaker[Session], settings: Settings, clock: SimpleNamespace, hours: int
+) -> None:
+    keeper = ClockKeeper(sessions, settings)
+    keeper.look()
+    job_id = add_job(sessions)
+    take(sessions, job_id, 0.2)
+    clock.set_by = timedelta(hours=hours)
+    wait_until(lambda: sweep(keeper, sessions, settings) == 1, 10.0, "the release")
+    assert look(sessions, job_id).status is JobStatus.ACCEPTED
+
+
+def test_a_lease_given_while_the_clock_was_ahead_is_shortened(
+    sessions: sessionmaker[Session], settings: Settings, clock: SimpleNamespace
+) -> None:
+    keeper = ClockKeeper(sessions, settings)
+    keeper.look()
+    clock.set_by = timedelta(hours=2)
+    ahead, before = add_job(sessions), add_job(sessions)
+    take(sessions, ahead)  # after the step, and before a sweeper looks
+    clock.set_by = timedelta(0)
+    take(sessions, before, 1.0)
+    clock.set_by = timedelta(hours=2)
+    keeper.look()
+    ends = [look(sessions, job_id).lease_expires_at for job_id in (ahead, before)]
+    with sessions() as session:
+        now = steady_clock.steady_time(session)
+    left = [(end - now).total_seconds() for end in ends if end is not None]
+    assert 0.0 < left[0] <= settings.lease_seconds and left[1] <= 1.0
+
+
+def test_messages_of_a_time_that_the_clock_was_set_back_from_are_sent_again(
+    sessions: sessionmaker[Session], settings: Settings, clock: SimpleNamespace
+) -> None:
+    unsent, sent = add_job(sessions), add_job(sessions)
+    with sessions.begin() as session:
+        leases.mark_dispatched(session, [sent])
+    clock.set_by = timedelta(hours=-1)
+    with sessions.begin() as session:
+        assert leases.take_undispatched(session, settings, queue_is_empty=False) == [unsent]
+        assert leases.take_undispatched(session, settings, queue_is_empty=True) == [sent]
 
 
 def test_three_lost_attempts_end_a_job(sessions: sessionmaker[Session], settings: Settings) -> None:

@@ -1,18 +1,21 @@
+import re
 from datetime import timedelta
 from pathlib import Path
 
-from sqlalchemy import text
+from sqlalchemy import text, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import leases
 from app.operation import service_status, workers
 from app.runtime.settings import Settings
-from app.tables import JobStatus
+from app.storage.database import database_time
+from app.tables import JobStatus, SteadyClock
 from tests.batch_rows import add_batch, run
 from tests.documents import add_job
 from tests.in_process import send
 from tests.processes import running_worker
 from tests.servers import free_port, wait_until
+from worker.sweep import ClockKeeper
 
 
 def test_work_is_counted_as_it_is(deployment: Settings, deployed: sessionmaker[Session]) -> None:
@@ -68,6 +71,19 @@ def test_a_worker_that_was_killed_is_silent_and_at_last_forgotten(
         workers.report(session, settings, "other")
     with sessions() as session:
         assert [worker.name for worker in workers.listed(session)] == ["other"]
+
+
+def test_a_clock_that_went_back_is_said_so_until_a_worker_has_run(
+    settings: Settings, sessions: sessionmaker[Session]
+) -> None:
+    with sessions.begin() as session:
+        workers.report(session, settings, "killed")
+        session.execute(update(SteadyClock).values(reading=database_time(session) + timedelta(seconds=3468.9)))
+    found = service_status.read_status(settings)
+    (sentence,) = (fault for fault in found.faults() if "clock" in fault)
+    assert re.fullmatch(r"The database's clock has gone back by 34\d\d s, and no worker has run since\.", sentence)
+    ClockKeeper(sessions, settings).look()
+    assert [fault for fault in service_status.read_status(settings).faults() if "clock" in fault] == []
 
 
 def test_what_does_not_answer_is_said_so(tmp_path: Path) -> None:
