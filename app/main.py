@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from sqlalchemy import Engine
 from starlette.types import ASGIApp
 
+from app.batches.intake import Places
 from app.coalescing.grouped_calls import GroupedCalls, committed_together
 from app.coalescing.shared_watch import SharedWatch
 from app.http import cors, problems
@@ -115,7 +116,8 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
     of_batches = dict.fromkeys((*batch_intake.ADDRESSES, views.BATCH_FILES), settings.max_batch_bytes)
     limits = {"": settings.max_body_bytes, **of_batches}
-    problems.install(app, limits, frame.shown_problem)
+    slowest = settings.silent_body_seconds, settings.least_body_bytes_per_second
+    problems.install(app, limits, slowest, frame.shown_problem)
     app.add_middleware(Compression)
     app.add_middleware(HeadAsGet)
     if settings.cors_origins:
@@ -167,6 +169,7 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.printers = Workshop(1, most_of_owner=_REPORTS_OF_OWNER, most=_REPORTS)
     app.state.previews = Previews(settings.preview_seconds)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
+    app.state.places = Places(settings.batches_at_once, settings.senders_at_once)
     app.state.inbox = GroupedCalls(
         "inbox", partial(committed_together, app.state.writers, submissions.accept), _INBOX_PAUSE_SECONDS
     )

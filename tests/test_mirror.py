@@ -53,7 +53,6 @@ WITHOUT_A_TEST_FILE = {
     "app.routes.job_status": "tests/app/routes/test_jobs.py holds the documents of jobs that it makes.",
     "app.routes.streaming": "tests/app/batches/test_line_results.py reads its streams.",
     "app.routes.batch_documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",
-    "app.routes.batch_intake": "tests/app/routes/test_batches.py posts batches of every form to it.",
     "app.routes.batch_results": "tests/app/routes/test_batches.py reads results of every form from it.",
     "app.routes.deliveries": "tests/worker/test_courier.py reads the log and sends again through it.",
     "app.routes.documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",

@@ -1,4 +1,4 @@
-"""Limit the size of request bodies while they arrive, and let the client read why its body was refused."""
+"""Limit the size of request bodies and the time that they take, and let the client read why its body was refused."""
 
 import asyncio
 import contextlib
@@ -26,20 +26,34 @@ class Limit:
     too_large: HTTPException
 
 
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How slowly a body may arrive: the longest silence in seconds, bytes a second, and the error for a slower one.
+
+    The service waits for a body as long as the silence allows; each byte gives back its share of a second, up to that.
+    Only waiting counts, so a body that the service itself reads slowly is not slow.
+    """
+
+    silent_seconds: float
+    bytes_a_second: float
+    too_slow: HTTPException
+
+
 class BodyLimit:
-    """ASGI middleware that refuses bodies above a limit.
+    """ASGI middleware that refuses bodies above a limit or below a pace.
 
     If the announced length exceeds the limit, the application does not see the request.
     """
 
-    def __init__(self, app: ASGIApp, limits: Mapping[str, Limit], refuse: Refuse) -> None:
+    def __init__(self, app: ASGIApp, limits: Mapping[str, Limit], pace: Pace, refuse: Refuse) -> None:
         """Wrap an application; `limits` maps paths to limits, and the limit under "" applies to all other paths.
 
-        If the body exceeds its limit while the application reads it, raise the limit's error there. If the announced
-        length does, answer with `refuse`.
+        If the body exceeds its limit or is too slow while the application reads it, raise the error of that there. If
+        the announced length exceeds the limit, answer with `refuse`.
         """
         self.app = app
         self.limits = limits
+        self.pace = pace
         self.refuse = refuse
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -51,7 +65,7 @@ class BodyLimit:
         announced = headers.get(b"content-length", b"0")
         limit = self.limits.get(path_of(scope), self.limits[""])
         empty = announced.strip(b"0") == b"" and b"transfer-encoding" not in headers
-        exchange = _Exchange(receive, send, limit.most_bytes, limit.too_large, ended=empty)
+        exchange = _Exchange(receive, send, limit, self.pace, self.pace.silent_seconds, ended=empty)
         if announced.isdigit() and int(announced[:20]) > limit.most_bytes:
             answer = await self.refuse(Request(scope), limit.too_large)
             await answer(scope, receive, exchange.send_lingering)
@@ -63,16 +77,29 @@ class BodyLimit:
 class _Exchange:
     receive: Receive
     send: Send
-    most_bytes: int
-    too_large: HTTPException
+    limit: Limit
+    pace: Pace
+    patience: float
     ended: bool
     taken: int = 0
 
     async def receive_counting(self) -> Message:
-        message = await self._next()
+        message = await self._next() if self.ended else await self._next_in_time()
         self.taken += len(message.get("body", b""))
-        if self.taken > self.most_bytes:
-            raise self.too_large
+        if self.taken > self.limit.most_bytes:
+            raise self.limit.too_large
+        return message
+
+    async def _next_in_time(self) -> Message:
+        clock = asyncio.get_running_loop().time
+        began = clock()
+        try:
+            async with asyncio.timeout(self.patience):
+                message = await self._next()
+        except TimeoutError:
+            raise self.pace.too_slow from None
+        gained = len(message.get("body", b"")) / self.pace.bytes_a_second
+        self.patience = min(self.pace.silent_seconds, self.patience - (clock() - began) + gained)
         return message
 
     async def send_lingering(self, message: Message) -> None:

@@ -13,7 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from app import convert
-from app.http.body_limit import BodyLimit, Limit
+from app.http.body_limit import BodyLimit, Limit, Pace
 from app.http.conditional import Bodiless
 from app.http.prefix import LinkedJSON
 from app.schemas.faults import MOST_FAULTS, Fault, faults_of, json_pointer
@@ -37,6 +37,7 @@ class ProblemKind(Enum):
         "Not acceptable",
         "The Accept header allows no media type of this address.",
     )
+    TOO_SLOW = ("too-slow", 408, "Body too slow", "The request body arrives more slowly than the operator allows.")
     # Where kinds share a status, the last one applies to any other error of that status.
     REQUEST_IN_FLIGHT = (
         "request-in-flight",
@@ -133,8 +134,11 @@ Shown = Callable[[Request, ProblemError], Response | None]
 """Returns a page that explains a problem to a person, or None where a program asked."""
 
 
-def install(app: FastAPI, max_body_bytes: Mapping[str, int], shown: Shown) -> None:
-    """Make an application answer every error with a problem, and limit its bodies by path; "" means all other paths."""
+def install(app: FastAPI, max_body_bytes: Mapping[str, int], slowest_body: tuple[float, float], shown: Shown) -> None:
+    """Make an application answer every error with a problem, and limit its bodies by path; "" means all other paths.
+
+    slowest_body: the longest silence in seconds, and the bytes a second that a body must bring.
+    """
     app.state.shown_problem = shown
     app.add_exception_handler(ProblemError, answer)
     app.add_exception_handler(Bodiless, _on_bodiless)
@@ -143,12 +147,18 @@ def install(app: FastAPI, max_body_bytes: Mapping[str, int], shown: Shown) -> No
     app.add_exception_handler(OperationalError, _on_database)
     app.add_exception_handler(Exception, _on_defect)
     limits = {path: Limit(most_bytes, _too_large(most_bytes)) for path, most_bytes in max_body_bytes.items()}
-    app.add_middleware(BodyLimit, limits=limits, refuse=answer)
+    pace = Pace(*slowest_body, _too_slow(*slowest_body))
+    app.add_middleware(BodyLimit, limits=limits, pace=pace, refuse=answer)
 
 
 def _too_large(most_bytes: int) -> ProblemError:
     detail = f"The body is larger than {most_bytes} bytes."
     return ProblemError(ProblemKind.TOO_LARGE, detail, headers={"Connection": "close"})
+
+
+def _too_slow(silent_seconds: float, bytes_a_second: float) -> ProblemError:
+    detail = f"The body must bring {bytes_a_second:g} bytes a second and must not pause for {silent_seconds:g} s."
+    return ProblemError(ProblemKind.TOO_SLOW, detail, headers={"Connection": "close"})
 
 
 def invalid_document(faults: Sequence[Fault]) -> ProblemError:

@@ -1,15 +1,14 @@
 """Submit batches: bodies of any size, read as they arrive."""
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 from uuid import UUID
 
-import anyio
-from anyio import CapacityLimiter, from_thread, to_thread
+from anyio import to_thread
 from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
@@ -18,10 +17,11 @@ from starlette.requests import ClientDisconnect
 
 from app.answers.batches import BatchCheck, BatchDocument
 from app.batches import intake
-from app.batches.intake import BodyTooLarge, Incoming
+from app.batches.intake import BodyTooLarge, Incoming, Places
 from app.export.formats import GEOJSON, RDF_XML, XLSX
 from app.http.problems import ProblemError, ProblemKind, invalid_document, query_fault
 from app.http.strict_routes import KnownParametersRoute
+from app.interactive import Busy
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
 from app.routes import batch_documentation, documentation
@@ -35,25 +35,24 @@ from app.security.caller import Caller
 if TYPE_CHECKING:
     from hashlib import _Hash
 
+Answer = TypeVar("Answer")
+
 router = APIRouter(prefix=BATCHES, tags=["batches"], route_class=KnownParametersRoute)
 
 ADDRESSES = (BATCHES, f"{BATCHES}/estimate")
 """Where the bodies of batches come in."""
 
-_SILENT_SECONDS = 60.0
+_RETRY_SECONDS = "5"
 # Bodies that have no room for an analysis and for defaults, or need not have it.
 _ADDRESSED = ("text/csv", XLSX, GEOJSON, RDF_XML)
-_BODY_PROBLEMS = (ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT)
+_BODY_PROBLEMS = (
+    ProblemKind.TOO_SLOW,
+    ProblemKind.TOO_LARGE,
+    ProblemKind.UNSUPPORTED_MEDIA_TYPE,
+    ProblemKind.INVALID_DOCUMENT,
+    ProblemKind.BUSY,
+)
 _TYPES = ("application/json", "application/x-ndjson", *_ADDRESSED)
-
-
-def _limiter(request: Request) -> CapacityLimiter:
-    """Return the limit on threads that receive batches, so that slow senders leave threads for other requests."""
-    state = request.app.state
-    if not hasattr(state, "batch_limiter"):
-        state.batch_limiter = CapacityLimiter(state.settings.batches_at_once)
-    limiter: CapacityLimiter = state.batch_limiter
-    return limiter
 
 
 class IntakeQuery(BaseModel):
@@ -85,11 +84,13 @@ class _Posted:
     settings: Settings
     how: IntakeQuery
     may_reuse: bool
+    places: Places
     digest: "_Hash" = field(default_factory=hashlib.sha256)
 
 
 async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_reuse: MayReuse) -> _Posted:
-    return _Posted(request, request.app.state.settings, how, may_reuse)
+    state = request.app.state
+    return _Posted(request, state.settings, how, may_reuse, state.places)
 
 
 PostedBatch = Annotated[_Posted, Depends(_posted)]
@@ -119,7 +120,7 @@ async def submit_batch(
     service has stored results of a line's input, the line gets those, unless `Cache-Control: no-cache` requests a new
     computation. `?validate_only=true` answers as `POST /v1/batches/estimate` does, and stores nothing.
     """
-    made = await to_thread.run_sync(partial(_receive, writers, caller, key, posted), limiter=_limiter(posted.request))
+    made = await _in_turn(posted, caller, partial(_receive, writers, caller, key, posted))
     if made.job_ids:
         await to_thread.run_sync(partial(sender.send, made.job_ids, chunk=True))
     return made.answer
@@ -137,7 +138,16 @@ async def submit_batch(
 )
 async def estimate_batch(posted: PostedBatch, caller: CallerOf, readers: Readers) -> Response:
     """Check every line of what would be a batch, and estimate the computing time. Nothing is stored."""
-    return await to_thread.run_sync(partial(_checked, readers, caller, posted), limiter=_limiter(posted.request))
+    return await _in_turn(posted, caller, partial(_checked, readers, caller, posted))
+
+
+async def _in_turn(posted: _Posted, caller: Caller, work: Callable[[], Answer]) -> Answer:
+    try:
+        return await posted.places.run(caller.owner, work)
+    except Busy as error:
+        detail = "Too many batches are coming in; send this one when others have arrived."
+        headers = {"Retry-After": _RETRY_SECONDS, "Connection": "close"}
+        raise ProblemError(ProblemKind.BUSY, detail, headers=headers) from error
 
 
 def _receive(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> PostOutcome:
@@ -188,7 +198,7 @@ def _webhook_url(posted: _Posted, incoming: Incoming) -> str | None:
         return None
     if not isinstance(url, str):
         raise BadInput([Fault("/webhook_url", "string_type", "must be a text with an address")])
-    from_thread.run(vet_webhook, posted.settings, url)
+    posted.places.awaited(vet_webhook, posted.settings, url)
     return url
 
 
@@ -248,7 +258,7 @@ def _parsed(name: str, text: str) -> Any:
 
 def _inflated(posted: _Posted) -> Iterator[bytes]:
     encoding = posted.request.headers.get("content-encoding", "identity").strip().lower()
-    pieces = _pieces(posted.request)
+    pieces = _pieces(posted)
     if encoding == "gzip":
         return _digested(posted, intake.gunzipped(pieces, posted.settings.max_batch_bytes))
     if encoding != "identity":
@@ -263,19 +273,15 @@ def _digested(posted: _Posted, pieces: Iterator[bytes]) -> Iterator[bytes]:
         yield piece
 
 
-def _pieces(request: Request) -> Iterator[bytes]:
+def _pieces(posted: _Posted) -> Iterator[bytes]:
     """Yield the body in this thread as the event loop receives it; request a piece only when the last one is used."""
-    stream = request.stream()
+    stream = posted.request.stream()
 
     async def following() -> bytes | None:
-        with anyio.fail_after(_SILENT_SECONDS):
-            return await anext(stream, None)
+        return await anext(stream, None)
 
     try:
-        while (piece := from_thread.run(following)) is not None:
+        while (piece := posted.places.awaited(following)) is not None:
             yield piece
     except ClientDisconnect as error:
         raise ProblemError(ProblemKind.INVALID_DOCUMENT, "The body ended early.") from error  # seen in the log only
-    except TimeoutError as error:
-        detail = f"No part of the body arrived for {_SILENT_SECONDS:g} s."
-        raise ProblemError(ProblemKind.INVALID_DOCUMENT, detail, headers={"Connection": "close"}) from error

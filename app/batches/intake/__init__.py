@@ -10,6 +10,7 @@ from app.batches.intake.body_formats import (
     read_rdf_xml,
     read_xlsx,
 )
+from app.batches.intake.places import Places
 from app.batches.intake.receive import Examined, Receipt, examine, lines_a_chunk, receive
 from app.schemas.faults import BodyTooLarge
 
@@ -17,6 +18,7 @@ __all__ = [
     "BodyTooLarge",
     "Examined",
     "Incoming",
+    "Places",
     "Receipt",
     "examine",
     "gunzipped",
