@@ -25,7 +25,7 @@ _MOST_SHOWN = 80
 # pydantic adds the name of a tagged union's branch to the location, after the field or the list item.
 _SPEEDS, _DEVICE, _AERODYNAMICS = "wind_speeds_m_per_s", "device", "aerodynamics"
 _LISTS = ("devices", "tried")
-_FORMS = frozenset({"list", "range", "coefficients", "measured"})
+_FORMS = frozenset({"list", "range", "coefficients", "measured", "named"})
 
 
 @dataclass(frozen=True, slots=True)

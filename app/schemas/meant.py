@@ -48,6 +48,8 @@ def meant(location: Sequence[object]) -> str:
     wrapped = _wrapped(path, name)
     if wrapped:
         return wrapped
+    if path and name in _siblings(path):
+        return f"; {name} belongs to another form of {path[-1]} than the fields beside it"
     found = _nearest(name, _stems(tuple(path)))
     if found:
         return _said(name, found)

@@ -83,6 +83,34 @@ def test_rows_are_made_by_the_keyboard_alone(open_page: Open) -> None:
     expect(page.locator("#preview .drawing.phases .phase")).to_have_count(1)
 
 
+def test_measured_coefficients_are_pasted_from_a_sheet(open_page: Open) -> None:
+    page = open_page("/pages/lines/new?example=c11-twin")
+    page.locator("summary", has_text="Own coefficients of the ice").wait_for()
+    group = page.locator("#group-coefficients")
+    for field in group.locator(
+        "input[name*='.vertical.'], input[name*='.horizontal.'], input[name*='.torsional.']"
+    ).all():
+        field.fill("")
+    group.get_by_label(re.compile("^Largest angle of attack")).fill("")
+    group.get_by_label(re.compile("^Measured: angle at rest")).fill("40")
+    group.get_by_label(re.compile("^Measured: range to either side")).fill("20")
+    group.get_by_text("Paste from a sheet").click()
+    rows = [
+        (20, 0.6, 1.0, 0.1),
+        (30, 0.5, 1.05, 0.05),
+        (40, 0.3, 1.1, 0.0),
+        (50, 0.0, 1.2, -0.1),
+        (60, -0.2, 1.3, -0.1),
+    ]
+    text = "angle\tlift\tdrag\tmoment\n" + "\n".join("\t".join(str(cell) for cell in row) for row in rows)
+    group.locator("textarea").fill(text)
+    group.get_by_role("button", name="Make rows of it").click()
+    expect(page.locator("#rows-said")).to_have_text("Rows from the sheet: 5.")
+    expect(page.locator("#line-ice-aerodynamics-table-0-angle_deg")).to_be_focused()
+    expect(page.locator("#line-ice-aerodynamics-table-4-drag")).to_have_value("1.3")
+    expect(page.locator("#preview-said")).to_have_text("Nothing is at fault.")
+
+
 def test_the_kind_of_a_row_changes_its_fields_and_keeps_what_both_kinds_have(open_page: Open) -> None:
     page = open_page("/pages/lines/new")
     page.get_by_role("button", name="Add a device").click()

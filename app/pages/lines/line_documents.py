@@ -44,7 +44,8 @@ def to_document(texts: Mapping[str, str], units: Units) -> dict[str, Any]:
     for name, field in form_fields().items():
         text = texts.get(name, "").strip()
         if text:
-            _put(document, name.split("."), _value(text, field, units), field.pointer)
+            length = field.row["most_items"] or 0
+            _put(document, name.split("."), _value(text, field, units), field.pointer, length)
     document.setdefault("line", {})
     return document
 
@@ -53,7 +54,7 @@ def _row_texts(rest: dict[str, Any], row_list: RowList, units: Units) -> dict[st
     """Remove a list from a document and return the texts of its rows; none, if it is no list that rows can show."""
     path = row_list.name.split(".")
     items = _part(rest, path)
-    if not isinstance(items, list) or len(items) > row_list.most or not _are_rows(items, row_list):
+    if not isinstance(items, list) or len(items) > row_list.most_rows or not _are_rows(items, row_list):
         return {}
     texts: dict[str, str] = {}
     for number, item in enumerate(items):

@@ -1,6 +1,6 @@
 """The fields of the form of a line, with unit, bounds, default and help as the schemas have them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -30,6 +30,22 @@ GROUPS: Mapping[str, Sequence[str]] = {
         "line.ice.accretion.density_kg_per_m3",
         "line.ice.accretion.angle_deg",
         "line.ice.aerodynamics.catalogue",
+    ),
+    "coefficients": (
+        "line.ice.aerodynamics.reference_diameter_m",
+        "line.ice.aerodynamics.angle_deg",
+        "line.ice.aerodynamics.vertical",
+        "line.ice.aerodynamics.horizontal",
+        "line.ice.aerodynamics.torsional",
+        "line.ice.aerodynamics.fitted_range_deg",
+        "line.ice.aerodynamics_at_rest.vertical",
+        "line.ice.aerodynamics_at_rest.horizontal",
+        "line.ice.aerodynamics_at_rest.torsional",
+        "line.ice.eccentricity_y_m",
+        "line.ice.eccentricity_z_m",
+        "line.ice.aerodynamics.static_angle_deg",
+        "line.ice.aerodynamics.half_range_deg",
+        "line.ice.aerodynamics.table",
     ),
     "pieces": ("line.ice.segments",),
     "devices": ("line.devices",),
@@ -64,11 +80,13 @@ GROUPS: Mapping[str, Sequence[str]] = {
 }
 """The groups of the form, by the dotted names of a request: those of fields, and those of lists that have rows."""
 
-CLOSED = frozenset({"pieces", "supports", "section", "wind", "damping", "climate", "figures"})
+CLOSED = frozenset({"coefficients", "pieces", "supports", "section", "wind", "damping", "climate", "figures"})
 """Groups that a page shows on demand."""
 
+_VALUES = frozenset({"number", "integer", "string"})
+_POWERS = ("", "²", "³")
 _MILLI = 1e3
-_SMALL_M = 0.3  # what is never larger than this is entered in millimetres or inches
+_SMALL_M = 0.5  # what is never larger than this is entered in millimetres or inches
 _DIGITS = 12
 _CONVERTED_DIGITS = 7
 
@@ -145,13 +163,49 @@ def form_fields() -> dict[str, FormField]:
     KeyError
         If the schemas lack one of them.
     """
-    rows = schema_rows()
-    return {name: FormField(name, rows[name], name) for name in _named() if not _is_list(rows[name])}
+    return {field.name: field for name in _named() for field in fields_at(name, schema_rows()[name], _said)}
 
 
 def list_names() -> tuple[str, ...]:
     """Return the dotted names of the lists that have rows in the form."""
-    return tuple(name for name in _named() if _is_list(schema_rows()[name]))
+    return tuple(name for name in _named() if not is_value(row := schema_rows()[name]) and not has_fixed_length(row))
+
+
+def controls(group: str) -> list[str]:
+    """Return the dotted names of the controls of a group: its fields, and its lists that have rows."""
+    lists = list_names()
+    return [
+        control
+        for name in GROUPS[group]
+        for control in (
+            [name] if name in lists else [field.name for field in fields_at(name, schema_rows()[name], str)]
+        )
+    ]
+
+
+def fields_at(path: str, row: Mapping[str, Any], said: Callable[[str], str], part: str = "") -> Iterator[FormField]:
+    """Yield the field of a value, or those of a list of fixed length, one for each item; none of anything else.
+
+    said: returns the name of the words of a field.
+    """
+    if is_value(row):
+        yield FormField(path, row, said(path), part)
+    elif has_fixed_length(row):
+        for number in range(row["most_items"]):
+            name = f"{path}.{number}"
+            unit = row["unit"] and row["unit"].replace("^j", _POWERS[number])
+            item = {**row, "type": "number" if row["unit"] else "string", "unit": unit}
+            yield FormField(name, item, said(name), part)
+
+
+def is_value(row: Mapping[str, Any]) -> bool:
+    """Tell whether a row of the table of fields is that of a number or a text."""
+    return row["type"] in _VALUES
+
+
+def has_fixed_length(row: Mapping[str, Any]) -> bool:
+    """Tell whether a row of the table of fields is that of a list which always has as many items."""
+    return row["type"] == "array" and row["most_items"] is not None and row["fewest_items"] == row["most_items"]
 
 
 @cache
@@ -165,8 +219,9 @@ def _named() -> list[str]:
     return [name for names in GROUPS.values() for name in names]
 
 
-def _is_list(row: Mapping[str, Any]) -> bool:
-    return str(row["type"]).startswith("array")
+def _said(name: str) -> str:
+    """Return the name of the words of a field: its own, else those that it shares with rows that have such a part."""
+    return name if hasattr(words().fields, name) else name.removeprefix("line.")
 
 
 def _closed(sentence: str) -> str:

@@ -40,13 +40,19 @@ class PlacedFaults:
 
 
 def placed(faults: Iterable[Fault], texts: Mapping[str, str]) -> PlacedFaults:
-    """Return the faults at their places; one of a part that has no field stands at the row or list that holds it."""
+    """Return the faults at their places; one of a part that has no field stands at the row or list that holds it.
+
+    One of a list of fixed length stands beside the field of its first item.
+    """
     places = _places(texts)
     beside: dict[str, list[str]] = {}
     others = []
     for fault in faults:
         name, left = fault.pointer.removeprefix("/").replace("/", "."), ""
         while name and name not in places:
+            if f"{name}.0" in places:  # a list of fixed length as a whole
+                name += ".0"
+                break
             name, _, last = name.rpartition(".")
             left = f"{last}.{left}" if left else last
         if name:

@@ -1,12 +1,12 @@
 """The lists of a request that have rows in the form, with the fields of each kind of row as the schemas have them."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
-from app.pages.lines.line_fields import FormField, list_names, schema_rows
+from app.pages.lines.line_fields import FormField, fields_at, has_fixed_length, is_value, list_names, schema_rows
 from app.pages.wording import words
 from app.schemas.field_table import fields_of
 from app.schemas.known import KnownLine
@@ -18,8 +18,7 @@ REST = "rest"
 """The field of the form, and of a row, that holds as JSON what has no field of its own."""
 
 _LEFT_OUT = frozenset({"line"})  # a whole line within a row stays JSON
-_VALUES = frozenset({"number", "integer", "string"})
-_POWERS = ("", "²", "³")
+_MOST_SHOWN = 1000  # a longer list is not for a form, and stays JSON
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +37,16 @@ class RowList:
     name: str
     most: int
     kinds: Mapping[str, RowKind]
+
+    @property
+    def most_rows(self) -> int:
+        """Return how many rows the form may have."""
+        return min(self.most, _MOST_SHOWN)
+
+    @property
+    def columns(self) -> Sequence[FormField]:
+        """Return the fields that the columns of a sheet fill; none where a row says its kind."""
+        return [] if self.has_kinds else [field for field in self.kinds[""].fields if not field.part]
 
     @property
     def has_kinds(self) -> bool:
@@ -70,8 +79,12 @@ class RowList:
 @cache
 def row_lists() -> dict[str, RowList]:
     """Return the lists by their dotted names."""
-    rows = {f"line.{row['name']}": row for row in fields_of(KnownLine, first_form=True)}
-    return {name: RowList(name, schema_rows()[name]["most_items"], _kinds(name, rows)) for name in list_names()}
+    first = {f"line.{row['name']}": row for row in fields_of(KnownLine, first_form=True)}
+    every = {f"line.{row['name']}": row for row in fields_of(KnownLine)}  # for a list that only a later form has
+    return {
+        name: RowList(name, schema_rows()[name]["most_items"], _kinds(name, first if name in first else every))
+        for name in list_names()
+    }
 
 
 def _kinds(name: str, rows: Mapping[str, Mapping[str, Any]]) -> dict[str, RowKind]:
@@ -86,22 +99,15 @@ def _kinds(name: str, rows: Mapping[str, Mapping[str, Any]]) -> dict[str, RowKin
 
 
 def _row_kind(name: str, rows: Mapping[str, Mapping[str, Any]]) -> RowKind:
-    fields = [field for path, row in rows.items() if not _stays_json(path) for field in _fields(name, path, row)]
-    objects = {path: row for path, row in rows.items() if row["type"] not in _VALUES and not set(".[") & set(path)}
-    more = any(not _has_fixed_length(row) for row in objects.values())
+    fields = [
+        field
+        for path, row in rows.items()
+        if not _stays_json(path)
+        for field in fields_at(path, row, partial(_words_of, name), path.partition(".")[0] if "." in path else "")
+    ]
+    objects = {path: row for path, row in rows.items() if not is_value(row) and not set(".[") & set(path)}
+    more = any(not has_fixed_length(row) for row in objects.values())
     return RowKind(fields, frozenset(path for path, row in objects.items() if row["required"]), more)
-
-
-def _fields(name: str, path: str, row: Mapping[str, Any]) -> Iterator[FormField]:
-    """Yield the field of a value, or those of a list of fixed length, one for each item."""
-    part = path.partition(".")[0] if "." in path else ""
-    if row["type"] in _VALUES:
-        yield FormField(path, row, _words_of(name, path), part)
-    elif _has_fixed_length(row):
-        for number in range(row["most_items"]):
-            unit = row["unit"] and row["unit"].replace("^j", _POWERS[number])
-            item = {**row, "type": "number" if row["unit"] else "string", "unit": unit}
-            yield FormField(f"{path}.{number}", item, _words_of(name, f"{path}.{number}"), part)
 
 
 def _words_of(name: str, path: str) -> str:
@@ -112,7 +118,3 @@ def _words_of(name: str, path: str) -> str:
 
 def _stays_json(path: str) -> bool:
     return "[" in path or path.partition(".")[0] in _LEFT_OUT
-
-
-def _has_fixed_length(row: Mapping[str, Any]) -> bool:
-    return row["type"] == "array" and row["most_items"] is not None and row["fewest_items"] == row["most_items"]

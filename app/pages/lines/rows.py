@@ -8,6 +8,7 @@ from functools import cache
 
 from app.pages.lines.line_fields import FormField, form_fields, key_of
 from app.pages.lines.numbers import as_number
+from app.pages.lines.pasted_cells import pasted_cells
 from app.pages.lines.row_lists import KIND, REST, RowList, row_lists
 from app.pages.wording import words
 
@@ -17,6 +18,9 @@ Row = dict[str, str]
 WINDS = "analysis.wind_speeds_m_per_s"
 STEP = "fill.step"
 """The field of the form that says the step of a list of wind speeds; a request has none."""
+
+PASTE = "paste"
+"""The first part of the names of the fields that take rows from a sheet; a request has none."""
 
 _RANGE = tuple(f"{WINDS}.{name}" for name in ("start", "stop", "count"))
 _SHOWN_DIGITS = 7
@@ -74,7 +78,8 @@ def fields_in(texts: Mapping[str, str]) -> dict[str, FormField]:
 def changed(texts: Mapping[str, str], change: str) -> Changed | None:
     """Return the form after a change such as `add line.devices`, `copy line.devices 2`; None for any other text.
 
-    `remove` takes a row away, `kind` shows the fields of another kind, `fill` lists wind speeds one by one.
+    `remove` takes a row away, `kind` shows the fields of another kind, `fill` lists wind speeds one by one, `paste`
+    adds rows from the cells of a sheet.
     """
     match = _CHANGE.fullmatch(change)
     row_list = row_lists().get(match[2]) if match else None
@@ -82,6 +87,8 @@ def changed(texts: Mapping[str, str], change: str) -> Changed | None:
         return None
     if match[1] == "fill":
         return _filled(texts, row_list) if row_list.name == WINDS else None
+    if match[1] == "paste":
+        return _pasted(texts, row_list) if row_list.columns else None
     number = len(rows_in(texts)[row_list.name]) if match[1] == "add" else int(match[3] or 0)
     return _changed_at(texts, row_list, match[1], number)
 
@@ -91,7 +98,7 @@ def _changed_at(texts: Mapping[str, str], row_list: RowList, change: str, number
     own = rows[row_list.name]
     if number >= len(own) + (change == "add"):
         return None
-    if change in {"add", "copy"} and len(own) >= row_list.most:
+    if change in {"add", "copy"} and len(own) >= row_list.most_rows:
         return _refused(texts, row_list, words().rows.full, _add_key(row_list))
     if change == "add":
         own.append(_new(row_list, texts.get(f"add.{row_list.name}", "")))
@@ -110,7 +117,7 @@ def _new(row_list: RowList, kind: str) -> Row:
     return {KIND: kind if kind in row_list.kinds else next(iter(row_list.kinds))} if row_list.has_kinds else {}
 
 
-_CHANGE = re.compile(r"(add|copy|remove|kind|fill) (\S{1,80})(?: (\d{1,6}))?")
+_CHANGE = re.compile(r"(add|copy|remove|kind|fill|paste) (\S{1,80})(?: (\d{1,6}))?")
 
 
 def _focus(rows: Sequence[Row], row_list: RowList, change: str, number: int) -> str:
@@ -125,7 +132,9 @@ def _focus(rows: Sequence[Row], row_list: RowList, change: str, number: int) -> 
 
 
 def _refused(texts: Mapping[str, str], row_list: RowList, said: str, focus: str) -> Changed:
-    return Changed(dict(texts), row_list, said.format(most=row_list.most), focus, refused=True)
+    return Changed(
+        dict(texts), row_list, said.format(most=row_list.most_rows, columns=len(row_list.columns)), focus, refused=True
+    )
 
 
 def _add_key(row_list: RowList) -> str:
@@ -134,13 +143,28 @@ def _add_key(row_list: RowList) -> str:
 
 def _filled(texts: Mapping[str, str], row_list: RowList) -> Changed:
     """Return the form with its evenly spaced wind speeds as rows; the fields of the range become empty."""
-    speeds = list(_speeds([as_number(texts.get(name, "")) for name in (*_RANGE, STEP)], row_list.most))
+    speeds = list(_speeds([as_number(texts.get(name, "")) for name in (*_RANGE, STEP)], row_list.most_rows))
     if not speeds:
         return _refused(texts, row_list, words().rows.not_filled, key_of(STEP))
     rows = {**rows_in(texts), row_list.name: [{"": f"{speed:.{_SHOWN_DIGITS}g}"} for speed in speeds]}
     left = {name: "" if name in {*_RANGE, STEP} else text for name, text in texts.items()}
     said = words().rows.filled.format(count=len(speeds))
     return Changed(_with_rows(left, rows), row_list, said, key_of(row_list.row_name(0)))
+
+
+def _pasted(texts: Mapping[str, str], row_list: RowList) -> Changed:
+    """Return the form with the rows of a sheet after those into which something was typed."""
+    field = f"{PASTE}.{row_list.name}"
+    names = [column.name for column in row_list.columns]
+    cells = pasted_cells(texts.get(field, ""), len(names))
+    rows = rows_in(texts)
+    kept = [row for row in rows[row_list.name] if not is_blank(row)]
+    if not cells or len(kept) + len(cells) > row_list.most_rows or max(map(len, cells)) > len(names):
+        return _refused(texts, row_list, words().rows.not_pasted, key_of(field))
+    rows[row_list.name] = kept + [dict(zip(names, line, strict=False)) for line in cells]
+    first = key_of(row_list.field_name(len(kept), names[0]))
+    said = words().rows.pasted.format(count=len(cells))
+    return Changed(_with_rows({**texts, field: ""}, rows), row_list, said, first)
 
 
 def _speeds(said: Sequence[float | None], most: int) -> Iterator[float]:

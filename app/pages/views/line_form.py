@@ -16,7 +16,7 @@ from app.pages.drawings.phase_places import THIS
 from app.pages.forms import Fields
 from app.pages.frame import caller_of, moved, page, units_of
 from app.pages.lines.line_documents import to_document, to_texts
-from app.pages.lines.line_fields import CLOSED, GROUPS, form_fields
+from app.pages.lines.line_fields import CLOSED, GROUPS, controls, form_fields
 from app.pages.lines.line_preview import preview_of_sound_rows
 from app.pages.lines.numbers import as_number
 from app.pages.lines.placed_faults import of_typed, placed
@@ -103,7 +103,7 @@ def change_rows(request: Request, fields: Fields) -> Response:
         "parts/line_group.html",
         headers={"HX-Trigger-After-Settle": "rows-changed"},
         name=name,
-        names=GROUPS[name],
+        names=controls(name),
         said=change.said,
         **values,
     )
@@ -177,7 +177,7 @@ def _form(
         request,
         "line.html",
         422 if faults else 200,
-        groups=GROUPS,
+        groups={name: controls(name) for name in GROUPS},
         closed=CLOSED,
         open_groups=open_groups | ({_group_of(change.row_list)} if change else set()),
         phase_names=_phase_names(texts),

@@ -21,6 +21,10 @@ from app.schemas.meant import meant
             ["line", "span", "horizontal_tension_kn"],
             '; did you mean horizontal_tension_n, perhaps as {"value": ..., "unit": "kN"}?',
         ),
+        (
+            ["line", "ice", "aerodynamics", "table"],
+            "; table belongs to another form of aerodynamics than the fields beside it",
+        ),
         (["line", "nonsense"], ""),
     ],
 )

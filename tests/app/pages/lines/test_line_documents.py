@@ -198,3 +198,29 @@ def test_no_document_loses_anything_in_the_form(line: dict[str, Any], analysis: 
         assert made.get(part, {}) == {
             name: value for name, value in said.items() if value != [] or name in made.get(part, {})
         }
+
+
+TABLE = {
+    "table": [{"angle_deg": 10.0 * n, "lift": n / 10.0, "drag": 1.0, "moment": -0.1} for n in range(5)],
+    "static_angle_deg": 20.0,
+    "half_range_deg": 20.0,
+}
+DIAMETERS = {"si": {"value": 28.6, "unit": "mm"}, "feet": {"value": 1.125984, "unit": "in"}}
+
+
+@pytest.mark.parametrize("aerodynamics", [COEFFICIENTS, TABLE], ids=["cubics", "table"])
+@pytest.mark.parametrize("units", [SI, FEET], ids=lambda units: units.name)
+def test_own_coefficients_have_fields_and_come_back(aerodynamics: dict[str, Any], units: Units) -> None:
+    at_rest = {"vertical": 0.3, "horizontal": 1.2, "torsional": 0.0}
+    said = {"aerodynamics": {**aerodynamics, "reference_diameter_m": 0.0286}, "aerodynamics_at_rest": at_rest}
+    texts = to_texts({"line": {"ice": said}}, units)
+    assert (texts["rest"], texts["line.ice.aerodynamics_at_rest.horizontal"]) == ("", "1.2")
+    expected = {**said, "aerodynamics": {**aerodynamics, "reference_diameter_m": DIAMETERS[units.name]}}
+    assert to_document(texts, units)["line"]["ice"] == expected
+
+
+def test_a_table_too_long_for_rows_stays_json() -> None:
+    long = {"line": {"ice": {"aerodynamics": {"table": [{"angle_deg": 0.1 * n} for n in range(1001)]}}}}
+    texts = to_texts(long, SI)
+    assert json.loads(texts["rest"]) == long
+    assert not any(name.startswith("line.ice") for name in texts)

@@ -1,16 +1,26 @@
-from app.pages.lines.line_fields import CLOSED, GROUPS, form_fields, list_names
+from app.pages.lines.line_fields import CLOSED, GROUPS, controls, form_fields, list_names
 from app.pages.measures import FEET, SI
 from app.pages.wording import words
 
 
 def test_every_field_has_its_words_and_its_row_in_the_schemas() -> None:
     for name, field in form_fields().items():
-        assert hasattr(words().fields, name), name
+        assert hasattr(words().fields, field.said), name
         assert field.row["description"]
     assert all(hasattr(words().groups, name) for name in GROUPS)
     assert GROUPS.keys() >= CLOSED
     assert "line.devices" in list_names()
     assert form_fields().keys().isdisjoint(list_names())
+
+
+def test_a_list_of_fixed_length_has_a_field_for_each_item_and_any_other_has_rows() -> None:
+    found = controls("coefficients")
+    assert [name for name in found if ".torsional." in name] == [
+        f"line.ice.aerodynamics.torsional.{number}" for number in range(3)
+    ]
+    assert found[-1] == "line.ice.aerodynamics.table"
+    third = form_fields()["line.ice.aerodynamics.torsional.2"]
+    assert (third.unit(SI).name, third.label) == ("1/rad³", "Torsional, third order")
 
 
 def test_bounds_and_defaults_are_those_of_the_schema_in_the_units_of_the_form() -> None:

@@ -33,6 +33,15 @@ def test_faults_of_what_has_no_field_stand_at_the_row_or_list_that_holds_it() ->
     assert beside("/line/phases/0/rest")[1] == "Phase 1: More, as JSON"
 
 
+def test_faults_of_a_list_of_fixed_length_stand_beside_its_first_item() -> None:
+    assert beside("/line/ice/aerodynamics/vertical")[:2] == (
+        "line.ice.aerodynamics.vertical.0",
+        "Vertical, first order",
+    )
+    of_row = beside("/line/devices/0/aerodynamics/torsional")
+    assert of_row[:2] == ("line.devices.0.aerodynamics.torsional.0", "Device 1: Torsional, first order")
+
+
 def test_other_faults_have_no_place() -> None:
     faults = [Fault("/line/colour", "unknown_field", "unknown field"), Fault("", "x", "y")]
     assert placed(faults, TEXTS).others == faults

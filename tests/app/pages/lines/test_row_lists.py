@@ -52,6 +52,19 @@ def test_lists_of_fixed_length_have_a_field_for_each_item() -> None:
     assert not any("table" in name or "static_angle" in name for name in spoiler)
 
 
+def test_a_list_that_only_a_later_form_of_its_part_has_has_rows() -> None:
+    table = row_lists()["line.ice.aerodynamics.table"]
+    assert [field.name for field in table.columns] == ["angle_deg", "lift", "drag", "moment"]
+    assert [field.unit(FEET).name for field in table.columns] == ["°", "", "", ""]
+    assert (table.most, table.most_rows) == (10_000, 1000)
+
+
+def test_columns_of_a_sheet_are_the_fields_of_the_row_itself() -> None:
+    assert row_lists()["line.devices"].columns == []
+    names = [field.name for field in row_lists()["line.phases"].columns]
+    assert names == ["name", "y_m", "z_m", "required_clearance_m"]
+
+
 def test_what_has_no_field_makes_room_for_json_and_a_required_part_is_known() -> None:
     kinds = row_lists()["line.devices"].kinds
     assert kinds["airflow_spoiler"].has_more

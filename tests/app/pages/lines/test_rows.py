@@ -126,3 +126,31 @@ def test_what_makes_no_list_of_wind_speeds_is_refused(said: tuple[str, ...]) -> 
 def test_a_row_is_blank_until_something_but_its_kind_is_typed() -> None:
     assert is_blank({"type": "spacer", "mass_kg": " ", "rest": ""})
     assert not is_blank({"type": "spacer", "mass_kg": "0"})
+
+
+TABLE = "line.ice.aerodynamics.table"
+
+
+def test_rows_of_a_sheet_follow_those_that_were_typed() -> None:
+    typed = {f"{TABLE}.0.angle_deg": "-30", f"{TABLE}.1.rest": "", f"paste.{TABLE}": "Angle\tLift\n-20\t0,3\n-10\t0,2"}
+    found = changed(typed, f"paste {TABLE}")
+    assert found is not None
+    assert not found.refused
+    rows = rows_in(found.texts)[TABLE]
+    assert [row["angle_deg"] for row in rows] == ["-30", "-20", "-10"]
+    assert rows[2]["lift"] == "0,2"
+    assert (found.focus, found.texts[f"paste.{TABLE}"]) == ("line-ice-aerodynamics-table-1-angle_deg", "")
+    winds = changed({f"paste.{WINDS}": "4\n4,5"}, f"paste {WINDS}")
+    assert winds is not None
+    assert [row[""] for row in rows_in(winds.texts)[WINDS]] == ["4", "4,5"]
+    assert winds.focus == "analysis-wind_speeds_m_per_s-0"
+
+
+@pytest.mark.parametrize("text", ["", "1\t2\t3\t4\t5", "1\t2\t3\t4\n" * 1001])
+def test_a_sheet_that_does_not_fit_is_refused_as_a_whole(text: str) -> None:
+    found = changed({f"paste.{TABLE}": text}, f"paste {TABLE}")
+    assert found is not None
+    assert (found.refused, found.focus) == (True, f"paste-{TABLE.replace('.', '-')}")
+    assert "4 cells" in found.said
+    assert rows_in(found.texts)[TABLE] == []
+    assert changed({"paste.line.devices": "1"}, "paste line.devices") is None

@@ -168,3 +168,14 @@ def test_the_first_button_of_the_form_computes_so_that_enter_never_removes_a_row
     text = send(shared_client, CHANGE, texts_of(examples.DRAKE, change="add line.devices")).text
     form = text[text.index('<form id="line"') :]
     assert form.index('<button class="unseen" tabindex="-1"') < form.index('<button class="quiet"')
+
+
+def test_coefficients_of_another_form_than_the_shape_are_complained_about_at_their_fields(
+    shared_client: httpx.Client,
+) -> None:
+    typed = {"line.ice.aerodynamics.torsional.1": "2", "line.ice.aerodynamics.table.0.lift": "1"}
+    answer = send(shared_client, FORM, texts_of(examples.DRAKE, **typed))
+    assert answer.status_code == 422
+    for place in ("torsional-0", "table"):
+        assert re.search(rf'id="line-ice-aerodynamics-{place}-fault">[^<]*belongs to another form', answer.text)
+    assert values(shared_client, f"{FORM}?example=c11-twin")["line.ice.aerodynamics.vertical.1"] == "-4.0547"
