@@ -14,6 +14,7 @@ from app.coalescing.grouped_calls import GroupedCalls, committed_together
 from app.coalescing.shared_watch import SharedWatch
 from app.http import cors, problems
 from app.http.compression import Compression
+from app.http.forwarded import believing
 from app.http.head_as_get import HeadAsGet
 from app.http.prefix import UnderPrefix
 from app.http.request_log import RequestLog
@@ -55,6 +56,7 @@ from app.runtime import telemetry
 from app.runtime.settings import Settings, get_settings
 from app.security.gate import Gate
 from app.security.quotas import Meter
+from app.security.strangers import Strangers
 from app.storage.database import make_engine, session_factory
 
 _INBOX_PAUSE_SECONDS = 0.006  # about as long as one group of posts takes
@@ -74,8 +76,9 @@ class Service(FastAPI):
     def build_middleware_stack(self) -> ASGIApp:
         """Wrap the application in the middleware that must also handle answers to internal errors."""
         stack = RequestLog(SecurityHeaders(super().build_middleware_stack()), self.state.requests.observe)
-        prefix = self.state.settings.root_path
-        return UnderPrefix(stack, prefix) if prefix else stack
+        settings: Settings = self.state.settings
+        placed = UnderPrefix(stack, settings.root_path) if settings.root_path else stack
+        return believing(placed, settings.trusted_proxies) if settings.trusted_proxies else placed
 
 
 def create_app(settings: Settings | None = None) -> Service:
@@ -113,7 +116,8 @@ def create_app(settings: Settings | None = None) -> Service:
     )
     _equip(app, settings, database)
     app.state.meter = meter = Meter(settings)
-    app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter)
+    app.state.strangers = strangers = Strangers(settings, app.state.readers, meter)
+    app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter, strangers)
     of_batches = dict.fromkeys((*batch_intake.ADDRESSES, views.BATCH_FILES), settings.max_batch_bytes)
     limits = {"": settings.max_body_bytes, **of_batches}
     slowest = settings.silent_body_seconds, settings.least_body_bytes_per_second

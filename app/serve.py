@@ -77,6 +77,7 @@ def api(settings: Settings, host: str, port: int) -> int:
         log_config=None,
         access_log=False,  # app.http.request_log replaces it
         server_header=False,
+        proxy_headers=False,  # app.http.forwarded replaces them, for the proxies that the operator trusts
         timeout_worker_healthcheck=_START_SECONDS,
         timeout_graceful_shutdown=math.ceil(settings.shutdown_seconds),
     )

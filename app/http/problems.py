@@ -28,7 +28,12 @@ class ProblemKind(Enum):
 
     INVALID_PARAMETER = ("invalid-parameter", 400, "Invalid parameter", "A query parameter is not valid.")
     UNAUTHENTICATED = ("unauthenticated", 401, "Unauthenticated", "The request needs a valid API key.")
-    FORBIDDEN = ("forbidden", 403, "Forbidden", "The API key lacks the scope that this method needs.")
+    FORBIDDEN = (
+        "forbidden",
+        403,
+        "Forbidden",
+        "The API key lacks the scope that this method needs, or a page of another site sent the request.",
+    )
     NOT_FOUND = ("not-found", 404, "Not found", "There is nothing at this address, or it was removed.")
     METHOD_NOT_ALLOWED = ("method-not-allowed", 405, "Method not allowed", "The address does not support this method.")
     NOT_ACCEPTABLE = (

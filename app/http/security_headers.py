@@ -2,6 +2,8 @@
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.http.forwarded import is_encrypted
+
 _PICTURES_AND_PROBLEMS = (
     b"default-src 'none'; style-src 'unsafe-inline'; img-src data:; "
     b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -35,7 +37,7 @@ class SecurityHeaders:
             await self.app(scope, receive, send)
             return
         policy = (b"content-security-policy", _SWAGGER if scope["path"].endswith("/docs") else _PICTURES_AND_PROBLEMS)
-        wanted = (*_ALWAYS, policy, _ENCRYPTED) if scope["scheme"] == "https" else (*_ALWAYS, policy)
+        wanted = (*_ALWAYS, policy, _ENCRYPTED) if is_encrypted(scope) else (*_ALWAYS, policy)
 
         async def send_safe(message: Message) -> None:
             if message["type"] == "http.response.start":

@@ -17,6 +17,7 @@ from app.pages import assets, measures
 from app.pages.wording import word_for, words
 from app.security import sessions
 from app.security.caller import LOCAL, Caller
+from app.security.origins import is_told_of_another_site
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
@@ -80,7 +81,8 @@ def check_form(request: Request, fields: Mapping[str, str]) -> None:
     ProblemError
         403 if it does not.
     """
-    if not sessions.is_form_mark(request.app.state.settings, _whose(request), fields.get("mark", "")):
+    marked = sessions.is_form_mark(request.app.state.settings, _whose(request), fields.get("mark", ""))
+    if not marked or is_told_of_another_site(request.scope, dict(request.scope["headers"])):
         raise ProblemError(ProblemKind.FORBIDDEN, words().problem.old_form)
 
 

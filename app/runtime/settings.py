@@ -4,6 +4,7 @@ import os
 import re
 import secrets
 from functools import cache
+from ipaddress import ip_network
 from pathlib import Path
 from typing import Annotated, Any, Literal
 from urllib.parse import urlsplit
@@ -107,6 +108,9 @@ class Settings(BaseSettings):
         pattern=r"^(/[A-Za-z0-9._~-]+)*/?$",
         description="Prefix under which a proxy serves this service, such as /gal",
     )
+    trusted_proxies: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(), description="Addresses or networks of proxies whose X-Forwarded-For and -Proto count, with commas"
+    )
     cors_origins: Annotated[tuple[str, ...], NoDecode] = Field(
         default=(), description="Origins of pages that may call the API, separated by commas; * for every one"
     )
@@ -154,6 +158,19 @@ class Settings(BaseSettings):
             if origin != "*" and not _ORIGIN.fullmatch(origin):
                 raise ValueError(f"{origin} is no origin such as https://grid.example")
         return origins
+
+    @field_validator("trusted_proxies", mode="before")
+    @classmethod
+    def _proxies(cls, value: object) -> object:
+        if not isinstance(value, str):
+            return value
+        proxies = tuple(proxy.strip() for proxy in value.split(",") if proxy.strip())
+        for proxy in proxies:
+            try:
+                ip_network(proxy)
+            except ValueError as error:
+                raise ValueError(f"{proxy} is no address or network such as 10.0.0.0/24: {error}") from error
+        return proxies
 
     @field_validator("root_path")
     @classmethod
@@ -211,7 +228,7 @@ class Settings(BaseSettings):
         """Return the environment variables that pass these settings to a child process."""
         values = self.model_dump(exclude_none=True)
         plain = {k: v.get_secret_value() if isinstance(v, SecretStr) else str(v) for k, v in values.items()}
-        plain["cors_origins"] = ",".join(self.cors_origins)
+        plain |= {name: ",".join(values[name]) for name in ("cors_origins", "trusted_proxies")}
         return {_PREFIX + name.upper(): value for name, value in plain.items()}
 
 

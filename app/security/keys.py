@@ -11,7 +11,7 @@ import secrets
 from collections.abc import Iterable, Sequence
 from datetime import datetime, timedelta
 
-from sqlalchemy import func, select, update
+from sqlalchemy import func, or_, select, update
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
@@ -64,6 +64,12 @@ def look_up(session: Session, digest: str) -> tuple[Caller | None, bool]:
         return None, False
     stale = key.used_at is None or key.used_at <= now - _USE_RECORDED_EVERY
     return (_caller(key) if _is_valid(key, now) else None), stale
+
+
+def valid_digests(session: Session) -> frozenset[str]:
+    """Return the digests of all valid keys."""
+    good = ApiKey.revoked_at.is_(None), or_(ApiKey.expires_at.is_(None), ApiKey.expires_at > database_time(session))
+    return frozenset(session.scalars(select(ApiKey.digest).where(*good)))
 
 
 def record_use(session: Session, digest: str) -> None:

@@ -88,6 +88,10 @@ class IssuerKeys:
             raise IssuerUnavailable
         return found
 
+    def holds(self, key_id: str | None) -> bool:
+        """Tell whether a key is at hand without a question to the issuer."""
+        return self._kept(key_id) is not None
+
     def _kept(self, key_id: str | None) -> SigningKey | None:
         if self._clock() - self._fetched_at > _LONGEST_KEPT_SECONDS:
             return None
@@ -140,6 +144,13 @@ class Tokens:
         except jwt.PyJWTError as error:
             raise NotAccepted(str(error)) from error
         return Caller(self._owner(claims), self._scopes(claims))
+
+    def may_accept(self, token: str) -> bool:
+        """Tell whether a token names a key of the issuer that is at hand, so that a check costs a signature only."""
+        try:
+            return self._keys.holds(jwt.get_unverified_header(token).get("kid"))
+        except jwt.PyJWTError:
+            return False
 
     def _owner(self, claims: Mapping[str, Any]) -> str:
         name = self._settings.oidc_owner_claim

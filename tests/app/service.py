@@ -32,7 +32,8 @@ def running(settings: Settings) -> Iterator[httpx.Client]:
 @contextlib.contextmanager
 def serving(app: ASGIApp, **options: Any) -> Iterator[httpx.Client]:
     """Serve an application on a free loopback port in a thread, and give a client of it."""
-    server = uvicorn.Server(uvicorn.Config(app, log_config=None, ws="none", timeout_graceful_shutdown=5, **options))
+    plain: dict[str, Any] = {"log_config": None, "ws": "none", "proxy_headers": False, "timeout_graceful_shutdown": 5}
+    server = uvicorn.Server(uvicorn.Config(app, **plain, **options))
     with socket.create_server(("127.0.0.1", 0)) as listener:
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()

@@ -3,13 +3,13 @@
 from anyio import to_thread
 from fastapi import APIRouter, Request, Response
 
+from app.http.forwarded import is_encrypted
 from app.http.problems import ProblemError, ProblemKind
 from app.http.strict_routes import KnownParametersRoute
 from app.pages.forms import Fields, local_path
 from app.pages.frame import address, moved, page
 from app.pages.wording import words
 from app.security import keys, sessions
-from app.security.quotas import Quota
 
 router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
@@ -30,11 +30,10 @@ async def sign_in(request: Request, fields: Fields) -> Response:
         429 if too many keys were tried from this address.
     """
     settings, back = request.app.state.settings, local_path(fields.get("back", "/"))
-    strangers = Quota("strangers", settings.strangers_per_minute)
-    standing = await request.app.state.meter.take(strangers, request.client.host if request.client else "")
-    if standing.left is None:
-        raise ProblemError(ProblemKind.TOO_MANY_REQUESTS, words().sign_in.too_often, headers=standing.fields)
     digest = keys.digest_of(fields.get("key", "").strip())
+    standing = await request.app.state.strangers.try_key(request.scope, digest)
+    if standing is not None and standing.left is None:
+        raise ProblemError(ProblemKind.TOO_MANY_REQUESTS, words().sign_in.too_often, headers=standing.fields)
 
     def is_valid() -> bool:
         with request.app.state.readers() as session:
@@ -48,7 +47,7 @@ async def sign_in(request: Request, fields: Fields) -> Response:
         sessions.issue(settings, digest),
         max_age=sessions.LASTS_SECONDS,
         path=address(request)("/"),
-        secure=request.url.scheme == "https",
+        secure=is_encrypted(request.scope),
         httponly=True,
         samesite="lax",
     )

@@ -112,3 +112,11 @@ def test_missing_file_of_a_secret_is_named(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setenv("GALLOPING_BROKER_URL_FILE", str(tmp_path / "none"))
     with pytest.raises(ValidationError, match=r"GALLOPING_BROKER_URL_FILE: .*none cannot be read"):
         Settings()
+
+
+def test_proxies_reach_child_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GALLOPING_TRUSTED_PROXIES", "127.0.0.1, 2001:db8::/32")
+    settings = Settings(data_dir=tmp_path)
+    assert settings.trusted_proxies == ("127.0.0.1", "2001:db8::/32")
+    monkeypatch.setenv("GALLOPING_TRUSTED_PROXIES", settings.environment()["GALLOPING_TRUSTED_PROXIES"])
+    assert Settings(data_dir=tmp_path) == settings
