@@ -51,7 +51,6 @@ WITHOUT_A_TEST_FILE = {
     "app.routes.finished_jobs": "tests/app/routes/test_results.py holds its answers.",
     "app.routes.job_intake": "tests/app/routes/test_jobs.py and test_remedies.py post jobs through it.",
     "app.routes.job_status": "tests/app/routes/test_jobs.py holds the documents of jobs that it makes.",
-    "app.routes.streaming": "tests/app/batches/test_line_results.py reads its streams.",
     "app.routes.batch_documentation": "It holds examples; tests/app/test_main.py validates each by its schema.",
     "app.routes.batch_results": "tests/app/routes/test_batches.py reads results of every form from it.",
     "app.routes.deliveries": "tests/worker/test_courier.py reads the log and sends again through it.",

@@ -1,14 +1,16 @@
 """Results of a batch's lines, streamed in the order of their numbers with few lines in memory at a time."""
 
 from collections.abc import Container, Iterable, Iterator, Sequence
+from itertools import islice
 from typing import Any
 from uuid import UUID
 
 import orjson
-from sqlalchemy import Row, and_, case, select
+from sqlalchemy import Row, Select, and_, case, select
 from sqlalchemy.orm import Session
 
 from app import convert
+from app.storage.pages import in_pages
 from app.storage.stored_results import (
     RANKING_FIGURES,
     STATIC,
@@ -18,7 +20,7 @@ from app.storage.stored_results import (
     tables_of,
     unpacked,
 )
-from app.tables import BatchItem, FailureKind, Job, JobStatus, PointRow
+from app.tables import Batch, BatchItem, FailureKind, Job, JobStatus, PointRow
 
 _LINES_A_FETCH = 200
 _LABELS = ("number", "reference", "asset_id")
@@ -85,18 +87,21 @@ def _with_computed(rows: Iterable[dict[str, Any]], computed: Sequence[dict[str, 
 
 def errors(session: Session, batch_id: UUID, most: int | None = None) -> Iterator[dict[str, Any]]:
     """Yield the faults of rejected lines: number, reference, row, and pointer, code and sentence of each fault."""
-    wanted = BatchItem.number, BatchItem.reference, BatchItem.faults
-    rejected = BatchItem.batch_id == batch_id, BatchItem.chunk_id.is_(None)
-    statement = select(*wanted).where(*rejected).order_by(BatchItem.number).limit(most)
-    for number, reference, faults in session.execute(statement.execution_options(yield_per=_LINES_A_FETCH)):
-        for fault in faults or ():
-            yield {"number": number, "reference": reference, "row": None, "place": None, **fault}
+    columns = select(BatchItem.number, BatchItem.reference, BatchItem.faults)
+    rejected = columns.where(BatchItem.batch_id == batch_id, BatchItem.chunk_id.is_(None))
+    for item in islice(_pages(session, batch_id, rejected), most):
+        for fault in item.faults or ():
+            yield {"number": item.number, "reference": item.reference, "row": None, "place": None, **fault}
+
+
+def _pages(session: Session, batch_id: UUID, statement: Select[*tuple[Any, ...]]) -> Iterator[Row[Any]]:
+    return in_pages(session, statement, BatchItem.number, _LINES_A_FETCH, select(Batch.id).where(Batch.id == batch_id))
 
 
 def _lines(
     session: Session, batch_id: UUID, *, in_short: bool, only: Container[int] | None = None
 ) -> Iterator[Row[Any]]:
-    """Yield the lines with the state of their chunk and their result, reading a page at a time.
+    """Return the lines with the state of their chunk and their result, reading a page at a time.
 
     In short, they have name, tags and verdict, and their tables only if these were stored without the verdict.
     """
@@ -113,13 +118,8 @@ def _lines(
         .outerjoin(Job, Job.id == BatchItem.chunk_id)
         .outerjoin(PointRow, of_line)
         .where(BatchItem.batch_id == batch_id)
-        .order_by(BatchItem.number)
-        .limit(_LINES_A_FETCH)
     )
-    last = 0
-    while page := session.execute(statement.where(BatchItem.number > last)).all():
-        yield from (item for item in page if only is None or item.number in only)
-        last = page[-1].number
+    return (item for item in _pages(session, batch_id, statement) if only is None or item.number in only)
 
 
 def _feature(item: Row[Any]) -> dict[str, Any]:

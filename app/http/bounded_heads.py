@@ -1,6 +1,7 @@
-"""Bounds on the head of a request: its bytes, its fields and its time, none of which uvicorn with httptools bounds.
+"""Bounds on the head of a request, its bytes, fields and time, and on clients that take no answer.
 
-The application sees a head only when it is complete, so only the protocol can stop one that is too large or too slow.
+Uvicorn with httptools bounds none of them. The application sees a head only when it is complete, so only the protocol
+can stop one that is too large or too slow; and only it can end a connection without writing what nobody takes.
 """
 
 import asyncio
@@ -20,6 +21,7 @@ MOST_FIELDS = 200
 _HEAD_SECONDS = 30.0  # from the connection, or from the first byte of a further request, to the end of a head
 # As with bodies: a connection that is closed on a client who still sends is reset, and the answer with it.
 _LINGER_SECONDS = 2.0
+_STALLED_SECONDS = 60.0  # in which a client that is owed more than the buffers of the sockets hold takes nothing
 
 _logger = logging.getLogger(__name__)
 
@@ -29,7 +31,7 @@ class _HeadTooLarge(Exception):
 
 
 class BoundedHeads(HttpToolsProtocol):
-    """Uvicorn's protocol, which also answers 431 to a head that is too large and closes a connection that is too slow.
+    """Uvicorn's protocol, which also answers 431 to a head that is too large and ends connections that are too slow.
 
     A connection holds at most `MOST_BYTES` and one read of its socket (256 kB) of a head.
     """
@@ -40,6 +42,7 @@ class BoundedHeads(HttpToolsProtocol):
         self._head_bytes = 0  # bytes since the last that belonged to a body or ended a request
         self._is_refused = False
         self._deadline: asyncio.TimerHandle | None = None
+        self._stall: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Wait for the first head."""
@@ -47,8 +50,9 @@ class BoundedHeads(HttpToolsProtocol):
         self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Stop the timer."""
+        """Stop the timers."""
         self._stop_timer()
+        self._stop_stall()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
@@ -91,6 +95,17 @@ class BoundedHeads(HttpToolsProtocol):
         self._head_bytes = 0
         super().on_message_complete()
 
+    def pause_writing(self) -> None:
+        """Begin to watch whether the client takes anything."""
+        super().pause_writing()
+        self._stop_stall()
+        self._watch_stall()
+
+    def resume_writing(self) -> None:
+        """Stop watching."""
+        self._stop_stall()
+        super().resume_writing()
+
     def send_400_response(self, msg: str) -> None:
         """Answer the fault at which the parser has stopped, unless that was a refusal."""
         if not self._is_refused:
@@ -109,6 +124,23 @@ class BoundedHeads(HttpToolsProtocol):
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
+
+    def _watch_stall(self) -> None:
+        waiting = self.transport.get_write_buffer_size()
+
+        def end_if_stalled() -> None:
+            if self.transport.get_write_buffer_size() < waiting:
+                self._watch_stall()
+            else:
+                _logger.info("a client takes nothing of its answer; its connection is ended")
+                self.transport.abort()
+
+        self._stall = self.loop.call_later(_STALLED_SECONDS, end_if_stalled)
+
+    def _stop_stall(self) -> None:
+        if self._stall is not None:
+            self._stall.cancel()
+            self._stall = None
 
     def _refuse(self) -> None:
         self._is_refused = True

@@ -9,6 +9,7 @@ from anyio import to_thread
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import TimeoutError as NoConnectionFree
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
@@ -150,6 +151,7 @@ def install(app: FastAPI, max_body_bytes: Mapping[str, int], slowest_body: tuple
     app.add_exception_handler(HTTPException, _on_http)
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(OperationalError, _on_database)
+    app.add_exception_handler(NoConnectionFree, _on_database)
     app.add_exception_handler(Exception, _on_defect)
     limits = {path: Limit(most_bytes, _too_large(most_bytes)) for path, most_bytes in max_body_bytes.items()}
     pace = Pace(*slowest_body, _too_slow(*slowest_body))

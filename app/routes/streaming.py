@@ -29,7 +29,11 @@ def streamed(
     media_type: str,
     headers: Mapping[str, str],
 ) -> StreamingResponse:
-    """Stream pieces that one database session reads while they are sent; close the session afterwards."""
+    """Stream pieces that a database session reads while they are sent; close the session afterwards.
+
+    The pieces must come from rows that are read in pages (`app.storage.pages`): a client may take them as slowly as it
+    likes.
+    """
 
     def stream() -> Generator[str | bytes, None, None]:
         with readers() as session:

@@ -28,7 +28,8 @@ from app.runtime.settings import Settings
 from app.tables import Base, UtcDateTime
 
 _BUSY_SECONDS = 30.0
-_THREADS = 40
+# One connection for each thread of the API: a connection above the pool size would be reopened for every use.
+_POOL: dict[str, Any] = {"pool_size": 40, "max_overflow": 0}
 _IMPATIENT: dict[str, Any] = {"connect_timeout": 2, "options": "-c statement_timeout=2000"}
 _CLOCK = "database time of this transaction"
 
@@ -53,12 +54,11 @@ def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
     if url.get_backend_name() != "sqlite":
         if impatient:
             return create(poolclass=NullPool, connect_args=_IMPATIENT)
-        # One connection for each thread of the API: a connection above the pool size would be reopened for every use.
-        pool = {"pool_size": _THREADS, "max_overflow": 0}
-        return create(pool_pre_ping=True, connect_args={"connect_timeout": 10}, **pool)
+        return create(pool_pre_ping=True, connect_args={"connect_timeout": 10}, **_POOL)
     if url.database:
         _make_folder(Path(url.database), settings.data_dir)
-    engine = create(connect_args={"timeout": _IMPATIENT["connect_timeout"] if impatient else _BUSY_SECONDS})
+    patience = {"timeout": _IMPATIENT["connect_timeout"] if impatient else _BUSY_SECONDS}
+    engine = create(connect_args=patience, **_POOL)
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine
@@ -78,7 +78,8 @@ def session_factory(engine: Engine, *, read_only: bool = False) -> sessionmaker[
     """Return a factory of sessions whose objects stay readable after the commit.
 
     A session that only reads should come from a `read_only` factory. On SQLite it then neither waits for a writer nor
-    blocks one, however long it streams; on PostgreSQL the server refuses writes in it.
+    blocks one; on PostgreSQL the server refuses writes in it. `app.storage.pages` frees its
+    connection between pages.
     """
     bind = engine.execution_options(read_only=True, **_read_only_options(engine)) if read_only else engine
     return sessionmaker(bind, expire_on_commit=False)

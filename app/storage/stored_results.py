@@ -8,12 +8,13 @@ from uuid import UUID
 
 import orjson
 import zstandard
-from sqlalchemy import select
+from sqlalchemy import Row, Select, select
 from sqlalchemy.orm import Session
 
 from app.convert import TABLES, StaticState, columns_of
 from app.storage.database import insert_rows
-from app.tables import PointRow
+from app.storage.pages import in_pages
+from app.tables import Job, PointRow
 
 if TYPE_CHECKING:
     from app.convert import PointResult
@@ -101,10 +102,14 @@ def tables_of(packed: bytes | None) -> dict[str, list[dict[str, Any]]]:
 
 def rows(session: Session, job_id: UUID, table: str) -> Iterator[dict[str, Any]]:
     """Stream the rows of one table in the order of the points; each row begins with the values of the study's axes."""
-    statement = select(PointRow.axes, PointRow.tables).where(PointRow.job_id == job_id).order_by(PointRow.point)
-    for point_axes, packed in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):
-        for row in tables_of(packed).get(table, ()):
-            yield {**point_axes, **row}
+    for found in _pages(session, job_id, select(PointRow.point, PointRow.axes, PointRow.tables)):
+        for row in tables_of(found.tables).get(table, ()):
+            yield {**found.axes, **row}
+
+
+def _pages(session: Session, job_id: UUID, columns: Select[*tuple[Any, ...]]) -> Iterator[Row[Any]]:
+    of_job, job = columns.where(PointRow.job_id == job_id), select(Job.id).where(Job.id == job_id)
+    return in_pages(session, of_job, PointRow.point, _POINTS_A_FETCH, job)
 
 
 def tables_of_point(session: Session, job_id: UUID, point: int) -> dict[str, list[dict[str, Any]]] | None:
@@ -119,8 +124,7 @@ def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
     static = [getattr(PointRow, name) for name in STATIC]
     hartog = PointRow.den_hartog_coefficient, PointRow.den_hartog_unstable
     outcome = PointRow.warnings, PointRow.engine_version, PointRow.failure
-    statement = select(PointRow.point, PointRow.axes, *static, *hartog, *outcome).where(PointRow.job_id == job_id)
-    for row in session.execute(statement.order_by(PointRow.point).execution_options(yield_per=_POINTS_A_FETCH)):
+    for row in _pages(session, job_id, select(PointRow.point, PointRow.axes, *static, *hartog, *outcome)):
         solved = row.horizontal_tension_n is not None
         found = {"coefficient": row.den_hartog_coefficient, "unstable": row.den_hartog_unstable}
         yield {
@@ -136,11 +140,10 @@ def points(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
 
 def orbits(session: Session, job_id: UUID) -> Iterator[dict[str, Any]]:
     """Stream the orbits: point, cycle (row number among the point's limit cycles), and Fourier coefficients."""
-    packed = PointRow.job_id == job_id, PointRow.orbits.is_not(None)
-    statement = select(PointRow.point, PointRow.orbits).where(*packed).order_by(PointRow.point)
-    for point, found in session.execute(statement.execution_options(yield_per=_POINTS_A_FETCH)):
-        for orbit in orjson.loads(unpacked(found)):
-            yield {"point": point, **orbit}
+    columns = select(PointRow.point, PointRow.orbits).where(PointRow.orbits.is_not(None))
+    for found in _pages(session, job_id, columns):
+        for orbit in orjson.loads(unpacked(found.orbits)):
+            yield {"point": found.point, **orbit}
 
 
 def _as_columns(point: "PointResult", compressor: zstandard.ZstdCompressor) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Heads of requests, written byte by byte: those within the bounds are served, and others are not taken in."""
 
+import contextlib
 import json
 import select
 import socket
@@ -9,9 +10,13 @@ from contextlib import contextmanager
 
 import httpx
 import pytest
+from starlette.types import Receive, Scope, Send
 
+from app.http import bounded_heads
 from app.http.bounded_heads import MOST_BYTES, MOST_FIELDS
 from app.http.problems import MEDIA_TYPE, ProblemKind
+from app.serve import HTTP
+from tests.app import service
 
 ENDLESS = 1 << 26  # what a client sends at most before a test fails, far above the buffers of two sockets
 OWN_FIELDS = 1  # Host
@@ -166,3 +171,35 @@ def test_only_heads_have_to_hurry(shared_client: httpx.Client) -> None:
             time.sleep(1.0)
             connection.sendall(b"{}" + last)
         assert statuses(rest(connection)) == ["422", "200", "422", "200"]
+
+
+LARGE = 1 << 26
+
+
+async def large(scope: Scope, receive: Receive, send: Send) -> None:
+    """Answer with more than the buffers of two sockets hold."""
+    if scope["type"] != "http":
+        raise RuntimeError("no lifespan here")
+    await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"%d" % LARGE)]})
+    await send({"type": "http.response.body", "body": bytes(LARGE)})
+
+
+def test_a_client_that_takes_nothing_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bounded_heads, "_STALLED_SECONDS", 0.5)
+    with service.serving(large, http=HTTP) as client, connected(client) as connection:
+        connection.sendall(head())
+        connection.recv(1)
+        time.sleep(2.0)
+        with contextlib.suppress(ConnectionResetError):
+            assert len(rest(connection)) < LARGE
+
+
+def test_a_client_that_takes_little_by_little_gets_everything(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bounded_heads, "_STALLED_SECONDS", 1.0)
+    with service.serving(large, http=HTTP) as client, connected(client) as connection:
+        connection.sendall(head("Connection: close"))
+        taken = 0
+        for _ in range(20):
+            taken += len(connection.recv(1 << 21, socket.MSG_WAITALL))
+            time.sleep(0.15)
+        assert taken + len(rest(connection)) > LARGE
