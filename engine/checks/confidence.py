@@ -18,9 +18,7 @@ DETUNING = 1e-3  # relative shift of the horizontal frequencies, either way
 ONE_STEP = NewtonOptions(iterations=1)  # one more harmonic changes little, so one Newton step is enough
 HORIZONTAL = 1
 COARSE = NewtonOptions(tolerance=1e-3)  # convergence is quadratic: the error is 1e-6 of the amplitude
-LINEAR = (
-    1e-2  # change of the amplitude up to which the mirror image of one shift stands for the other: its square counts
-)
+LINEAR = 1e-2  # change of the amplitude up to which the other shift makes it the same in the other direction
 PERIODS = 50  # of direct integration from a cycle
 
 
@@ -101,12 +99,14 @@ def _largest_change(
     higher, first = balance(_detuned(model, DETUNING), member, orbits, COARSE)
     rise = np.where(first.converged, change(higher.coefficients), np.nan)
     soft = np.flatnonzero(np.abs(rise) > LINEAR)
-    lower = 2.0 * orbits.coefficients - higher.coefficients
-    frequency = 2.0 * orbits.angular_frequency - higher.angular_frequency
-    start = Orbits(lower[soft], frequency[soft], orbits.wind_speed[soft])
+    lower = 2.0 * orbits.coefficients[soft] - higher.coefficients[soft]
+    frequency = 2.0 * orbits.angular_frequency[soft] - higher.angular_frequency[soft]
+    start = Orbits(lower, frequency, orbits.wind_speed[soft])
     solved, second = balance(_detuned(model, -DETUNING), member[soft], start, COARSE)
-    lower[soft] = np.where(second.converged[:, None, None], solved.coefficients, np.nan)
-    fall = change(lower)
+    fallen = orbits.coefficients.copy()
+    fallen[soft] = np.where(second.converged[:, None, None], solved.coefficients, np.nan)
+    fall = -rise  # or rounding would decide which of two equal sizes, and so which sign, is the largest
+    fall[soft] = change(fallen)[soft]
     relaxed = orbits.coefficients.copy()
     shift = stretching_shift(model, member, orbits)
     far = np.flatnonzero(shift > DETUNING)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine.arrays import FloatArray
-from engine.checks.confidence import DETUNING, confidence, stretching_shift
+from engine.checks.confidence import DETUNING, LINEAR, confidence, stretching_shift
 from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select
 from engine.cycles.search import Cycles, find_cycles
 from engine.cycles.starts import energy_starts
@@ -58,6 +58,16 @@ def test_detuning_is_the_larger_change_of_a_higher_and_a_lower_horizontal_freque
     assert measured == pytest.approx(np.where(np.abs(rise) > np.abs(fall), rise, fall), rel=1e-4)
     assert (np.abs(measured) > 0.02).all()  # the close resonance of two loops is soft
     assert (rise * fall < 0.0).all()
+
+
+def test_a_cycle_that_detuning_hardly_changes_has_the_sign_of_a_rise() -> None:
+    model = hybrid(source_line(1), 1)
+    cycles = cycles_of(model, 5)
+    main = (half_peak_to_peak(cycles.orbits.coefficients) * np.sqrt(model.modal_masses)).argmax(axis=-1)
+    rise = solved_anew(detuned(model, DETUNING), cycles, cycles.orbits)[np.arange(main.size), main]
+    assert (np.abs(rise) < LINEAR).all()
+    # The shifted cycles are known to some 1e-5 of their amplitude, and these change by 3e-4.
+    assert confidence(model, cycles, Check.NONE).detuning == pytest.approx(rise, abs=3e-5)
 
 
 def test_the_shift_of_stretching_is_that_of_the_theory() -> None:
