@@ -1,40 +1,62 @@
 """The command line: `galloping` and its commands, grouped in modules by subject."""
 
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
 import typer
 
-from app.cli import catalogue, climate, keys, lines, operate, pictures, remedies, service
+from app.cli import catalogue, climate, lines, pictures, remedies
+from app.cli.common import Version
+from app.cli.operation import keys, operate, service
+from app.cli.remote import batch, jobs, submit
+
+Command = Callable[..., Any]
+
+_COMMANDS: Mapping[str, Sequence[Command]] = {
+    "Work out a line here": (
+        lines.analyse,
+        remedies.remedies,
+        lines.clearance,
+        lines.resolve,
+        pictures.plot,
+        climate.climate,
+        lines.ellipse,
+    ),
+    "Look up": (lines.example, catalogue.conductors, catalogue.ice_shapes),
+    "Send lines to a service": (submit.submit, batch.batch),
+    "Run a service": (
+        service.serve,
+        service.api,
+        service.worker,
+        service.migrate,
+        operate.status,
+        operate.prune,
+        operate.audit,
+    ),
+}
 
 app = typer.Typer(
     help="Tells whether an iced transmission-line span gallops, from which wind speed, and how far.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (
-    lines.analyse,
-    remedies.remedies,
-    service.serve,
-    service.api,
-    service.worker,
-    service.migrate,
-    service.submit,
-    lines.example,
-    lines.ellipse,
-    lines.resolve,
-    lines.clearance,
-    pictures.plot,
-    climate.climate,
-    catalogue.conductors,
-    catalogue.ice_shapes,
-    operate.status,
-    operate.prune,
-    operate.audit,
-):
-    app.command()(command)
-app.add_typer(keys.commands, name="keys")
+
+
+@app.callback()
+def _galloping(
+    version: Version = False,
+) -> None:
+    pass
+
+
+for panel, commands in _COMMANDS.items():
+    for command in commands:
+        app.command(rich_help_panel=panel)(command)
+app.add_typer(jobs.commands, name="jobs", rich_help_panel="Send lines to a service")
+app.add_typer(keys.commands, name="keys", rich_help_panel="Run a service")
 
 
 def main() -> None:
     """Run the command line."""
-    app()
+    app(prog_name="galloping")

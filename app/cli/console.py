@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 BAD_INPUT = 2
 FAILED = 1
+INTERRUPTED = 130  # as shells count a program that Ctrl-C ended
 _FILE_WIDTH = 250
 
 
@@ -39,22 +40,28 @@ def _shown(value: Any) -> str:
 
 def write(document: Any, output: Path | None) -> None:
     """Write a document as JSON to a file, or to standard output without one or where the file cannot be written."""
-    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    write_bytes((json.dumps(document, indent=2, ensure_ascii=False) + "\n").encode(), output)
+
+
+def write_bytes(content: bytes, output: Path | None) -> None:
+    """Write bytes to a file, or to standard output without one or where the file cannot be written."""
     try:
         if output is not None:
-            output.write_text(text, encoding="utf-8")
+            output.write_bytes(content)
             return
     except OSError as error:
         reason = error.strerror or error
         typer.echo(f"{output} cannot be written: {reason}; the result follows on standard output", err=True)
-        _print(text)
+        _print(content)
         raise typer.Exit(FAILED) from error
-    _print(text)
+    _print(content)
 
 
-def _print(text: str) -> None:
+def _print(content: bytes) -> None:
     try:
-        sys.stdout.write(text)
+        sys.stdout.flush()
+        sys.stdout.buffer.write(content)
+        sys.stdout.buffer.flush()
     except OSError as error:
         end(f"the result cannot be written: {error.strerror or error}", BAD_INPUT)
 

@@ -8,6 +8,6 @@ overloaded or down. Every POST carries an idempotency key, so a retry creates no
 """
 
 from app.client.client import Client, JobFailed
-from app.client.connection import Refused, ServiceError, Show
+from app.client.connection import NotFound, Refused, ServiceError, Show
 
-__all__ = ["Client", "JobFailed", "Refused", "ServiceError", "Show"]
+__all__ = ["Client", "JobFailed", "NotFound", "Refused", "ServiceError", "Show"]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Json = dict[str, Any]
 Model = TypeVar("Model", bound=BaseModel)
-Followed = TypeVar("Followed", JobDocument, BatchDocument)
+Followed = TypeVar("Followed", bound=JobDocument | BatchDocument)
 
 _ENDED = frozenset({"successful", "failed", "dismissed"})
 _FIRST_POLL_SECONDS = 0.1

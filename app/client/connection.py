@@ -36,6 +36,10 @@ class Refused(ServiceError):
         super().__init__("; ".join(str(fault) for fault in faults))
 
 
+class NotFound(ServiceError):
+    """Raised when the service has no such job, batch or address for this caller."""
+
+
 class Unreachable(ServiceError):
     """Raised when no answer arrived; a retry may get one."""
 
@@ -179,6 +183,8 @@ def _checked(answer: httpx.Response) -> httpx.Response:
     ------
     Refused
         If it lists faults of the document.
+    NotFound
+        If it is 404.
     ServiceError
         If it is any other problem.
     """
@@ -187,4 +193,5 @@ def _checked(answer: httpx.Response) -> httpx.Response:
     problem: dict[str, Any] = answer.json() if "json" in answer.headers.get("content-type", "") else {}
     if answer.status_code == 422 and problem.get("errors"):
         raise Refused([Fault(**fault) for fault in problem["errors"]])
-    raise ServiceError(f"the service answers {answer.status_code}: {problem.get('detail', answer.reason_phrase)}")
+    kind = NotFound if answer.status_code == 404 else ServiceError
+    raise kind(f"the service answers {answer.status_code}: {problem.get('detail', answer.reason_phrase)}")

@@ -8,10 +8,10 @@ That needs httpx and pydantic only. The other packages lie beside it in the dist
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from app.client import Client, JobFailed, Refused, ServiceError
+    from app.client import Client, JobFailed, NotFound, Refused, ServiceError
     from app.reference.source_lines import EXAMPLE_NAMES, example
 
-__all__ = ["EXAMPLE_NAMES", "Client", "JobFailed", "Refused", "ServiceError", "example"]
+__all__ = ["EXAMPLE_NAMES", "Client", "JobFailed", "NotFound", "Refused", "ServiceError", "example"]
 
 
 def __getattr__(name: str) -> Any:

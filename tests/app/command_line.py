@@ -4,12 +4,25 @@ import os
 import pty
 import subprocess
 import sys
+from collections.abc import Mapping
+
+from typer.testing import CliRunner
+
+from app.cli import app
 
 
 def galloping(*arguments: str, text: str | None = None) -> subprocess.CompletedProcess[str]:
     """Run the command line as users do."""
     command = [sys.executable, "-W", "error", "-m", "app.cli", *arguments]
     return subprocess.run(command, input=text, capture_output=True, text=True, timeout=120.0, check=False)
+
+
+def run(*arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a command in this process, which takes a small part of the time of `galloping`."""
+    ended = CliRunner().invoke(app, arguments, env=environment)
+    if ended.exception is not None and not isinstance(ended.exception, SystemExit):
+        raise ended.exception
+    return subprocess.CompletedProcess(arguments, ended.exit_code, ended.stdout, ended.stderr)
 
 
 def refused(*arguments: str, text: str | None = None) -> str:

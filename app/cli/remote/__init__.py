@@ -1,0 +1,1 @@
+"""Commands that work with a running service: `galloping submit`, `jobs` and `batch`."""
