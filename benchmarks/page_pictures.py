@@ -52,6 +52,7 @@ _NARROW = ("line", "result", "batch")
 _SETTLED_MS = 2000
 _PATIENCE_MS = 180_000
 _COLOURS = 256
+_TALLEST = 1500  # what ends within this height is shown to its end, anything longer as much as the window shows
 
 
 def main() -> None:
@@ -89,7 +90,11 @@ def _taken(browser: Browser, address: str, parts: tuple[str, str], look: tuple[i
     if heading:  # pictures that were loaded meanwhile have moved it
         page.locator(heading).evaluate("heading => heading.scrollIntoView({ block: 'start' })")
         page.wait_for_load_state("networkidle")
-    picture = page.screenshot()
+    top, left = page.evaluate("[window.scrollY, document.documentElement.scrollHeight - window.scrollY]")
+    if left > _TALLEST:
+        picture = page.screenshot()
+    else:
+        picture = page.screenshot(full_page=True, clip={"x": 0, "y": top, "width": look[0], "height": left})
     page.context.close()
     return picture
 

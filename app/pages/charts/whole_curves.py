@@ -6,6 +6,7 @@ from typing import Any
 
 from app.interactive import Busy, Previews, TakesTooLong
 from app.pages.findings import Findings
+from app.pages.what_if.documents import ties_phases
 from app.pages.wording import words
 
 _LEFT_OUT = {"uncertainty": {"samples": 0}, "check": "none", "risk": False}
@@ -32,7 +33,7 @@ async def with_whole_curves(
     if found.analysis.get("amplitude_curves") == "reported" or not found.rows("critical_wind_speeds"):
         return found, None
     models = found.analysis.get("models") or ()
-    if _MODEL not in models or any(document.get(name) for name in _ELSEWHERE):
+    if _MODEL not in models or ties_phases(found.line) or any(document.get(name) for name in _ELSEWHERE):
         return found, said.not_whole
     asked = {"models": [_MODEL], "amplitude_curves": "reported", "loop_competition": "neglected"}
     analysis = {**found.analysis, **_LEFT_OUT, **asked, "device_effect": "neglected"}

@@ -65,12 +65,21 @@ def test_where_curves_are_not_those_of_the_job_a_sentence_says_so(
     assert "only the motions at its wind speeds" in (whole(bare)[1] or "")
 
 
-def test_phases_that_a_spacer_ties_have_no_hybrid_curves_and_a_sentence_says_so(bare: Findings) -> None:
+def test_phases_that_a_spacer_ties_start_no_preview_and_a_sentence_says_so(
+    bare: Findings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[object] = []
+
+    async def compute(*given: object) -> None:
+        started.append(given)
+        raise Busy
+
+    monkeypatch.setattr(Previews, "compute", compute)
     spacer = {"type": "interphase_spacer", "position_m": 62.94, "mass_kg": 30.0, "between": ["this", "top"]}
     line = {**example("c11-twin"), "devices": [spacer], "phases": [{"name": "top", "y_m": 7.0}]}
     request = {"line": line, "analysis": {**SHORT, "models": ["hybrid", "finite_element"]}}
     document = schemas.JobRequest.model_validate(request).kept()
     tied = Findings(0, bare.points, document["line"], document["analysis"], bare.tables)
     found, note = whole(tied)
-    assert found is tied
+    assert (found is tied, started) == (True, [])
     assert "only the motions at its wind speeds" in (note or "")
