@@ -22,6 +22,7 @@ demo: setup
 # Tests that start, kill and restart whole processes, or run whole commands one after another: they mostly wait.
 PROCESSES := tests/e2e tests/engine/kernels/test_sanitized.py \
 	tests/worker/test_lost_processes.py tests/worker/test_batches.py tests/worker/test_priorities.py \
+	tests/worker/test_moved_clocks.py tests/worker/test_long_steps.py \
 	tests/app/test_serve.py tests/app/operation tests/app/routes/test_idempotent_crashes.py tests/app/cli/test_demo.py \
 	tests/benchmarks/test_walkthrough.py
 

@@ -36,6 +36,16 @@ def long_request(points: int) -> dict[str, Any]:
     return {"line": example("c11-twin"), "analysis": analysis, "study": study}
 
 
+def silent_request() -> dict[str, Any]:
+    """Return a request whose step `SILENT_STEP` takes a minute or more without a word from the engine."""
+    winds = {"start": 3.0, "stop": 20.0, "count": 60}
+    analysis = {"loops": [1, 2, 3, 4, 5, 6], "models": ["finite_element"], "wind_speeds_m_per_s": winds}
+    return {"line": example("c11-twin"), "analysis": analysis}
+
+
+SILENT_STEP = "limit cycles of the finite element model"
+
+
 def point_result(number: int = 0, *, tension: float = 30000.0, failure: str | None = None) -> PointResult:
     """Return a point with one frequency row, which carries the tension, or a failed one without rows."""
     row = {"model": "hybrid", "loops": 1, "vertical_hz": 0.48, "horizontal_hz": 0.45, "torsional_hz": None}

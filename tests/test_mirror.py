@@ -130,6 +130,7 @@ OF_NO_SINGLE_MODULE = {
     "tests/validation": "The engine is held against its source and against other codes.",
     "tests/worker/test_batches.py": "Batches run through broker, pool and database while workers are killed.",
     "tests/worker/test_lost_processes.py": "Processes of workers are killed at every place.",
+    "tests/worker/test_long_steps.py": "Jobs in a step of a minute are cancelled in real pools.",
     "tests/worker/test_moved_clocks.py": "Clocks of workers and of databases are set while jobs run.",
     "tests/worker/test_priorities.py": "A single job passes a batch in broker and pool.",
     "tests/worker/test_reused_lines.py": "What is stored answers batches and jobs, by API and worker.",

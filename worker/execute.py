@@ -4,7 +4,7 @@ import itertools
 import logging
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextvars import copy_context
 from dataclasses import replace
 from types import TracebackType
@@ -30,8 +30,17 @@ _logger = logging.getLogger(__name__)
 _STOPS = (SoftTimeLimitExceeded,)  # raised wherever the computation is
 
 
-def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, owner: str) -> None:
+def execute(
+    sessions: sessionmaker[Session],
+    settings: Settings,
+    job_id: UUID,
+    owner: str,
+    end_process: Callable[[], None] | None = None,
+) -> None:
     """Claim a job, compute it, and end it; do nothing if it cannot be claimed, as after a repeated message.
+
+    A step of the engine may take minutes. If a job that was cancelled or given to another worker does not stop within
+    `stop_seconds`, it is ended as it stands, and `end_process` is called from another thread, to stop the computation.
 
     Raises
     ------
@@ -45,16 +54,20 @@ def execute(sessions: sessionmaker[Session], settings: Settings, job_id: UUID, o
         _logger.info("job %s is not waiting for a worker", job_id)
         return
     with correlation.bound(held.ids), telemetry.job_span(held.ids):
-        _work(sessions, settings, held, steps)
+        _work(sessions, settings, held, steps, end_process)
 
 
 def _work(
-    sessions: sessionmaker[Session], settings: Settings, held: Claim, steps: Iterator[Advance | PointResult]
+    sessions: sessionmaker[Session],
+    settings: Settings,
+    held: Claim,
+    steps: Iterator[Advance | PointResult],
+    end_process: Callable[[], None] | None,
 ) -> None:
     _logger.info("job begins")
     begin = time.monotonic()
     points: list[PointResult] = []
-    with Pulse(sessions, held, settings) as pulse:
+    with Pulse(sessions, held, settings, end_process) as pulse:
         failure = _compute(steps, held, settings, pulse, points)
     seconds = time.monotonic() - begin
     with sessions.begin() as session:
@@ -69,13 +82,20 @@ def _work(
 class Pulse:
     """A thread that renews the lease and stores the progress, however long a step of the engine takes.
 
-    `verdict` is the answer to the last heartbeat.
+    `verdict` is the answer to the last heartbeat. If it says stop and the computation goes on, the process is ended.
     """
 
-    def __init__(self, sessions: sessionmaker[Session], held: Claim, settings: Settings) -> None:
+    def __init__(
+        self,
+        sessions: sessionmaker[Session],
+        held: Claim,
+        settings: Settings,
+        end_process: Callable[[], None] | None = None,
+    ) -> None:
         """Take what the heartbeats need; they begin with the `with` statement."""
         self.verdict = Beat.GO_ON
         self._sessions, self._held, self._settings = sessions, held, settings
+        self._end_process = end_process
         self._latest = Advance(0.0, "")
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=copy_context().run, args=(self._run,), name="heartbeat", daemon=True)
@@ -102,6 +122,17 @@ class Pulse:
                 self._beat()
             except SQLAlchemyError as error:
                 _logger.warning("the job missed a heartbeat: %s", error)
+        if self._end_process is not None and not self._stopped.wait(self._settings.stop_seconds):
+            self._give_up(self._end_process)
+
+    def _give_up(self, end_process: Callable[[], None]) -> None:
+        _logger.warning("the job did not stop within %g s; its process ends", self._settings.stop_seconds)
+        try:
+            with self._sessions.begin() as session:
+                _conclude(session, self._held, self.verdict, None, [])
+        except SQLAlchemyError as error:
+            _logger.warning("the job ends with its lease: %s", error)
+        end_process()
 
     def _beat(self) -> None:
         latest = self._latest

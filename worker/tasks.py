@@ -2,6 +2,7 @@
 
 import gc
 import os
+import signal
 from functools import cache
 from uuid import UUID
 
@@ -17,6 +18,7 @@ from app.storage.database import make_engine, session_factory
 from worker.execute import execute
 
 OWNER = "GALLOPING_WORKER_OWNER"
+_LOST_WAIT_SECONDS = 1.0  # until then the pool takes no message in the place of a killed process's; jobs return nothing
 
 
 def worker_application(settings: Settings, owner: str) -> Celery:
@@ -31,9 +33,14 @@ def worker_application(settings: Settings, owner: str) -> Celery:
 
     @application.task(name=TASK_NAME)
     def run(job_id: str) -> None:
-        execute(sessions(), settings, UUID(job_id), owner)
+        execute(sessions(), settings, UUID(job_id), owner, _end_process)
 
     return application
+
+
+def _end_process() -> None:
+    """End this process of the pool, which replaces it."""
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def _worker_options(settings: Settings) -> dict[str, object]:
@@ -51,6 +58,7 @@ def _worker_options(settings: Settings) -> dict[str, object]:
         "task_time_limit": settings.hard_time_limit_seconds,
         "worker_cancel_long_running_tasks_on_connection_loss": False,
         "worker_concurrency": settings.worker_processes,
+        "worker_lost_wait": _LOST_WAIT_SECONDS,
         "worker_max_tasks_per_child": settings.max_jobs_per_process,
         "worker_pool": f"{__package__}.pool:EmbeddedPool" if settings.has_embedded_broker else "prefork",
         "worker_prefetch_multiplier": 1,

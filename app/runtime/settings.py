@@ -93,6 +93,9 @@ class Settings(BaseSettings):
 
     lease_seconds: Seconds = Field(default=30.0, description="A worker silent for this long loses its job")
     heartbeat_seconds: Seconds = Field(default=1.0, description="Time between a worker's two reports on its job")
+    stop_seconds: Seconds = Field(
+        default=5.0, description="A cancelled or lost job that does not stop within this time ends with its process"
+    )
     max_attempts: Count = Field(default=3, description="Attempts before a job fails because its workers were lost")
     soft_time_limit_seconds: Seconds = Field(default=3600.0, description="A job that runs longer fails")
     hard_time_limit_seconds: Seconds = Field(default=3660.0, description="A process that runs a job longer is killed")

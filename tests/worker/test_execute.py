@@ -1,6 +1,7 @@
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from threading import Event
 from uuid import UUID
 
 import pytest
@@ -160,6 +161,45 @@ def test_long_step_does_not_lose_the_lease(
     run_job(short, job_id)
     assert released == [0] * 6
     assert look(sessions, job_id).status is JobStatus.SUCCESSFUL
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_a_job_that_does_not_stop_in_time_ends_with_its_process(
+    sessions: sessionmaker[Session], settings: Settings, monkeypatch: pytest.MonkeyPatch, lost: bool
+) -> None:
+    ended = Event()
+
+    def deaf(*_: object) -> Iterator[Advance | PointResult]:
+        with sessions.begin() as session:
+            if lost:
+                leases.release_expired(session, settings, "here")
+            else:
+                job_records.cancel(session, LOCAL, job_id)
+        assert ended.wait(30.0)
+        past.append(look(sessions, job_id).status)
+        yield point_result(0)
+
+    past: list[JobStatus] = []
+    monkeypatch.setattr(convert, "run", deaf)
+    job_id = add_job(sessions)
+    hasty = settings.model_copy(update={"stop_seconds": 0.1, "lease_seconds": 600.0})
+    execute(sessions, hasty, job_id, "here", ended.set)
+    assert past == [JobStatus.ACCEPTED if lost else JobStatus.DISMISSED]
+    assert look(sessions, job_id).status is past[0]
+    assert count_points(sessions, job_id) == 0
+
+
+def test_a_job_that_stops_in_time_leaves_its_process(sessions: sessionmaker[Session], settings: Settings) -> None:
+    ended = Event()
+    job_id = add_job(sessions, long_request(30))
+    with ThreadPoolExecutor(1) as pool:
+        future = pool.submit(execute, sessions, settings, job_id, "here", ended.set)
+        wait_until(lambda: look(sessions, job_id).progress > 0.0, what="progress")
+        with sessions.begin() as session:
+            job_records.cancel(session, LOCAL, job_id)
+        future.result(30.0)
+    assert look(sessions, job_id).status is JobStatus.DISMISSED
+    assert not ended.is_set()
 
 
 def test_missed_heartbeats_do_not_end_the_job(
