@@ -18,6 +18,8 @@ from app.http.body_limit import BodyLimit, Limit, Pace
 from app.http.conditional import Bodiless
 from app.http.prefix import LinkedJSON
 from app.schemas.faults import MOST_FAULTS, Fault, faults_of, json_pointer
+from app.storage.pages import Removed
+from app.storage.stored_results import CorruptResult
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -52,6 +54,7 @@ class ProblemKind(Enum):
         "An earlier request with this Idempotency-Key is still in progress; repeat the request to get its answer.",
     )
     NOT_READY = ("not-ready", 409, "Not ready", "The job has not ended; its status document shows the progress.")
+    DAMAGED = ("damaged", 410, "Damaged result", "A stored result is not what was stored, and must be computed anew.")
     DISMISSED = ("dismissed", 410, "Dismissed", "The job was cancelled and has no results.")
     TOO_LARGE = ("too-large", 413, "Body too large", "The request body is larger than the operator allows.")
     UNSUPPORTED_MEDIA_TYPE = (
@@ -152,6 +155,8 @@ def install(app: FastAPI, max_body_bytes: Mapping[str, int], slowest_body: tuple
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(OperationalError, _on_database)
     app.add_exception_handler(NoConnectionFree, _on_database)
+    app.add_exception_handler(CorruptResult, _on_corrupt)
+    app.add_exception_handler(Removed, _on_removed)
     app.add_exception_handler(Exception, _on_defect)
     limits = {path: Limit(most_bytes, _too_large(most_bytes)) for path, most_bytes in max_body_bytes.items()}
     pace = Pace(*slowest_body, _too_slow(*slowest_body))
@@ -244,6 +249,16 @@ def database_fault(error: Exception) -> ProblemError:
     """Log that the database does not answer, and return the problem for it."""
     _logger.error("the database does not answer: %s", error)
     return ProblemError(ProblemKind.UNAVAILABLE, "The database does not answer.", headers={"Retry-After": "5"})
+
+
+async def _on_corrupt(request: Request, error: Exception) -> Response:
+    _logger.error("the stored result behind %s is corrupt: %s", request.url.path[:500], error)
+    detail = "Its checksum is wrong. Compute it anew: POST /v1/jobs/{id}/retry, or post the lines of the batch again."
+    return _respond(request, ProblemError(ProblemKind.DAMAGED, detail))
+
+
+async def _on_removed(request: Request, _: Exception) -> Response:
+    return _respond(request, ProblemError(ProblemKind.NOT_FOUND, ProblemKind.NOT_FOUND.description))
 
 
 async def _on_defect(request: Request, error: Exception) -> Response:

@@ -223,6 +223,12 @@ def test_a_corrupt_result_is_reported_and_computed_anew(
         row.tables = row.tables[:place] + bytes([row.tables[place] ^ 1]) + row.tables[place + 1 :]
     with sessions() as session, pytest.raises(CorruptResult):
         list(stored_results.rows(session, UUID(first.rpartition("/")[2]), "limit_cycles"))
+    for part in ("results", "results/limit-cycles", "plots/amplitude.svg", "clearance?vertical_spacing_m=4"):
+        answer = client.get(f"{first}/{part}")
+        assert (answer.status_code, answer.json()["type"]) == (410, "/problems/damaged")
+        assert "retry" in answer.json()["detail"]
+    retried = client.post(f"{first}/retry").raise_for_status().json()
+    assert retried["status"] == "accepted", "a damaged result is not reused"
     batch = client.post("/v1/batches", json={"lines": [TWIN], "analysis": SHORT}).raise_for_status()
     done = service.work_off(client, settings, batch.headers["Location"])
     assert (done["status"], done["lines"]["reused"]) == ("successful", 0)

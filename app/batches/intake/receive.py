@@ -10,6 +10,7 @@ from itertools import islice
 from typing import Any
 from uuid import UUID
 
+import orjson
 from pydantic import TypeAdapter, ValidationError
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
@@ -28,6 +29,7 @@ from app.security.caller import Caller
 from app.sheets.columns import Computed, PlacedLine
 
 _LINES_A_BLOCK = 500
+_BYTES_A_BLOCK = 4_000_000  # of JSON, which takes some ten times as much as values
 _FAULTS_A_LINE = 20
 _FAULTS_SHOWN = 100
 _REFERENCE: TypeAdapter[str] = TypeAdapter(Reference)
@@ -149,12 +151,23 @@ def lines_a_chunk(settings: Settings, analysis: schemas.Analysis) -> int:
 def _blocks(settings: Settings, draft: _Draft, lines: Iterator[object]) -> Iterator[list[dict[str, Any]]]:
     """Yield the rows of the lines in blocks; stop early if an atomic batch has too many faults."""
     items_found = (_item(draft, document) for document in lines)  # one document is held, not those of a block
-    while items := list(islice(items_found, _LINES_A_BLOCK)):
+    while items := _block(items_found):
         if draft.taken > settings.max_batch_lines:
             raise BadInput([Fault("/lines", "too_long", f"a batch may have at most {settings.max_batch_lines} lines")])
         if draft.atomic and len(draft.faults) >= MOST_FAULTS:
             return
         yield items
+
+
+def _block(items: Iterator[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Take the rows of a block: so many, or fewer where their documents are large."""
+    taken, size = [], 0
+    for item in islice(items, _LINES_A_BLOCK):
+        taken.append(item)
+        size += len(orjson.dumps((item["document"], item["known"], item["geometry"])))
+        if size > _BYTES_A_BLOCK:
+            break
+    return taken
 
 
 def _item(draft: _Draft, sent: object) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.batches import batch_records
-from app.batches.intake import Incoming, Receipt, lines_a_chunk, read_ndjson, receive
+from app.batches.intake import Incoming, Receipt, examine, lines_a_chunk, read_ndjson, receive
 from app.convert import read_analysis
 from app.jobs import batch_progress
 from app.reference.source_lines import example
@@ -166,3 +166,20 @@ def test_one_document_is_held_at_a_time(sessions: sessionmaker[Session], setting
         receive(sessions, settings, LOCAL, Incoming({}, lines()), atomic=False)
     assert len(held) == 20
     assert max(held) <= 2
+
+
+def test_a_block_of_large_lines_is_held_in_a_few_megabytes(sessions: sessionmaker[Session], settings: Settings) -> None:
+    rows = [
+        {"angle_deg": -60.0 + 0.02 * number, "lift": number / 7e4, "drag": 1.0 / 3.0, "moment": number / 9e5}
+        for number in range(6000)
+    ]
+    measured = {"table": rows, "static_angle_deg": 0.0, "half_range_deg": 20.0}
+    large = changed("ice.aerodynamics", measured, TWIN)
+    text = json.dumps(large).encode()
+    assert len(text) > 400_000
+    tracemalloc.start()
+    try:
+        examine(sessions, settings, LOCAL, Incoming(SHORT, (json.loads(text) for _ in range(30))), atomic=False)
+        assert tracemalloc.get_traced_memory()[1] < 45_000_000
+    finally:
+        tracemalloc.stop()
