@@ -41,7 +41,8 @@ def remedies(
 def print_remedies(result: Mapping[str, Any]) -> None:
     """Print the table of remedies of a result document, then a sentence for each, and the warnings."""
     rows: Sequence[Row] = result["remedies"]
-    print_table(list(_shown(rows[0])), [_shown(row) for row in rows])
+    cells = [_shown(row) for row in rows]
+    print_table([name for name in cells[0] if any(row[name] for row in cells)], cells)
     for row in rows:
         typer.echo(f"{_number(row)}  {row['what']}.\n   {row['sentence']}")
     for text in result["warnings"]:
@@ -53,26 +54,18 @@ def _number(row: Row) -> str:
 
 
 def _shown(row: Row) -> dict[str, str]:
+    """Return the figures of a row in so few columns that they fit a terminal; the sentences below say the rest."""
     return {
         "no": _number(row),
         "remedy": "as it is" if row["kind"] == "none" else row["kind"].replace("_", " "),
-        "places m": row["places"] or "",
-        "compared": "" if row["change"] is None else row["change"].replace("_", " "),
         "rank": "" if row["rank"] is None else str(row["rank"]),
-        "onset m/s": _figure(row["onset_m_per_s"], 2),
-        "vertical m": _figure(row["vertical_peak_to_peak_m"], 2),
-        "horizontal m": _figure(row["horizontal_peak_to_peak_m"], 2),
-        "margin m": _figure(row["clearance_margin_m"], 2),
-        "tension N": _figure(row["static_tension_n"], 0),
+        "onset\nm/s": _figure(row["onset_m_per_s"]),
+        "vertical\nm": _figure(row["vertical_peak_to_peak_m"]),
+        "horizontal\nm": _figure(row["horizontal_peak_to_peak_m"]),
+        "margin\nm": _figure(row["clearance_margin_m"]),
         "gallops": row["gallops"] if row["probability_gallops"] is None else f"{row['probability_gallops']:.2f}",
-        "better in": _share(row["improves"]),
-        "worse in": _share(row["worsens"]),
     }
 
 
-def _figure(value: float | None, digits: int) -> str:
-    return "" if value is None else f"{value:,.{digits}f}"
-
-
-def _share(value: float | None) -> str:
-    return "" if value is None else f"{100.0 * value:.0f} %"
+def _figure(value: float | None) -> str:
+    return "" if value is None else f"{value:,.2f}"

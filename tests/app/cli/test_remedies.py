@@ -16,7 +16,10 @@ def test_the_table_and_the_result(tmp_path: Path) -> None:
     output = tmp_path / "result.json"
     ended = galloping("remedies", str(line), "--remedies", str(tried), "--output", str(output))
     assert ended.returncode == 0, ended.stderr
-    assert "detuning pendulum" in ended.stdout
+    table = ended.stdout.partition("-  The line as it is.")[0].splitlines()
+    assert any("detuning pendulum" in row for row in table)
+    assert max(map(len, map(str.rstrip, table))) <= 80
+    assert not any("margin" in row for row in table)  # the line has no phases
     assert "Better: the onset rises from 2.25 to" in ended.stdout
     result = json.loads(output.read_text())
     assert [row["rank"] for row in result["remedies"]] == [None, 1]
