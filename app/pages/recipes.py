@@ -27,7 +27,7 @@ def recipes(job: Job, service: str, *, with_key: bool) -> Recipes:
     )
     literal = pprint.pformat(said(job.document), width=100, sort_dicts=False)
     python = (
-        f"from app.client import Client\n\nrequest = {literal}\n"
+        f"from galloping import Client\n\nrequest = {literal}\n"
         f"with Client({service!r}) as service:  # GALLOPING_KEY holds the key, where the service wants one\n"
         "    result = service.analyse(**request)\n"
         "    print(result.verdict)"

@@ -93,7 +93,7 @@ def parts(job: Job, found: Findings, units: Units, seen: Sequence[Motion]) -> di
     """Return the values of the template beside the job, what it found, and the motions of which courses are stored."""
     return {
         "chart_words": json.dumps(vars(words().chart)),
-        "downloads": [(ADDRESSES[name], TABLES[name].title) for name in TABLES if found.rows(name)],
+        "downloads": [(ADDRESSES[name], TABLES[name].title.partition(";")[0]) for name in TABLES if found.rows(name)],
         "pictures": [(name, PICTURES[name].title) for name in drawable(found.tables, study=len(found.points) > 1)],
         "job_tags": {tag.key: tag.value for tag in job.tags},
         **findings_parts(found, units, seen),
@@ -108,7 +108,9 @@ def findings_parts(found: Findings, units: Units, seen: Sequence[Motion]) -> dic
         "facts": facts(found, units),
         "assumed": [row for row in found.rows("assumptions") if row["origin"] == "assumed"],
         "known": [row for row in found.rows("assumptions") if row["origin"] != "assumed"],
-        "tornado": tornado.bars(found.rows("sensitivities"), units),
+        "tornado": tornado.bars(
+            found.rows("sensitivities"), units, {row["path"]: row["unit"] for row in found.rows("assumptions")}
+        ),
         "physics": next(iter(found.rows("physics")), {}),
         "shown": {name: _table(name, found, units) for name in _COLUMNS if found.rows(name)},
         "spread": next((row for row in found.rows("uncertainty") if row["wind_speed_m_per_s"] is None), None),

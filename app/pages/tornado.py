@@ -1,6 +1,6 @@
 """What decides: for each assumption how far onset and amplitude move between its lowest and its highest value."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from app.pages.findings import Row
@@ -25,10 +25,11 @@ class Bar:
     falls: bool
 
 
-def bars(rows: Sequence[Row], units: Units) -> tuple[str, str, list[Bar]] | None:
+def bars(rows: Sequence[Row], units: Units, unit_of: Mapping[str, str]) -> tuple[str, str, list[Bar]] | None:
     """Return the ends of the axis and the bars of the amplitude, the largest total Sobol index first.
 
-    None where there are no samples, or no assumption changes the amplitude.
+    None where there are no samples, or no assumption changes the amplitude. `unit_of` has the SI units of the assumed
+    values by their paths.
     """
     ends = [(row["vertical_at_lowest_m"], row["vertical_at_highest_m"]) for row in rows]
     known = [value for pair in ends for value in pair if value is not None]
@@ -39,8 +40,8 @@ def bars(rows: Sequence[Row], units: Units) -> tuple[str, str, list[Bar]] | None
     found = [
         Bar(
             path=row["path"],
-            low=units.number(row["lowest"]),
-            high=units.number(row["highest"]),
+            low=units.number(row["lowest"], unit_of.get(row["path"])),
+            high=units.shown(row["highest"], unit_of.get(row["path"])),
             share=row["amplitude_total"],
             onset_share=row["onset_total"],
             onset=(

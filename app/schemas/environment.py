@@ -22,17 +22,17 @@ class Aerodynamics(Document):
     """Cubic coefficients a_i1, a_i2, a_i3 of one sub-conductor over the angle of attack in radians."""
 
     vertical: Cubic = Field(
-        description="a_y1, a_y2, a_y3 [1/rad, 1/rad2, 1/rad3]",
+        description="Vertical coefficients a_y1, a_y2, a_y3 over the angle of attack [1/rad, 1/rad2, 1/rad3]",
         examples=[[-0.1667, -4.0547, 8.3581]],
         json_schema_extra={"x-unit": "1/rad^j"},
     )
     horizontal: Cubic = Field(
-        description="a_z1, a_z2, a_z3 [1/rad, 1/rad2, 1/rad3]",
+        description="Horizontal coefficients a_z1, a_z2, a_z3 over that angle [1/rad, 1/rad2, 1/rad3]",
         examples=[[0.8605, 0.8325, 1.7815]],
         json_schema_extra={"x-unit": "1/rad^j"},
     )
     torsional: Cubic = Field(
-        description="a_theta1, a_theta2, a_theta3 [1/rad, 1/rad2, 1/rad3]",
+        description="Torsional coefficients a_theta1, a_theta2, a_theta3 over that angle [1/rad, 1/rad2, 1/rad3]",
         examples=[[-0.7272, 0.2935, 5.9704]],
         json_schema_extra={"x-unit": "1/rad^j"},
     )
@@ -56,9 +56,9 @@ AerodynamicsForm = Annotated[
 class AerodynamicsAtRest(Document):
     """Coefficients at the static angle, which the relative-wind model needs."""
 
-    vertical: float = quantity("vertical", "a_y0", "1", (-1e3, 1e3), 0.0)
-    horizontal: float = quantity("horizontal", "a_z0", "1", (-1e3, 1e3), 1.0)
-    torsional: float = quantity("torsional", "a_theta0", "1", (-1e3, 1e3), 0.0)
+    vertical: float = quantity("vertical", "Vertical coefficient a_y0", "1", (-1e3, 1e3), 0.0)
+    horizontal: float = quantity("horizontal", "Horizontal coefficient a_z0", "1", (-1e3, 1e3), 1.0)
+    torsional: float = quantity("torsional", "Torsional coefficient a_theta0", "1", (-1e3, 1e3), 0.0)
 
 
 class IceSegment(Document):

@@ -85,6 +85,7 @@ CLOSED = frozenset({"coefficients", "pieces", "supports", "section", "wind", "da
 
 _VALUES = frozenset({"number", "integer", "string"})
 _POWERS = ("", "²", "³")
+_NULL = "if null"  # of JSON; a field of a form is left empty
 _MILLI = 1e3
 _SMALL_M = 0.5  # what is never larger than this is entered in millimetres or inches
 _DIGITS = 12
@@ -138,7 +139,8 @@ class FormField:
     def hint(self, units: Units) -> str:
         """Return what the field means, with its bounds and its default."""
         said, row = words().line, self.row
-        parts = [row["description"].partition(" [")[0].replace("`", "") + "."]
+        about = row["description"].partition(" [")[0].replace("`", "")
+        parts = [about.replace(_NULL, said.empty) + "."]
         if self.is_number and row["minimum"] is not None and row["maximum"] is not None:
             low, high = (self.entered(row[end], units) for end in ("minimum", "maximum"))
             parts.append(_closed(said.bounds.format(low=low, high=high, unit=self.unit(units).name)))

@@ -26,6 +26,7 @@ from app.pages.lines.shown_rows import shown_rows
 from app.pages.measures import BY_NAME, FEET, SI, Units
 from app.pages.recipes import said
 from app.pages.submitting import submit
+from app.pages.views.preferences import keep
 from app.reference import conductors
 from app.reference.ice_shapes import ICE_SHAPES
 from app.routes.dependencies import CallerOf, Readers
@@ -111,11 +112,13 @@ def change_rows(request: Request, fields: Fields) -> Response:
 
 @router.post("/units")
 def change_units(request: Request, fields: Fields) -> Response:
-    """Return the form with its numbers in the other units."""
+    """Return the form with its numbers in the other units, which the pages of its result will have, too."""
     units = _units(fields)
     other = SI if units is FEET else FEET
     try:
-        return _form(request, _exchanged(fields, units, other), other)
+        answer = _form(request, _exchanged(fields, units, other), other)
+        keep(request, answer, "units", other.name)
+        return answer
     except BadInput as error:
         return _form(request, fields, units, error.faults)
 

@@ -19,13 +19,18 @@ async def keep_preferences(request: Request, fields: Fields) -> Response:
     answer = moved(request, local_path(fields.get("back", "/")))
     for name, choices in _CHOICES.items():
         if fields.get(name) in choices:
-            answer.set_cookie(
-                f"galloping_{name}",
-                fields[name],
-                max_age=_YEAR_SECONDS,
-                path=address(request)("/"),
-                secure=request.url.scheme == "https",
-                httponly=True,
-                samesite="lax",
-            )
+            keep(request, answer, name, fields[name])
     return answer
+
+
+def keep(request: Request, answer: Response, name: str, choice: str) -> None:
+    """Let an answer keep a preference, `units` or `theme`, in the reader's browser."""
+    answer.set_cookie(
+        f"galloping_{name}",
+        choice,
+        max_age=_YEAR_SECONDS,
+        path=address(request)("/"),
+        secure=request.url.scheme == "https",
+        httponly=True,
+        samesite="lax",
+    )

@@ -108,7 +108,7 @@ class Everyday(Document):
     """The bare span at a temperature, with one measure of its tension."""
 
     temperature: float | None = quantity(
-        "temperature_c", "Temperature; if null, 15 is assumed", "degC", _TEMPERATURE, 15.0, None
+        "temperature_c", "Temperature; if null, 15 °C is assumed", "degC", _TEMPERATURE, 15.0, None
     )
     share_of_rated_strength: float | None = quantity(
         "share_of_rated_strength", "Horizontal tension over rated strength", "1", (1e-3, 100.0), 0.2, None
@@ -149,7 +149,7 @@ class KnownSpan(Document):
         "ruling_span_m", "Ruling span of the section", "m", (1.0, LENGTH_LIMIT_M), 305.0, None
     )
     temperature: float | None = quantity(
-        "temperature_c", "Temperature under ice; if null, -3 is assumed", "degC", _TEMPERATURE, -5.0, None
+        "temperature_c", "Temperature under ice; if null, -3 °C is assumed", "degC", _TEMPERATURE, -5.0, None
     )
     everyday: Everyday | None = Field(
         default=None, description="The bare span on an ordinary day", examples=[_EVERYDAY]

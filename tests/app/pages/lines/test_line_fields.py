@@ -28,6 +28,8 @@ def test_bounds_and_defaults_are_those_of_the_schema_in_the_units_of_the_form() 
     assert "From 1 to 5000 m." in length.hint(SI)
     assert "From 3.28084 to 16404.2 ft." in length.hint(FEET)
     assert "Usually 0 m." in form_fields()["line.span.level_difference_m"].hint(SI)
+    hint = form_fields()["line.span.everyday.temperature_c"].hint(FEET)
+    assert hint == "Temperature; if empty, 15 °C is assumed. From -76 to 140 °F."
     assert (length.key, length.pointer) == ("line-span-length_m", "/line/span/length_m")
 
 

@@ -64,8 +64,10 @@ def test_the_preview_draws_the_line_and_lists_its_assumptions(shared_client: htt
     assert re.search(r'id="line-span-length_m-fault" hx-swap-oob="true">[^<]*number', wrong)
 
 
-def test_the_form_changes_its_units(shared_client: httpx.Client) -> None:
-    text = send(shared_client, "/pages/lines/units", texts_of(examples.DRAKE)).text
+def test_the_form_changes_its_units_and_they_are_kept(own_client: httpx.Client) -> None:
+    answer = send(own_client, "/pages/lines/units", texts_of(examples.DRAKE))
+    text = answer.text
+    assert "galloping_units=feet" in answer.headers["set-cookie"]  # the pages of its result will have them, too
     assert 'name="line.span.length_m" value="984.252"' in text
     assert 'name="line.span.temperature_c" value="23"' in text
     assert 'name="form_units" value="feet"' in text
@@ -144,8 +146,8 @@ def test_a_row_is_added_by_a_script_in_its_group_and_without_one_on_the_whole_pa
     assert "Device 3 is added" in part.text
 
 
-def test_rows_keep_their_numbers_in_the_other_units(shared_client: httpx.Client) -> None:
-    text = send(shared_client, "/pages/lines/units", texts_of(examples.DRAKE, **DEVICES, **{"fill.step": "1"})).text
+def test_rows_keep_their_numbers_in_the_other_units(own_client: httpx.Client) -> None:
+    text = send(own_client, "/pages/lines/units", texts_of(examples.DRAKE, **DEVICES, **{"fill.step": "1"})).text
     assert 'name="line.devices.0.position_m" value="196.8504"' in text
     assert 'name="line.devices.0.polar_inertia_kg_m2" value="9.492144"' in text
     assert 'name="fill.step" value="2.236936"' in text

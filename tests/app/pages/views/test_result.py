@@ -1,4 +1,8 @@
+import html
+import json
 import re
+import subprocess
+import sys
 from uuid import UUID
 
 import httpx
@@ -29,6 +33,18 @@ def test_every_download_of_the_page_is_there(shared_client: httpx.Client, known_
     assert len(files) > 40
     for address in [files[0], *(file for file in files if "/verdict" in file)]:
         assert shared_client.get(address).status_code == 200, address
+
+
+def test_the_request_runs_as_curl_and_as_python(shared_client: httpx.Client, known_job: str) -> None:
+    text = shared_client.get(f"/pages/jobs/{known_job}", headers=BROWSER).text
+    curl, python, document = (html.unescape(block) for block in re.findall(r"<pre[^>]*>(.*?)</pre>", text, re.DOTALL))
+    answer = subprocess.run(["/bin/sh", "-c", curl], capture_output=True, check=True, timeout=60.0)
+    status = json.loads(answer.stdout)
+    assert (status["status"], status["reused_from"]) == ("successful", known_job)
+    printed = subprocess.run([sys.executable, "-c", python], capture_output=True, text=True, check=True, timeout=60.0)
+    verdict = shared_client.get(f"/v1/jobs/{known_job}/results/verdict").json()["verdict"][0]
+    assert verdict["sentence"] in printed.stdout
+    assert json.loads(document)["line"]["conductor"] == {"catalogue": "Drake"}
 
 
 def test_curves_are_those_of_the_job(shared_client: httpx.Client, known_job: str) -> None:
