@@ -44,6 +44,8 @@ WITHOUT_A_TEST_FILE = {
     "app.http.security_headers": "tests/app/security/test_gate.py finds its headers on every kind of answer.",
     "app.ogc.descriptions": "tests/app/ogc/test_routes.py holds them against the schemas of the standard.",
     "app.ogc.documents": "tests/app/ogc/test_routes.py holds them against the schemas of the standard.",
+    "app.ogc.links": "tests/app/ogc/test_routes.py follows them.",
+    "app.ogc.refusals": "tests/app/ogc/test_routes.py meets them.",
     "app.ogc.requests": "tests/app/ogc/test_routes.py posts and lists with them.",
     "app.openapi.line_forms": "tests/app/test_main.py finds both forms in the document.",
     "app.operation.workers": "tests/worker/test_presence.py and tests/app/operation/test_service_status.py hold it.",

@@ -15,9 +15,11 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import webhooks
 from app.jobs.webhooks import Attempt, Message, Share
+from app.ogc import callbacks
 from app.runtime.settings import Settings
 from app.security import webhook_addresses
 from app.security.webhook_addresses import RefusedAddress
+from app.storage.stored_results import CorruptResult
 
 _AT_ONCE = 64
 _AN_OWNER = 16
@@ -42,19 +44,19 @@ def courier(sessions: sessionmaker[Session], settings: Settings) -> Iterator[Non
         thread.join(2.0 * _POLL_SECONDS)
 
 
-async def send(settings: Settings, message: Message, context: ssl.SSLContext) -> Attempt:
+async def send(settings: Settings, message: Message, payload: str, context: ssl.SSLContext) -> Attempt:
     """Send a message once, to the current address of its host; read only the status of the answer."""
     try:
         with anyio.fail_after(settings.webhook_timeout_seconds):
             target = await webhook_addresses.vet(message.url, private=settings.webhook_private_networks)
             async with httpx.AsyncClient(verify=context, trust_env=False, follow_redirects=False) as client:
                 headers = {
-                    **webhooks.signed_headers(settings, message, datetime.now(UTC)),
+                    **webhooks.signed_headers(settings, message, payload, datetime.now(UTC)),
                     "Host": target.url.netloc.decode(),
                 }
                 name = {"sni_hostname": target.url.raw_host.decode()}
                 async with client.stream(
-                    "POST", target.pinned, content=message.payload, headers=headers, extensions=name
+                    "POST", target.pinned, content=payload, headers=headers, extensions=name
                 ) as answer:
                     return Attempt(answer.status_code)
     except RefusedAddress as error:
@@ -112,13 +114,23 @@ class _Rounds:
 
     async def _deliver(self, message: Message, context: ssl.SSLContext) -> None:
         try:
-            attempt = await send(self._settings, message, context)
+            payload = message.payload or await asyncio.to_thread(self._composed, message)
+            if payload is None:  # the job was removed, and its messages with it
+                return
+            attempt = await send(self._settings, message, payload, context)
             await asyncio.to_thread(self._note, message, attempt)
+        except CorruptResult as error:
+            await asyncio.to_thread(self._note, message, Attempt(None, str(error)))
         except SQLAlchemyError as error:
             _logger.warning("could not store the outcome of a webhook; it will be sent again: %s", error)
         finally:
             self._in_progress.remove(message.owner, message.receiver)
             self._changed.set()
+
+    def _composed(self, message: Message) -> str | None:
+        assert message.job_id is not None
+        with self._sessions() as session:
+            return callbacks.body(session, message.job_id, message.event, self._settings.root_path)
 
     def _note(self, message: Message, attempt: Attempt) -> None:
         with self._sessions.begin() as session:

@@ -19,8 +19,9 @@ class Delivery(Answer):
 
     id: str = described("Its `webhook-id`", "msg_0199a3c45b7e7c1a9d2e3f4a5b6c7d8e")
     url: str = described("Address of the receiver", "https://assets.example.com/galloping")
-    state: Literal["waiting", "pending", "delivered", "failed"] = described(
-        "State; waiting until the job or batch ends", "pending"
+    event: Literal["ended", "started", "succeeded", "failed"] = described("What it tells of the job or batch", "ended")
+    state: Literal["waiting", "pending", "delivered", "failed", "not_needed"] = described(
+        "State; waiting until its event comes, not_needed if the job ended otherwise", "pending"
     )
     created_at: datetime = described("When the job or batch was submitted", "2026-11-22T10:00:00+00:00")
     next_attempt_at: datetime | None = described(

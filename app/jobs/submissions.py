@@ -9,6 +9,7 @@ from app.convert import ENGINE_VERSION
 from app.jobs import idempotency, job_records, reuse, webhooks
 from app.jobs.idempotency import Answer, Kept, Key, KeyTaken
 from app.jobs.job_records import Submission
+from app.jobs.webhooks import Subscription
 from app.security import audit
 from app.storage.database import database_time
 from app.tables import Job
@@ -25,10 +26,10 @@ class Keyed:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A posted job: where to report its end, whether stored results may be reused, and its key, if there is one."""
+    """A posted job: who is told of its events, whether stored results may be reused, and its key, if there is one."""
 
     submission: Submission
-    webhook_url: str | None = None
+    subscriptions: tuple[Subscription, ...] = ()
     may_reuse: bool = True
     keyed: Keyed | None = None
 
@@ -59,8 +60,8 @@ def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
     job_records.insert(session, [job for _, job, _ in new])
     audit.record_submissions(session, [(order.submission.caller, job.id) for order, job, _ in new], now)
     for order, job, source in new:
-        if order.webhook_url is not None:
-            webhooks.register(session, job.owner, order.webhook_url, job_id=job.id)
+        for wanted in order.subscriptions:
+            webhooks.register(session, job.owner, wanted, job_id=job.id)
         if source is not None:
             reuse.copy(session, job.id, source)
     return [KeyTaken() if job in taken else job for job in jobs]

@@ -13,7 +13,7 @@ from typing import Any
 from uuid import UUID
 
 import httpx
-from sqlalchemy import select
+from sqlalchemy import and_, or_, select
 from sqlalchemy.orm import Session
 from standardwebhooks import Webhook
 from uuid_utils.compat import uuid7
@@ -24,12 +24,13 @@ from app.storage import counters
 from app.storage.counters import CounterName
 from app.storage.database import database_time
 from app.storage.steady_clock import steady_time
-from app.tables import ENDED, Batch, DeliveryState, Job, WebhookDelivery
+from app.tables import ENDED, Batch, DeliveryEvent, DeliveryState, Job, JobStatus, WebhookDelivery
 
 _ROWS_A_QUERY = 200
 _GROWTH = 5.0
 _GONE = 410
 GIVEN_UP = "given_up"
+_NEVER_SENT = {DeliveryState.WAITING.value, DeliveryState.NOT_NEEDED.value}
 
 
 class Outcome(StrEnum):
@@ -61,15 +62,25 @@ class Attempt:
 
 
 @dataclass(frozen=True, slots=True)
+class Subscription:
+    """An address and the event that it is told."""
+
+    url: str
+    event: DeliveryEvent = DeliveryEvent.ENDED
+
+
+@dataclass(frozen=True, slots=True)
 class Message:
-    """A message to send, and its receiver."""
+    """A message to send, and its receiver; without a payload, the sender composes it from its job and event."""
 
     id: UUID
     owner: str
     url: str
     receiver: str
-    payload: str
+    payload: str | None
     attempt: int
+    event: DeliveryEvent = DeliveryEvent.ENDED
+    job_id: UUID | None = None
 
 
 class Share:
@@ -124,7 +135,7 @@ def secret(settings: Settings, owner: str) -> str:
     return "whsec_" + base64.b64encode(key).decode()
 
 
-def signed_headers(settings: Settings, message: Message, moment: datetime) -> dict[str, str]:
+def signed_headers(settings: Settings, message: Message, payload: str, moment: datetime) -> dict[str, str]:
     """Return the headers by which a receiver verifies a message and its sender."""
     name = f"msg_{message.id.hex}"
     return {
@@ -132,22 +143,23 @@ def signed_headers(settings: Settings, message: Message, moment: datetime) -> di
         "User-Agent": "galloping-webhooks",
         "webhook-id": name,
         "webhook-timestamp": str(int(moment.timestamp())),
-        "webhook-signature": Webhook(secret(settings, message.owner)).sign(name, moment, message.payload),
+        "webhook-signature": Webhook(secret(settings, message.owner)).sign(name, moment, payload),
     }
 
 
 def register(
-    session: Session, owner: str, url: str, *, job_id: UUID | None = None, batch_id: UUID | None = None
+    session: Session, owner: str, wanted: Subscription, *, job_id: UUID | None = None, batch_id: UUID | None = None
 ) -> None:
-    """Store a webhook to send when a job or a batch ends."""
-    place = httpx.URL(url)
+    """Store a webhook to send when its event comes to a job, or when a batch ends."""
+    place = httpx.URL(wanted.url)
     session.add(
         WebhookDelivery(
             id=uuid7(),
             owner=owner,
             job_id=job_id,
             batch_id=batch_id,
-            url=url,
+            event=wanted.event.value,
+            url=wanted.url,
             receiver=f"{place.host}:{place.port or 443}",
             created_at=database_time(session),
             state=DeliveryState.WAITING.value,
@@ -166,19 +178,26 @@ def of(session: Session, *, job_id: UUID | None = None, batch_id: UUID | None = 
 def send_again(session: Session, deliveries: Sequence[WebhookDelivery]) -> None:
     """Queue messages that were due for another round of attempts; keep their log."""
     for delivery in deliveries:
-        if delivery.payload is not None:
+        if delivery.state not in _NEVER_SENT:
             delivery.state, delivery.attempts = DeliveryState.PENDING.value, 0
             delivery.next_attempt_at = steady_time(session)
 
 
 def enlist(session: Session, root_path: str = "") -> int:
-    """Write the messages of jobs and batches that have ended, with links under a prefix; return their number."""
+    """Queue the messages whose events have come, with links under a prefix; return how many are decided."""
     waiting = select(WebhookDelivery).where(WebhookDelivery.state == DeliveryState.WAITING.value)
-    ended = waiting.join(Job, Job.id == WebhookDelivery.job_id).where(Job.status.in_(ENDED)).limit(_ROWS_A_QUERY)
-    found = list(session.scalars(ended.with_for_update(of=WebhookDelivery, skip_locked=True)))
+    started = and_(WebhookDelivery.event == DeliveryEvent.STARTED.value, Job.status != JobStatus.ACCEPTED)
+    has_come = or_(Job.status.in_(ENDED), started)
+    due = waiting.join(Job, Job.id == WebhookDelivery.job_id).where(has_come).limit(_ROWS_A_QUERY)
+    found = list(session.scalars(due.with_for_update(of=WebhookDelivery, skip_locked=True)))
     for delivery in found:
         job = session.get_one(Job, delivery.job_id)
-        _write(session, delivery, "job", _of_job(job, root_path))
+        if delivery.event == DeliveryEvent.ENDED.value:
+            _write(session, delivery, "job", _of_job(job, root_path))
+        elif _never_comes(DeliveryEvent(delivery.event), job):
+            delivery.state = DeliveryState.NOT_NEEDED.value
+        else:
+            _queue(session, delivery)
     received = waiting.join(Batch, Batch.id == WebhookDelivery.batch_id).where(Batch.received_at.is_not(None))
     for delivery in session.scalars(received.with_for_update(of=WebhookDelivery, skip_locked=True)).all():
         assert delivery.batch_id is not None
@@ -204,7 +223,10 @@ def take_due(session: Session, share: Share, lease_seconds: float) -> list[Messa
                 taken.append(delivery)
                 delivery.attempts += 1
                 delivery.next_attempt_at = now + timedelta(seconds=lease_seconds)
-    return [Message(d.id, d.owner, d.url, d.receiver, d.payload or "", d.attempts) for d in taken]
+    return [
+        Message(d.id, d.owner, d.url, d.receiver, d.payload, d.attempts, DeliveryEvent(d.event), d.job_id)
+        for d in taken
+    ]
 
 
 def _oldest_due(session: Session, now: datetime, share: Share) -> Sequence[WebhookDelivery]:
@@ -238,6 +260,18 @@ def note(session: Session, settings: Settings, message: Message, attempt: Attemp
 def _write(session: Session, delivery: WebhookDelivery, kind: str, data: dict[str, Any]) -> None:
     message = {"type": f"{kind}.{data['status']}", "timestamp": database_time(session).isoformat(), "data": data}
     delivery.payload = json.dumps(message, separators=(",", ":"))
+    _queue(session, delivery)
+
+
+def _never_comes(event: DeliveryEvent, job: Job) -> bool:
+    if job.status not in ENDED:
+        return False
+    if event is DeliveryEvent.STARTED:
+        return job.started_at is None
+    return (event is DeliveryEvent.SUCCEEDED) != (job.status is JobStatus.SUCCESSFUL)
+
+
+def _queue(session: Session, delivery: WebhookDelivery) -> None:
     delivery.state, delivery.next_attempt_at = DeliveryState.PENDING.value, steady_time(session)
 
 

@@ -5,28 +5,21 @@ from typing import Any
 
 from app.answers.results import ResultDocument
 from app.convert import ENGINE_VERSION
+from app.ogc.links import BASE, PROCESS, link
 from app.openapi.line_forms import FORMS
 from app.schemas import JobRequest
 from app.schemas.field_table import inlined
 from app.schemas.known import KnownLine
 
-BASE = "/ogc"
-PROCESS = "galloping"
-
 _CONFORMANCE = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf"
 _RELATION = "http://www.opengis.net/def/rel/ogc/1.0"
-_CLASSES = ("core", "ogc-process-description", "json", "job-list", "dismiss")
+_CLASSES = ("core", "ogc-process-description", "json", "job-list", "dismiss", "callback")
 _TITLE = "Galloping of iced conductors"
 _ABOUT = (
     "Tells whether an iced transmission-line span gallops, from which wind speed, and how far; with a study also how "
     "that changes with one or two fields of the line, with remedies what they change."
 )
 _INPUTS = ("line", "analysis", "study", "placement", "remedies")
-
-
-def link(rel: str, path: str, title: str, media_type: str = "application/json") -> dict[str, str]:
-    """Return a link of this service."""
-    return {"rel": rel, "href": path, "type": media_type, "title": title}
 
 
 def landing() -> dict[str, Any]:

@@ -9,20 +9,32 @@ from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, TypeAdapter, V
 from app import convert, schemas
 from app.http.problems import query_fault
 from app.jobs.job_records import JobFilters
-from app.ogc.descriptions import PROCESS
+from app.jobs.webhooks import Subscription
+from app.ogc.links import PROCESS
 from app.schemas.faults import BadInput, Fault, faults_of
-from app.tables import JobStatus
+from app.tables import DeliveryEvent, JobStatus
 
 _QUALIFIED = frozenset({"value", "mediaType", "encoding", "schema"})
 _MOMENT: TypeAdapter[datetime] = TypeAdapter(AwareDatetime)
 
 
 class Subscriber(BaseModel):
-    """Where to report the end of a job."""
+    """Where to send the results of a job, and where to report its beginning and its failure."""
 
     model_config = ConfigDict(extra="forbid", strict=True, populate_by_name=True)
 
     success: str = Field(alias="successUri", max_length=2000)
+    in_progress: str | None = Field(None, alias="inProgressUri", max_length=2000)
+    failed: str | None = Field(None, alias="failedUri", max_length=2000)
+
+    def subscriptions(self) -> dict[str, Subscription]:
+        """Return who is told of which event, by the pointers of their addresses."""
+        told = (
+            ("successUri", self.success, DeliveryEvent.SUCCEEDED),
+            ("inProgressUri", self.in_progress, DeliveryEvent.STARTED),
+            ("failedUri", self.failed, DeliveryEvent.FAILED),
+        )
+        return {f"/subscriber/{name}": Subscription(url, event) for name, url, event in told if url is not None}
 
 
 class Execution(BaseModel):
@@ -48,13 +60,11 @@ class Execution(BaseModel):
             raise BadInput(faults)
         document = {name: _bare(value) for name, value in self.inputs.items()}
         try:
-            found = schemas.JobRequest.model_validate(convert.explicit_request(document, own))
+            return schemas.JobRequest.model_validate(convert.explicit_request(document, own))
         except ValidationError as error:
             raise BadInput(faults_of(error.errors(include_url=False), root="/inputs")) from error
         except BadInput as error:
             raise BadInput([Fault(f"/inputs{f.pointer}", f.code, f.detail) for f in error.faults]) from error
-        url = None if self.subscriber is None else self.subscriber.success
-        return found.model_copy(update={"webhook_url": url})
 
     def _links(self) -> Iterator[Fault]:
         for name, value in self.inputs.items():

@@ -17,11 +17,11 @@ from app.http.strict_routes import StrictJsonRoute
 from app.jobs import job_records
 from app.jobs.job_records import CancelOutcome, Submission
 from app.jobs.submissions import Order
-from app.ogc import descriptions, documents
-from app.ogc.descriptions import BASE, PROCESS, link
+from app.ogc import descriptions, documents, refusals
+from app.ogc.links import BASE, PROCESS, link
 from app.ogc.requests import Execution, JobsQuery
 from app.owned import records
-from app.routes.dependencies import CallerOf, Readers, SettingsOf, Writers
+from app.routes.dependencies import CallerOf, Readers, SettingsOf, Writers, vet_webhook
 from app.routes.job_intake import check_request, stored_job
 from app.routes.streaming import streamed
 from app.routes.waiting import wait_for_end
@@ -68,22 +68,25 @@ async def execute(request: Request, process_id: str, execution: Annotated[Execut
     Raises
     ------
     ProblemError
-        404 for another process, 422 with every fault of the inputs.
+        404 for another process, 422 with every fault of the inputs, or if a subscriber's address is refused.
     """
     _require_process(process_id)
     caller, shared = request.state.caller, request.app.state
     document = await to_thread.run_sync(_request_of, request, execution)
     await check_request(request, document)
+    told = {} if execution.subscriber is None else execution.subscriber.subscriptions()
+    for pointer, wanted in told.items():
+        await vet_webhook(shared.settings, wanted.url, pointer)
     line = document.line
     submission = Submission(caller, document.kept(), line.name, line.asset_id, line.tags)
-    job = await stored_job(request, Order(submission, document.webhook_url))
+    job = await stored_job(request, Order(submission, tuple(told.values())))
     preferred = "respond-async" in ", ".join(request.headers.getlist("prefer")).lower()
     seconds, most = convert.estimate(document).seconds, shared.settings.longest_wait_seconds
     if not preferred and seconds is not None and seconds < most:
         await wait_for_end(shared.job_watch, Owned(caller.owner, job.id), int(most) or 1)
         job = await to_thread.run_sync(_find, request, job.id)
         if job.status in ENDED:
-            documents.require_success(job)
+            refusals.require_success(job)
             return _answered(request, job, raw=execution.response == "raw")
     applied = {"Preference-Applied": "respond-async"} if preferred else {}
     return LinkedJSON(documents.status_info(job), 201, {"Location": f"{BASE}/jobs/{job.id}", **applied})
@@ -137,7 +140,7 @@ def job_results(request: Request, job_id: str) -> Response:
         404 while they are not ready.
     """
     job = _find(request, job_id)
-    documents.require_success(job)
+    refusals.require_success(job)
     return _answered(request, job, raw=False)
 
 
@@ -155,7 +158,7 @@ def dismiss(request: Request, job_id: str, writers: Writers) -> LinkedJSON:
 
 def _require_process(process_id: str) -> None:
     if process_id != PROCESS:
-        raise documents.missing("no-such-process", f"There is no process {process_id[:100]}.")
+        raise refusals.missing("no-such-process", f"There is no process {process_id[:100]}.")
 
 
 def _request_of(request: Request, execution: Execution) -> schemas.JobRequest:
@@ -178,7 +181,7 @@ def _of(session: Session, caller: Caller, job_id: str | UUID) -> Job:
     except ValueError:
         job = None
     if job is None or job.batch_id is not None:
-        raise documents.missing("no-such-job", f"There is no job {str(job_id)[:100]}.")
+        raise refusals.missing("no-such-job", f"There is no job {str(job_id)[:100]}.")
     return job
 
 

@@ -24,6 +24,7 @@ from app.http.strict_routes import KnownParametersRoute
 from app.interactive import Busy
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
+from app.jobs.webhooks import Subscription
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import BATCHES, accepted_batch
 from app.routes.dependencies import CallerOf, MayReuse, Readers, SenderOf, Writers, vet_webhook
@@ -174,7 +175,7 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
 
     def on_accept(session: Session, batch_id: UUID) -> None:
         if webhook_url is not None:
-            webhooks.register(session, caller.owner, webhook_url, batch_id=batch_id)
+            webhooks.register(session, caller.owner, Subscription(webhook_url), batch_id=batch_id)
         answers.append(accepted_batch(session, caller, batch_id))
         if key is not None:
             idempotency.finish(session, key, _digest_so_far(posted), stored_answer(answers[0]))

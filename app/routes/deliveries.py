@@ -37,6 +37,7 @@ def _document(delivery: WebhookDelivery) -> dict[str, Any]:
     pending = delivery.next_attempt_at if delivery.state == "pending" else None
     return {
         "id": f"msg_{delivery.id.hex}",
+        "event": delivery.event,
         "url": delivery.url,
         "state": delivery.state,
         "created_at": delivery.created_at.isoformat(),

@@ -65,8 +65,8 @@ async def _may_reuse(
 MayReuse = Annotated[bool, Depends(_may_reuse)]
 
 
-async def vet_webhook(settings: Settings, url: str) -> None:
-    """Check that webhooks may go to an address.
+async def vet_webhook(settings: Settings, url: str, pointer: str = "/webhook_url") -> None:
+    """Check that webhooks may go to an address, which a document gives at a pointer.
 
     Raises
     ------
@@ -76,4 +76,4 @@ async def vet_webhook(settings: Settings, url: str) -> None:
     try:
         await webhook_addresses.vet(url, private=settings.webhook_private_networks)
     except RefusedAddress as error:
-        raise invalid_document([Fault("/webhook_url", "refused_address", str(error))]) from error
+        raise invalid_document([Fault(pointer, "refused_address", str(error))]) from error

@@ -13,6 +13,7 @@ from app.http.strict_routes import StrictJsonRoute
 from app.jobs import idempotency, job_records, webhooks
 from app.jobs.job_records import Submission
 from app.jobs.submissions import Order
+from app.jobs.webhooks import Subscription
 from app.routes import documentation
 from app.routes.dependencies import CallerOf, Writers
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf
@@ -21,7 +22,7 @@ from app.routes.job_status import find_job, job_address, job_document
 from app.schemas.fields import with_marks
 from app.schemas.labels import JobLabels
 from app.security.caller import Caller
-from app.tables import ENDED
+from app.tables import ENDED, DeliveryEvent
 
 router = APIRouter(prefix=JOBS, tags=["jobs"], route_class=StrictJsonRoute)
 
@@ -93,5 +94,5 @@ def _order_of(request: Request, job_id: UUID) -> Order:
         if job.status not in ENDED:
             raise ProblemError(ProblemKind.NOT_READY, "The job has not ended, so it does not run again.")
         tags = {tag.key: tag.value for tag in job.tags}
-        url = next((delivery.url for delivery in webhooks.of(session, job_id=job_id)), None)
-        return Order(Submission(caller, job.document, job.name, job.asset_id, tags), url, may_reuse=False)
+        told = tuple(Subscription(d.url, DeliveryEvent(d.event)) for d in webhooks.of(session, job_id=job_id))
+        return Order(Submission(caller, job.document, job.name, job.asset_id, tags), told, may_reuse=False)

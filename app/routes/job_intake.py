@@ -13,6 +13,7 @@ from app.jobs import idempotency, job_records
 from app.jobs.idempotency import Key, KeyTaken
 from app.jobs.job_records import Submission
 from app.jobs.submissions import Keyed, Order
+from app.jobs.webhooks import Subscription
 from app.routes.dependencies import PREFIX, RETRY_SECONDS, vet_webhook
 from app.routes.idempotent_posts import replayed_answer, stored_answer
 from app.routes.job_status import job_address, job_document
@@ -63,11 +64,16 @@ async def stored_job(request: Request, order: Order) -> Job:
 def _order(caller: Caller, document: schemas.JobRequest, key: Key | None, *, may_reuse: bool) -> Order:
     line, kept = document.line, document.kept()
     submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
-    order = Order(submission, document.webhook_url, may_reuse)
+    order = Order(submission, subscriptions_to_end(document.webhook_url), may_reuse)
     if key is None:
         return order
     fingerprint = idempotency.fingerprint(JOBS, job_records.canonical(kept), document.webhook_url or "")
     return keyed_order(order, key, fingerprint)
+
+
+def subscriptions_to_end(url: str | None) -> tuple[Subscription, ...]:
+    """Return who is told of the end of a job."""
+    return () if url is None else (Subscription(url),)
 
 
 def keyed_order(order: Order, key: Key | None, fingerprint: str) -> Order:

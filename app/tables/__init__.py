@@ -9,7 +9,7 @@ from app.tables.jobs import Job, JobEvent, JobTag
 from app.tables.owned import OwnAerodynamics, OwnConductor
 from app.tables.results import PointRow
 from app.tables.steady_clock import SteadyClock
-from app.tables.webhooks import DeliveryState, WebhookDelivery
+from app.tables.webhooks import DeliveryEvent, DeliveryState, WebhookDelivery
 from app.tables.workers import Worker
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "Batch",
     "BatchItem",
     "CounterIncrement",
+    "DeliveryEvent",
     "DeliveryState",
     "FailureKind",
     "IdempotencyKey",

@@ -12,17 +12,29 @@ from app.tables.base import Base
 
 
 class DeliveryState(StrEnum):
-    """States of a delivery: its job or batch still runs, it is to be sent, it arrived, or the service gave it up."""
+    """States of a delivery: its event is awaited or never comes; it is to be sent, has arrived, or was given up."""
 
     WAITING = "waiting"
     PENDING = "pending"
     DELIVERED = "delivered"
+    FAILED = "failed"
+    NOT_NEEDED = "not_needed"
+
+
+class DeliveryEvent(StrEnum):
+    """What a message tells: the end of a job or a batch, or of a job its beginning, its results or its failure."""
+
+    ENDED = "ended"
+    STARTED = "started"
+    SUCCEEDED = "succeeded"
     FAILED = "failed"
 
 
 class WebhookDelivery(Base):
     """One message for one receiver; log has an entry for each attempt.
 
+    The payload is written when the message is due if it tells the end, and composed when it is sent if it tells another
+    event, since results may be large.
     While a sender holds the message, next_attempt_at is the end of its lease.
     """
 
@@ -46,3 +58,4 @@ class WebhookDelivery(Base):
     attempts: Mapped[int] = mapped_column(default=0)
     next_attempt_at: Mapped[datetime | None]
     log: Mapped[list[dict[str, Any]]] = mapped_column(JSON)
+    event: Mapped[str] = mapped_column(String(16), default=DeliveryEvent.ENDED.value)

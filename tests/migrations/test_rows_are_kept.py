@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.jobs import idempotency, leases, webhooks
 from app.jobs.idempotency import Answer, Kept, new_key
 from app.jobs.leases import Failure
+from app.jobs.webhooks import Subscription
 from app.operation import workers
 from app.owned import records
 from app.reference import conductors
@@ -49,7 +50,7 @@ def fill(sessions: sessionmaker[Session], settings: Settings) -> None:
         assert leases.finish(session, held[1], points)
         assert leases.fail(session, held[2], Failure(FailureKind.TIME_LIMIT, "too long"))
         tagged = create_job(session, LOCAL, {"line": {}}, name="n", asset_id="a", tags={"b": "c"})
-        webhooks.register(session, LOCAL.owner, "https://a.example/hook", job_id=tagged.id)
+        webhooks.register(session, LOCAL.owner, Subscription("https://a.example/hook"), job_id=tagged.id)
         keys.create(session, "acme", tuple(Scope), "SCADA", None)
         idempotency.keep(session, [Kept(new_key("acme", "k"), "f", Answer(202, {"a": "b"}, "{}"))])
         workers.report(session, settings, "here")
@@ -60,7 +61,7 @@ def fill(sessions: sessionmaker[Session], settings: Settings) -> None:
     run(sessions, second, failing=frozenset({3}))
     claim(sessions, _open)
     with sessions.begin() as session:
-        webhooks.register(session, LOCAL.owner, "https://a.example/hook", batch_id=batch_id)
+        webhooks.register(session, LOCAL.owner, Subscription("https://a.example/hook"), batch_id=batch_id)
         counters.fold(session)
 
 

@@ -232,6 +232,53 @@ def test_the_end_of_a_batch_is_told(
     assert (message["type"], message["data"]["lines"]["successful"]) == ("batch.successful", 2)
 
 
+def subscribed(client: httpx.Client, url: str) -> str:
+    """Execute by the standard, with every address of a subscriber, and return the address of the job under it."""
+    subscriber = {"successUri": url, "inProgressUri": url, "failedUri": url}
+    asked = {"inputs": short_request(), "subscriber": subscriber}
+    answer = client.post("/ogc/processes/galloping/execution", json=asked, headers={"Prefer": "respond-async"})
+    assert answer.status_code == 201, answer.text
+    return answer.headers["Location"]
+
+
+def states(client: httpx.Client, job: str) -> dict[str, str]:
+    log = client.get(f"/v1/jobs/{job.rpartition('/')[2]}/deliveries").json()["deliveries"]
+    return {entry["event"]: entry["state"] for entry in log}
+
+
+def test_a_subscriber_of_the_standard_is_sent_the_beginning_and_the_results(
+    client: httpx.Client, open_settings: Settings, received: tuple[Receiver, Path], sessions: sessionmaker[Session]
+) -> None:
+    job = subscribed(client, received[0].url)
+    assert set(states(client, job).values()) == {"waiting"}
+    run_job(open_settings, UUID(job.rpartition("/")[2]))
+    expected = {"started": "delivered", "succeeded": "delivered", "failed": "not_needed"}
+    with courier(sessions, open_settings):
+        wait_until(lambda: states(client, job) == expected, what="both messages")
+        again = client.post(f"/v1/jobs/{job.rpartition('/')[2]}/deliveries", headers={"Idempotency-Key": "again"})
+        assert again.status_code == 202
+        wait_until(lambda: len(received[0].got) == 4, what="both messages once more")
+    secret = client.get("/v1/webhooks/secret").json()["secret"]
+    told = [Webhook(secret).verify(body, headers) for headers, body in received[0].got]
+    results = [message for message in told if "result" in message]
+    assert results == [client.get(f"{job}/results").json()] * 2
+    assert [message["jobID"] for message in told if "result" not in message] == [job.rpartition("/")[2]] * 2
+    retried = client.post(f"/v1/jobs/{job.rpartition('/')[2]}/retry", headers={"Idempotency-Key": "retry"}).json()
+    assert set(states(client, retried["id"])) == set(expected)
+
+
+def test_a_subscriber_of_the_standard_hears_of_a_job_that_gives_no_results(
+    client: httpx.Client, open_settings: Settings, received: tuple[Receiver, Path], sessions: sessionmaker[Session]
+) -> None:
+    job = subscribed(client, received[0].url)
+    client.post(f"/v1/jobs/{job.rpartition('/')[2]}/cancel").raise_for_status()
+    expected = {"started": "not_needed", "succeeded": "not_needed", "failed": "delivered"}
+    with courier(sessions, open_settings):
+        wait_until(lambda: states(client, job) == expected, what="the message")
+    ((_, body),) = received[0].got
+    assert json.loads(body)["status"] == "dismissed"
+
+
 def test_private_addresses_are_refused_at_the_post(tmp_path: Path) -> None:
     body = {"lines": [short_request()["line"]], "analysis": SHORT}
     with service.running(service.sqlite_settings(tmp_path)) as closed:

@@ -8,6 +8,7 @@ from app.jobs import idempotency, submissions, webhooks
 from app.jobs.idempotency import Answer, KeyTaken, new_key
 from app.jobs.job_records import Submission
 from app.jobs.submissions import Keyed, Order
+from app.jobs.webhooks import Subscription
 from app.security.caller import LOCAL
 from app.tables import AuditEvent, IdempotencyKey, Job, JobEvent
 from tests.documents import STRANGER, history, short_request
@@ -61,7 +62,7 @@ def test_a_document_that_cannot_be_kept_is_refused_alone(sessions: sessionmaker[
 
 
 def test_every_order_keeps_its_caller_and_whom_to_tell(sessions: sessionmaker[Session]) -> None:
-    told = order(webhook_url="https://a.example/hook")
+    told = order(subscriptions=(Subscription("https://a.example/hook"),))
     mine, theirs = accepted(sessions, told, Order(Submission(STRANGER, short_request(), "n", "L1", {"a": "b"})))
     assert (mine.owner, theirs.owner) == (LOCAL.owner, STRANGER.owner)
     with sessions() as session:

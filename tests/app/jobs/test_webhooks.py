@@ -7,7 +7,7 @@ from sqlalchemy import update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import webhooks
-from app.jobs.webhooks import Message, Share
+from app.jobs.webhooks import Message, Share, Subscription
 from app.storage.database import database_time
 from app.tables import DeliveryState, WebhookDelivery
 from tests.documents import add_job
@@ -18,7 +18,7 @@ def add_due(sessions: sessionmaker[Session], owner: str, host: str, count: int) 
     job_id = add_job(sessions)
     with sessions.begin() as session:
         for _ in range(count):
-            webhooks.register(session, owner, f"https://{host}/hook", job_id=job_id)
+            webhooks.register(session, owner, Subscription(f"https://{host}/hook"), job_id=job_id)
         session.flush()
         now, waiting = database_time(session), WebhookDelivery.state == DeliveryState.WAITING.value
         due = {"state": DeliveryState.PENDING.value, "payload": "{}", "next_attempt_at": now}
