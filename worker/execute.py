@@ -19,7 +19,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app import convert
 from app.batches import batch_records
 from app.convert import Advance, PointResult
-from app.jobs import leases, reuse
+from app.jobs import leases, reuse, turns
 from app.jobs.leases import Beat, Claim, Failure
 from app.runtime import correlation, telemetry
 from app.runtime.settings import Settings
@@ -37,7 +37,9 @@ def execute(
     owner: str,
     end_process: Callable[[], None] | None = None,
 ) -> None:
-    """Claim a job, compute it, and end it; do nothing if it cannot be claimed, as after a repeated message.
+    """Claim a job, compute it, and end it: the job itself or, if it is another owner's turn, one of that owner's.
+
+    Do nothing if no job waits, as after a repeated message.
 
     A step of the engine may take minutes. If a job that was cancelled or given to another worker does not stop within
     `stop_seconds`, it is ended as it stands, and `end_process` is called from another thread, to stop the computation.
@@ -48,10 +50,11 @@ def execute(
         If the database fails at the claim or at the end; the lease then expires, and the job runs again.
     """
     with sessions.begin() as session:
-        held = leases.claim(session, job_id, owner, settings.lease_seconds)
+        chosen = turns.in_turn(session, job_id)
+        held = leases.claim(session, chosen, owner, settings.lease_seconds) if chosen is not None else None
         steps = _steps(session, held) if held is not None else None
     if held is None or steps is None:
-        _logger.info("job %s is not waiting for a worker", job_id)
+        _logger.info("no job is waiting for a worker, nor is %s, whose message came", job_id)
         return
     with correlation.bound(held.ids), telemetry.job_span(held.ids):
         _work(sessions, settings, held, steps, end_process)

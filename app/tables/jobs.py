@@ -27,6 +27,7 @@ class Job(Base):
         Index(None, "owner", "created_at", "id"),
         Index(None, "status", "dispatched_at"),
         Index(None, "status", "lease_expires_at"),
+        Index(None, "status", "owner", "batch_id", "created_at"),
         Index(None, "owner", "asset_id", "created_at"),
         Index(None, "batch_id", "created_at"),
         Index(None, "owner", "input_hash"),

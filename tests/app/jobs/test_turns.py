@@ -1,0 +1,75 @@
+from uuid import UUID, uuid4
+
+import pytest
+from sqlalchemy import update
+from sqlalchemy.orm import Session, sessionmaker
+
+from app.jobs import leases, turns
+from app.tables import Job
+from tests.documents import STRANGER, add_job, create_job
+
+MANY = 30
+ENOUGH = 40  # draws after which one of two owners has not come up once in a million million times
+
+
+def of_stranger(sessions: sessionmaker[Session]) -> UUID:
+    with sessions.begin() as session:
+        return create_job(session, STRANGER, {"line": {}}).id
+
+
+def as_chunks(sessions: sessionmaker[Session], job_ids: list[UUID], batch_id: UUID) -> None:
+    with sessions.begin() as session:
+        session.execute(update(Job).where(Job.id.in_(job_ids)).values(batch_id=batch_id, lines=1))
+
+
+def draw(sessions: sessionmaker[Session], job_id: UUID) -> UUID | None:
+    with sessions() as session:
+        return turns.in_turn(session, job_id)
+
+
+def claim(sessions: sessionmaker[Session], job_id: UUID) -> None:
+    with sessions.begin() as session:
+        assert leases.claim(session, job_id, "here", 30.0) is not None
+
+
+def test_an_owner_alone_has_jobs_run_as_their_messages_come(sessions: sessionmaker[Session]) -> None:
+    jobs = [add_job(sessions) for _ in range(3)]
+    assert [draw(sessions, job_id) for job_id in reversed(jobs)] == jobs[::-1]
+
+
+def test_nothing_is_run_where_nothing_waits(sessions: sessionmaker[Session]) -> None:
+    assert draw(sessions, uuid4()) is None
+    job_id = add_job(sessions)
+    claim(sessions, job_id)
+    assert draw(sessions, job_id) is None
+
+
+def test_a_message_whose_job_was_run_by_another_one_lets_the_oldest_run(sessions: sessionmaker[Session]) -> None:
+    ran, *others = [add_job(sessions) for _ in range(3)]
+    claim(sessions, ran)
+    assert draw(sessions, ran) == others[0]
+
+
+def test_owners_take_turns_however_many_jobs_one_of_them_has(sessions: sessionmaker[Session]) -> None:
+    crowd = [add_job(sessions) for _ in range(MANY)]
+    alone = of_stranger(sessions)
+    drawn = {draw(sessions, crowd[0]) for _ in range(ENOUGH)}
+    assert drawn == {crowd[0], alone}
+    claim(sessions, crowd[0])
+    assert {draw(sessions, crowd[1]) for _ in range(ENOUGH)} == {alone}, "nothing of its owner runs"
+    claim(sessions, alone)
+    assert {draw(sessions, alone) for _ in range(ENOUGH)} == {crowd[1]}, (
+        "the message of a job that runs moves another on"
+    )
+
+
+@pytest.mark.parametrize("single", [True, False])
+def test_an_owners_single_jobs_come_before_chunks_and_these_by_batch(
+    sessions: sessionmaker[Session], single: bool
+) -> None:
+    chunks = [add_job(sessions) for _ in range(4)]
+    first, second = sorted((uuid4(), uuid4()))
+    as_chunks(sessions, chunks[:2], second)
+    as_chunks(sessions, chunks[2:], first)
+    expected = add_job(sessions) if single else chunks[2]
+    assert draw(sessions, uuid4()) == expected
