@@ -1,9 +1,11 @@
 """Numbers as pages show them: in SI, or in feet and pounds, with as many digits as are known."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import floor, log10
 
+_IN_TEXT = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?) (m/s|m|N|kg)(?![\w/])")
 _DIGITS = 3
 _NO_NUMBER = "\N{EN DASH}"
 _FROM_TEN_THOUSAND = 4  # below a power of ten of this size numbers are written out
@@ -45,6 +47,16 @@ class Units:
         if isinstance(number, bool) or not isinstance(number, int | float):
             return _NO_NUMBER if number is None else str(number)
         return f"{self.number(number, si, digits)} {self.unit(si).name}".rstrip()
+
+    def sentence(self, text: str) -> str:
+        """Return a sentence whose quantities in SI are in the units that are shown, each on one line with its unit."""
+        return _IN_TEXT.sub(self._quantity, text)
+
+    def _quantity(self, found: re.Match[str]) -> str:
+        number, si = found.groups()
+        digits = max(len(number.replace(".", "").lstrip("-0")), 1)
+        shown = plain(self.value(float(number), si), digits) if si in self.instead else number
+        return f"{shown}\N{NO-BREAK SPACE}{self.unit(si).name}"
 
     def number(self, number: object, si: str | None = None, digits: int = _DIGITS) -> str:
         """Return a number without its unit."""

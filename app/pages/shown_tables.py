@@ -10,6 +10,7 @@ from app.pages.findings import Row
 from app.pages.measures import Units
 from app.pages.wording import word_for, words
 
+_SENTENCE = "sentence"
 _WORDS = ("model", "stability", "crossing", "type", "kind", "outcome", "direction", "method", "together", "found_by")
 _ENDINGS = ("_m_per_s", "_hz", "_rad", "_n", "_m")
 ADDRESSES = {name: address for address, name in TABLES_BY_ADDRESS.items()}
@@ -65,4 +66,6 @@ def _cell(column: ExportedColumn, value: Any, units: Units) -> str:
         return word_for(words().truth, "yes" if value else "no")
     if isinstance(value, str) and column.name in _WORDS:
         return word_for(words().values, value)
+    if isinstance(value, str) and column.name == _SENTENCE:
+        return units.sentence(value)
     return units.number(value, column.unit if column.kind == "number" else None)

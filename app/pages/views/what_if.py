@@ -158,6 +158,6 @@ def _drawn(found: Findings, units: Units) -> Mapping[str, Any]:
         "at": units.value(wind, "m/s"),
         "gallops": verdict.get("gallops", "undecided"),
         "answer": word_for(said_words.gallops, verdict.get("gallops", "undecided")),
-        "sentence": verdict.get("sentence", ""),
+        "sentence": units.sentence(verdict.get("sentence", "")),
         "facts": facts(found, units),
     }

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from app.pages.measures import SI
 from app.reference.source_lines import example
 from tests.app.command_line import galloping, on_a_terminal
 from tests.app.known_documents import CONTRACT
@@ -92,4 +93,4 @@ def test_a_report_is_written_as_pdf_or_html(request_file: str, tmp_path: Path) -
     galloping("analyse", request_file, "--report", str(tmp_path / "report.pdf"))
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF-")
     result = json.loads(galloping("analyse", request_file, "--report", str(tmp_path / "report.html")).stdout)
-    assert result["verdict"][0]["sentence"] in (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert SI.sentence(result["verdict"][0]["sentence"]) in (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -44,3 +44,12 @@ def test_what_is_no_number_is_shown_as_it_is() -> None:
     assert SI.number("crescent") == "crescent"
     assert SI.shown(3, "1") == "3"
     assert SI.shown(True) == "True"
+
+
+def test_quantities_within_a_sentence_are_in_the_units_of_the_reader_with_as_many_digits() -> None:
+    said = "Gallops from 1.9 m/s; at 12 m/s in one loop, 2.67 m peak to peak; keeps -0.15 m; 45 mm, 3.1 m2, C11 m."
+    in_feet = FEET.sentence(said).replace("\N{NO-BREAK SPACE}", " ")
+    assert in_feet.startswith("Gallops from 4.3 mph; at 27 mph in one loop, 8.76 ft peak to peak; keeps -0.49 ft;")
+    assert in_feet.endswith("; 45 mm, 3.1 m2, C11 m.")
+    assert SI.sentence(said).replace("\N{NO-BREAK SPACE}", " ") == said
+    assert "12\N{NO-BREAK SPACE}m/s" in SI.sentence(said)

@@ -13,7 +13,13 @@ def test_the_verdict_comes_first_then_line_results_and_method(material: Material
     text = made(material)
     verdict = material.found.verdict
     assert verdict is not None
-    parts = [verdict["sentence"], "The line and what is assumed", "Assumed values", "/amplitude.svg", "Limits"]
+    parts = [
+        SI.sentence(verdict["sentence"]),
+        "The line and what is assumed",
+        "Assumed values",
+        "/amplitude.svg",
+        "Limits",
+    ]
     places = [text.index(part) for part in parts]
     assert places == sorted(places)
     assert "2026-01-31" in text
