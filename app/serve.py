@@ -7,9 +7,12 @@ import math
 import os
 import shutil
 import signal
+import socket
 import sys
 from collections.abc import Callable
 from functools import partial
+from http import HTTPStatus
+from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -34,6 +37,7 @@ _SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"  # prometheus_client reads this var
 _METRICS_BYTES = 1 << 20  # far more than the metrics of all routes need
 _STOP_SECONDS = 10.0
 _POLL_SECONDS = 0.5
+_EVERY_ADDRESS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # hosts that stand for all addresses -> one of them
 _START_SECONDS = 30  # uvicorn replaces a process silent for this long; loading takes seconds on a busy machine
 
 _logger = logging.getLogger(__name__)
@@ -41,6 +45,10 @@ _logger = logging.getLogger(__name__)
 
 class Unguarded(Exception):
     """Raised when the service would be open to other machines without any key."""
+
+
+class PortTaken(Exception):
+    """Raised when the service cannot listen on its port."""
 
 
 def worker(settings: Settings, *, check: bool = False) -> NoReturn:
@@ -84,8 +92,10 @@ def api(settings: Settings, host: str, port: int) -> int:
     return 0
 
 
-def serve(settings: Settings, host: str, port: int) -> int:
+def serve(settings: Settings, host: str, port: int, announce: Callable[[], object] = lambda: None) -> int:
     """Migrate, then run the API and a worker as child processes until SIGTERM or SIGINT; return the exit code.
+
+    Call `announce` once when the API answers.
 
     If the worker exits, start it again. If the API exits, end the service with its exit code. Both children end when
     this process ends, even if it is killed. The next start resumes unfinished work.
@@ -94,21 +104,47 @@ def serve(settings: Settings, host: str, port: int) -> int:
     ------
     Unguarded
         If other machines could reach the service and no key exists.
+    PortTaken
+        If another program listens on the port.
     """
     logs.configure(settings)
+    _check_port(host, port)
     migrate(settings)
     if not is_loopback(host) and settings.oidc_issuer is None and not _has_keys(settings):
         raise Unguarded(f"other machines can reach {host}, and no key exists: create one with `galloping keys create`")
     with processes.until_stopped() as wait:
         api_process = processes.start(settings, f"{__package__}.serve", host, str(port))
         worker_process = processes.start(settings, _WORKER)
+        announced = False
         while not wait(_POLL_SECONDS) and api_process.poll() is None:
+            if not announced and _answers(host, port):
+                announced = True
+                announce()
             if worker_process.poll() is not None:
                 _logger.warning("the worker exited with code %s; starting it again", worker_process.returncode)
                 worker_process = processes.start(settings, _WORKER)
         code = api_process.poll()
         processes.stop([api_process, worker_process], signal.SIGTERM, settings.shutdown_seconds + _STOP_SECONDS)
     return code or 0
+
+
+def _check_port(host: str, port: int) -> None:
+    try:
+        family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        socket.create_server(address[:2], family=family).close()
+    except OSError as error:
+        raise PortTaken(f"cannot listen on port {port} of {host}: {error.strerror or error}") from error
+
+
+def _answers(host: str, port: int) -> bool:
+    connection = HTTPConnection(_EVERY_ADDRESS.get(host, host), port, timeout=_POLL_SECONDS)
+    try:
+        connection.request("GET", "/health/live")
+        return connection.getresponse().status < HTTPStatus.INTERNAL_SERVER_ERROR
+    except (OSError, HTTPException):
+        return False
+    finally:
+        connection.close()
 
 
 def _has_keys(settings: Settings) -> bool:

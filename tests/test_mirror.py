@@ -32,7 +32,6 @@ WITHOUT_A_TEST_FILE = {
     "app.cli.options": "It declares options; tests/app/cli/test_lines.py gives them.",
     "app.cli.remote.answers": "tests/app/cli/remote/test_jobs.py and test_batch.py hold what it prints and writes.",
     "app.cli.remote.calls": "tests/app/cli/remote/test_submit.py and test_jobs.py call through it.",
-    "app.cli.operation.service": "tests/e2e/test_serve.py runs its commands.",
     "app.cli.operation.keys": "tests/app/cli/operation/test_operate.py makes, lists and revokes keys with it.",
     "app.distribution": "tests/e2e/test_wheel.py installs it, and calls it by both its names.",
     "app.convert.clearance": "tests/app/routes/test_clearance.py holds its figures.",

@@ -5,7 +5,7 @@ from typing import Any
 
 import typer
 
-from app.cli import catalogue, climate, lines, pictures, remedies
+from app.cli import catalogue, climate, coefficients, lines, pictures, remedies
 from app.cli.common import Version
 from app.cli.operation import keys, operate, service
 from app.cli.remote import batch, jobs, submit
@@ -20,9 +20,10 @@ _COMMANDS: Mapping[str, Sequence[Command]] = {
         lines.resolve,
         pictures.plot,
         climate.climate,
+        coefficients.fit,
         lines.ellipse,
     ),
-    "Look up": (lines.example, catalogue.conductors, catalogue.ice_shapes),
+    "Look up": (lines.example, catalogue.conductors, catalogue.ice_shapes, catalogue.fields),
     "Send lines to a service": (submit.submit, batch.batch),
     "Run a service": (
         service.serve,

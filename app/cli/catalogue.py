@@ -1,8 +1,9 @@
-"""Commands that print the catalogues: `galloping conductors` and `ice-shapes`."""
+"""Commands that print what there is: `galloping conductors`, `ice-shapes` and `fields`."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
 import sys
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 import typer
 
@@ -19,6 +20,8 @@ _CONDUCTOR_COLUMNS = (
     "mass_kg_per_m",
     "rated_strength_n",
 )
+
+_FIELD_COLUMNS = ("field", "type", "unit", "default", "bounds", "description")
 
 _SHAPE_COLUMNS = ("name", "title", "static_angle_deg", "reference_diameter_m", "source")
 
@@ -46,3 +49,45 @@ def ice_shapes(as_json: AsJson = False) -> None:
         write({"ice_shapes": rows}, None)
     else:
         print_table(_SHAPE_COLUMNS, rows)
+
+
+def fields(
+    search: Annotated[str, typer.Option(help="Words to find in name, unit, choices or description.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Print the fields of a request with unit, default, bounds and description: a table on a terminal, else JSON.
+
+    `[]` in a name marks a list of objects, `[spacer]` the type of the objects that have the field.
+    """
+    from app.schemas import field_table
+
+    words = search.casefold().split()
+    rows = [row for row in field_table.all_fields() if all(word in _searched(row) for word in words)]
+    if as_json or not sys.stdout.isatty():
+        write({"fields": rows}, None)
+    else:
+        print_table(_FIELD_COLUMNS, [_field(row) for row in rows])
+
+
+def _searched(row: Mapping[str, Any]) -> str:
+    parts = [row["name"], row["description"], row["unit"] or "", *(str(choice) for choice in row["choices"] or ())]
+    return " ".join(parts).casefold()
+
+
+def _field(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "field": row["name"],
+        "type": " or ".join(map(str, row["choices"])) if row["choices"] else row["type"],
+        "unit": row["unit"],
+        "default": "needed" if row["required"] else row["default"],
+        "bounds": _bounds(row["minimum"], row["maximum"]),
+        "description": row["description"],
+    }
+
+
+def _bounds(least: float | None, most: float | None) -> str | None:
+    if least is None and most is None:
+        return None
+    if most is None:
+        return f"from {least:g}"
+    return f"up to {most:g}" if least is None else f"{least:g} to {most:g}"

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from app.cli.console import BAD_INPUT, end, refuse
 from app.cli.exchanged import SUFFIXES, exchanged_request, with_defaults
 
@@ -43,7 +45,7 @@ def read_request(
 def _document(path: Path, defaults: Any) -> dict[str, Any]:
     """Return the request in the file of a line, which may be the line alone."""
     if path.suffix.lower() in SUFFIXES:
-        return exchanged_request(path, _read(path), defaults)
+        return exchanged_request(path, read_bytes(path), defaults)
     given = read_json(path)
     document = given if isinstance(given, dict) and "line" in given else {"line": given}
     if defaults is None or not isinstance(document["line"], dict):
@@ -57,7 +59,8 @@ def _document(path: Path, defaults: Any) -> dict[str, Any]:
         refuse(error.faults)
 
 
-def _read(path: Path) -> bytes:
+def read_bytes(path: Path) -> bytes:
+    """Read a file, or standard input for -; end the command with a message if that cannot be read."""
     try:
         return sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()
     except OSError as error:
@@ -68,7 +71,7 @@ def read_json(path: Path) -> Any:
     """Read a JSON file, or standard input for -; end the command with a message if that cannot be read."""
     from app.schemas.faults import BadInput, parse_json
 
-    raw = _read(path)
+    raw = read_bytes(path)
     try:
         return parse_json(raw)
     except BadInput as error:
@@ -111,19 +114,65 @@ def ending_on_faults() -> Iterator[None]:
         end(f"{error.filename or 'a file of the service'} cannot be used: {error.strerror or error}", BAD_INPUT)
 
 
+def place_of(settings: "Settings") -> str:
+    """Return where the database is: its file, or its address without the password."""
+    from sqlalchemy import make_url
+
+    file = _database_file(settings)
+    return make_url(settings.database_url).render_as_string(hide_password=True) if file is None else str(file)
+
+
+def require_database(settings: "Settings") -> None:
+    """End with a sentence that names the place if the configured database is a file that does not exist."""
+    with ending_on_faults():
+        file = _database_file(settings)
+        missing = file is not None and not file.exists()
+    if missing:
+        end(
+            f"there is no database {file}: name the directory of the service with --data-dir or GALLOPING_DATA_DIR; "
+            "`galloping serve`, `migrate` and `keys create` make one",
+            BAD_INPUT,
+        )
+
+
+def make_missing_database(settings: "Settings") -> None:
+    """Make the configured database if there is none yet, and say where on standard error."""
+    from app.storage.database import make_engine
+    from app.storage.migration import is_empty, migrate
+
+    with ending_on_faults():
+        engine = make_engine(settings)
+        try:
+            with engine.connect() as connection:
+                missing = is_empty(connection)
+        finally:
+            engine.dispose()
+        if missing:
+            migrate(settings)
+            typer.echo(f"made the new database {place_of(settings)}", err=True)
+
+
+def _database_file(settings: "Settings") -> Path | None:
+    from sqlalchemy import make_url
+
+    url = make_url(settings.database_url)
+    return Path(url.database) if url.get_backend_name() == "sqlite" and url.database else None
+
+
 @contextmanager
 def using_database(settings: "Settings") -> Iterator["sessionmaker[Session]"]:
-    """Yield sessions on a database of this version; end with one sentence if there is none."""
+    """Yield sessions on a database of this version; end with one sentence, and make nothing, if there is none."""
     from app.storage.database import make_engine, session_factory
     from app.storage.migration import is_newest
 
+    require_database(settings)
     with ending_on_faults():
         engine = make_engine(settings)
         try:
             with engine.connect() as connection:
                 newest = is_newest(connection)
             if not newest:
-                end("the database has an older schema: run `galloping migrate`", BAD_INPUT)
+                end(f"the database {place_of(settings)} has an older schema: run `galloping migrate`", BAD_INPUT)
             yield session_factory(engine)
         finally:
             engine.dispose()

@@ -74,7 +74,7 @@ def list_ice_shapes() -> JSONResponse:
 )
 def list_fields() -> JSONResponse:
     """List every field of a request with unit, bounds, default and description, generated from the schemas."""
-    return JSONResponse({"fields": field_table.input_fields()})
+    return JSONResponse({"fields": field_table.all_fields()})
 
 
 @router.get(

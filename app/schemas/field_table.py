@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from app.schemas import JobRequest
+from app.schemas.known import KnownLine
 
 _Schema = Mapping[str, Any]
 
@@ -19,6 +20,16 @@ def input_fields() -> tuple[dict[str, Any], ...]:
     """
     document = JobRequest.model_json_schema(by_alias=True)
     return tuple(_fields("", inlined(document, document["$defs"])))
+
+
+@cache
+def all_fields() -> tuple[dict[str, Any], ...]:
+    """Return the rows of `input_fields`, and of the further fields of a line as an engineer knows it."""
+    known = ({**row, "name": f"line.{row['name']}"} for row in fields_of(KnownLine))
+    rows: dict[str, dict[str, Any]] = {}
+    for row in (*input_fields(), *known):
+        rows.setdefault(row["name"], row)
+    return tuple(rows.values())
 
 
 @cache

@@ -44,6 +44,11 @@ def is_newest(connection: Connection) -> bool:
     return set(present) == set(ScriptDirectory.from_config(alembic_config(connection)).get_heads())
 
 
+def is_empty(connection: Connection) -> bool:
+    """Tell whether the database was never migrated, as a new one."""
+    return not MigrationContext.configure(connection).get_current_heads()
+
+
 def _take_turns(connection: Connection) -> None:
     # SQLite transactions begin as writers, so only one of them can pass this line.
     if connection.dialect.name == "postgresql":

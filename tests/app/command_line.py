@@ -4,7 +4,7 @@ import os
 import pty
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from typer.testing import CliRunner
 
@@ -40,12 +40,16 @@ def on_a_terminal(*arguments: str) -> str:
     command = [sys.executable, "-m", "app.cli", *arguments]
     with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=subprocess.PIPE, env=environment) as running:
         os.close(theirs)
-        printed = b""
-        while piece := _read(ours):
-            printed += piece
+        printed = b"".join(printed_pieces(ours))
         assert running.wait(60.0) == 0, running.stderr.read() if running.stderr else ""
     os.close(ours)
     return printed.decode().replace("\r\n", "\n")
+
+
+def printed_pieces(ours: int) -> Iterator[bytes]:
+    """Yield what is printed on the other end of a terminal, until that end is closed."""
+    while piece := _read(ours):
+        yield piece
 
 
 def _read(end: int) -> bytes:

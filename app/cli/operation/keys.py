@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from app.cli.console import BAD_INPUT, end, print_table, write
-from app.cli.inputs import read_settings, using_database
+from app.cli.inputs import make_missing_database, read_settings, using_database
 from app.cli.options import AsJson, DataDirectory
 from app.security.caller import LOCAL, OWNER_PATTERN, Scope
 
@@ -34,13 +34,18 @@ def create(
     json: AsJson = False,
     data_dir: DataDirectory = None,
 ) -> None:
-    """Create a key and print it; it cannot be shown again. Once a key exists, the service requires one."""
+    """Create a key and print it; it cannot be shown again. Once a key exists, the service requires one.
+
+    The first key may come before the service: where there is no database yet, it is made.
+    """
     from app.security import keys
 
     if not OWNER_PATTERN.fullmatch(owner):
         end(f"--owner: must be 1 to 64 letters, digits and . _ @ -, got {owner!r}", BAD_INPUT)
     expires_at = datetime.now(UTC) + timedelta(days=days) if days else None
-    with using_database(read_settings(data_dir)) as sessions, sessions.begin() as session:
+    settings = read_settings(data_dir)
+    make_missing_database(settings)
+    with using_database(settings) as sessions, sessions.begin() as session:
         key, text = keys.create(session, owner, scope or list(Scope), name, expires_at)
         before = keys.made_before(session) if owner != LOCAL.owner else 0
     if before:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from app.cli.console import FAILED, print_table, write
-from app.cli.inputs import ending_on_faults, read_settings, using_database
+from app.cli.inputs import ending_on_faults, read_settings, require_database, using_database
 from app.cli.options import AsJson, DataDirectory
 
 if TYPE_CHECKING:
@@ -21,8 +21,10 @@ def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
     """Show database, broker, workers, queues, jobs and leases; exit with 1 if anything needs the operator."""
     from app.operation import service_status as service
 
+    settings = read_settings(data_dir)
+    require_database(settings)
     with ending_on_faults():
-        found = service.read_status(read_settings(data_dir))
+        found = service.read_status(settings)
     if json:
         from dataclasses import asdict
 

@@ -1,6 +1,8 @@
 """Commands that run the service: `galloping serve`, `api`, `worker` and `migrate`."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
+import sys
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -24,15 +26,24 @@ def serve(
     port: Port = 8000,
     data_dir: DataDirectory = None,
     processes: Processes = None,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Write the whole log also on a terminal.")] = False,
 ) -> None:
-    """Run the service with its embedded database, broker and worker; SIGTERM ends it cleanly."""
-    from app.serve import Unguarded
+    """Run the service with its embedded database, broker and worker; SIGTERM or Ctrl-C ends it cleanly.
+
+    On a terminal it says its address and logs warnings only, elsewhere or with --verbose it logs as JSON.
+    """
+    from app.serve import PortTaken, Unguarded
     from app.serve import serve as run
 
+    settings = _with_processes(read_settings(data_dir), processes)
+    for_people = sys.stderr.isatty() and not verbose
     try:
         with ending_on_faults():
-            code = run(_with_processes(read_settings(data_dir), processes), host, port)
-    except Unguarded as error:
+            if for_people:
+                code = run(_quiet(settings), host, port, partial(_tell_address, settings, host, port))
+            else:
+                code = run(settings, host, port)
+    except (PortTaken, Unguarded) as error:
         end(str(error), BAD_INPUT)
     raise typer.Exit(code)
 
@@ -46,6 +57,21 @@ def api(
     with ending_on_faults():
         code = run(_with_processes(read_settings(data_dir), processes), host, port)
     raise typer.Exit(code)
+
+
+def _quiet(settings: "Settings") -> "Settings":
+    """Return settings that log warnings, as text, where the operator did not choose."""
+    chosen = {"log_level": "warning", "log_format": "text"}
+    return settings.model_copy(update={k: v for k, v in chosen.items() if k not in settings.model_fields_set})
+
+
+def _tell_address(settings: "Settings", host: str, port: int) -> None:
+    address = f"http://{f'[{host}]' if ':' in host else host}:{port}{settings.root_path}"
+    typer.echo(
+        f"Galloping is at {address}/ (pages) and {address}/docs (API). Its files are in {settings.data_dir}. "
+        "Ctrl-C ends it.",
+        err=True,
+    )
 
 
 def _with_processes(settings: "Settings", count: int | None) -> "Settings":

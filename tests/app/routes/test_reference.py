@@ -4,7 +4,7 @@ from app import convert
 from app.answers.reference import ConductorList, FieldList, IceShapeList, TableList, Version
 from app.convert import ENGINE_VERSION
 from app.runtime.version import SERVICE_VERSION
-from app.schemas.field_table import input_fields
+from app.schemas.field_table import all_fields
 
 
 def test_the_versions_are_told(shared_client: httpx.Client) -> None:
@@ -30,7 +30,7 @@ def test_ice_shapes_are_listed_with_source_and_caveats(shared_client: httpx.Clie
 def test_fields_are_the_table_of_the_schemas(shared_client: httpx.Client) -> None:
     answer = shared_client.get("/v1/fields")
     FieldList.model_validate_json(answer.content)
-    assert answer.json()["fields"] == list(input_fields())
+    assert answer.json()["fields"] == list(all_fields())
 
 
 def test_tables_are_listed_with_every_column(shared_client: httpx.Client) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from app.reference.source_lines import example
 from app.schemas import JobRequest, Line
-from app.schemas.field_table import fields_of, input_fields
+from app.schemas.field_table import all_fields, fields_of, input_fields
 from tests.app.lines import FULL_LINE
 
 ROWS = {row["name"]: row for row in input_fields()}
@@ -81,3 +81,11 @@ def test_of_a_field_with_several_forms_the_first_one_can_be_had_alone() -> None:
     names, first = ({row["name"] for row in fields_of(Line, first_form=only)} for only in (False, True))
     assert names - first >= {"ice.aerodynamics.table", "ice.aerodynamics.static_angle_deg"}
     assert {"ice.aerodynamics.vertical", "devices[spacer].mass_kg", "devices[airflow_spoiler].from_m"} <= first < names
+
+
+def test_fields_of_engineers_forms_are_listed_too() -> None:
+    rows = {row["name"]: row for row in all_fields()}
+    assert len(rows) == len(all_fields())
+    assert rows["line.span.everyday.temperature_c"]["unit"] == "degC"
+    assert rows["line.conductor.catalogue"]["type"] == "string"
+    assert set(ROWS) <= set(rows)

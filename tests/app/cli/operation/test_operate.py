@@ -8,7 +8,7 @@ import pytest
 
 from app.runtime.settings import Settings
 from tests.app import service
-from tests.app.command_line import galloping, refused
+from tests.app.command_line import galloping, refused, run
 from tests.documents import short_request
 
 
@@ -51,11 +51,51 @@ def test_a_key_is_made_used_listed_and_revoked(
 
 def test_what_cannot_be_done_with_keys_ends_with_2_and_a_sentence(tmp_path: Path) -> None:
     place = ("--data-dir", str(tmp_path))
-    assert "galloping migrate" in refused("keys", "create", "--owner", "acme", *place)
-    assert galloping("migrate", *place).returncode == 0
     assert "--owner" in refused("keys", "create", "--owner", "a b", *place)
+    assert list(tmp_path.iterdir()) == []
+    assert galloping("migrate", *place).returncode == 0
     assert "no keys have the id or beginning" in refused("keys", "revoke", "galloping_0000", *place)
     assert "no key exists" in refused("serve", "--host", "0.0.0.0", *place)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("status",),
+        ("status", "--json"),
+        ("prune", "--days", "9"),
+        ("audit",),
+        ("keys", "list"),
+        ("keys", "revoke", "galloping_0000"),
+    ],
+)
+def test_elsewhere_than_with_the_data_a_command_names_the_place_and_makes_nothing(
+    tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ended = run(*command)
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert f"there is no database {tmp_path}/data/galloping.sqlite3: name the directory" in ended.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_first_key_may_come_before_the_service(tmp_path: Path) -> None:
+    place = ("--data-dir", str(tmp_path / "fresh"))
+    made = run("keys", "create", "--owner", "acme", *place)
+    assert (made.returncode, made.stdout.startswith("galloping_")) == (0, True)
+    assert f"made the new database {tmp_path}/fresh/galloping.sqlite3" in made.stderr
+    again = run("keys", "create", "--owner", "other", *place)
+    assert (again.returncode, "made the new database" in again.stderr) == (0, False)
+    assert [key["owner"] for key in json.loads(run("keys", "list", "--json", *place).stdout)["keys"]] == [
+        "acme",
+        "other",
+    ]
+
+
+def test_a_database_of_an_older_version_is_named(tmp_path: Path) -> None:
+    (tmp_path / "galloping.sqlite3").touch()
+    told = refused("keys", "list", "--data-dir", str(tmp_path))
+    assert f"the database {tmp_path}/galloping.sqlite3 has an older schema: run `galloping migrate`" in told
 
 
 def test_prune_counts_before_it_removes(own_settings: Settings, own_client: httpx.Client) -> None:
