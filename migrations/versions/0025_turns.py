@@ -1,12 +1,12 @@
 """An index of the waiting jobs of each owner, by which owners take turns.
 
-Revision: 0024
+Revision: 0025
 """
 
 from alembic import op
 
-revision = "0024"
-down_revision = "0023"
+revision = "0025"
+down_revision = "0024"
 branch_labels = None
 depends_on = None
 
