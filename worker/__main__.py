@@ -31,7 +31,7 @@ def main() -> int:
     processes.end_with_parent()
     settings = get_settings()
     logs.configure(settings)
-    engine = make_engine(settings)
+    engine = make_engine(settings, idle_seconds=settings.lease_seconds)
     try:
         _supervise(session_factory(engine), settings, f"{socket.gethostname()}:{os.getpid()}:{uuid4().hex[:8]}")
     finally:

@@ -4,6 +4,7 @@ Any number of processes may sweep at once: row locks protect the jobs, and an ex
 """
 
 import logging
+from datetime import timedelta
 from uuid import UUID
 
 from sqlalchemy.orm import Session, sessionmaker
@@ -40,6 +41,8 @@ class ClockKeeper:
             if step.is_known:
                 _logger.warning("the database's clock was set by %.0f s; leases go on", -step.by.total_seconds())
                 leases.shorten(session, self._settings.lease_seconds)
+            if step.unwatched > timedelta(seconds=self._settings.lease_seconds / 2.0):
+                leases.postpone(session, step.unwatched)
         self._since = step.noted_at
 
 

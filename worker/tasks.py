@@ -29,7 +29,7 @@ def worker_application(settings: Settings, owner: str) -> Celery:
     @cache
     def sessions() -> sessionmaker[Session]:
         # Created at the first job of each process, never before the fork: processes must not share connections.
-        return session_factory(make_engine(settings))
+        return session_factory(make_engine(settings, idle_seconds=settings.lease_seconds))
 
     @application.task(name=TASK_NAME)
     def run(job_id: str) -> None:

@@ -22,7 +22,7 @@ from app.runtime.settings import Settings
 from app.storage import counters, stored_results
 from app.storage.counters import CounterName
 from app.storage.database import database_moment, database_time
-from app.storage.steady_clock import steady_time
+from app.storage.steady_clock import last_reading, steady_time
 from app.tables import FailureKind, Job, JobEventKind, JobStatus
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def release_expired(session: Session, settings: Settings, owner: str | None = No
     A released job returns to the queue until its attempts are used up; then it fails because its workers were lost. A
     job with a requested cancel is dismissed, and one that exceeded the hard time limit fails for that reason.
     """
-    lost = Job.lease_owner == owner if owner else Job.lease_expires_at <= steady_time(session)
+    lost = Job.lease_owner == owner if owner else Job.lease_expires_at <= last_reading(session)
     statement = select(Job).where(Job.status == JobStatus.RUNNING, lost).limit(_JOBS_A_SWEEP)
     released = list(session.scalars(statement.with_for_update(skip_locked=True, of=Job)))
     for job in released:
@@ -145,6 +145,16 @@ def shorten(session: Session, lease_seconds: float) -> None:
     end = steady_time(session) + timedelta(seconds=lease_seconds)
     statement = update(Job).where(Job.status == JobStatus.RUNNING, Job.lease_expires_at > end)
     session.execute(statement.values(lease_expires_at=end).execution_options(synchronize_session=False))
+
+
+def postpone(session: Session, by: timedelta) -> None:
+    """Move all running leases by a time in which no sweeper ran.
+
+    It may only be a step of the clock, and then living workers renew their leases.
+    """
+    for job in session.scalars(select(Job).where(Job.status == JobStatus.RUNNING).with_for_update(of=Job)):
+        job.lease_expires_at = job.lease_expires_at and job.lease_expires_at + by
+        job.claimed_at = job.claimed_at and job.claimed_at + by
 
 
 def holds_jobs(session: Session, owner: str) -> bool:
@@ -246,7 +256,7 @@ def _count_end(session: Session, held: Claim, changes: dict[str, Any], now: date
 
 def _release(session: Session, job: Job, settings: Settings) -> None:
     """Release one locked job."""
-    kind, failure = _verdict(job, settings, steady_time(session))
+    kind, failure = _verdict(job, settings)
     job.lease_owner = job.lease_expires_at = None
     job.step = ""
     if kind is JobEventKind.RELEASED:
@@ -260,11 +270,12 @@ def _release(session: Session, job: Job, settings: Settings) -> None:
     record(session, job.id, kind, attempt=job.attempt, detail=detail)
 
 
-def _verdict(job: Job, settings: Settings, now: datetime) -> tuple[JobEventKind, Failure | None]:
+def _verdict(job: Job, settings: Settings) -> tuple[JobEventKind, Failure | None]:
     limit = timedelta(seconds=settings.hard_time_limit_seconds)
     if job.cancel_requested:
         return JobEventKind.DISMISSED, None
-    if job.claimed_at is not None and job.claimed_at + limit <= now:
+    # The worker lived no longer than its lease; what follows is time in which the service may have been off.
+    if job.claimed_at and job.lease_expires_at and job.claimed_at + limit <= job.lease_expires_at:
         return JobEventKind.FAILED, Failure(FailureKind.TIME_LIMIT, time_limit_sentence(settings))
     if job.attempt >= settings.max_attempts:
         sentence = f"The service gave up the job because its worker was lost in each of {job.attempt} attempts."

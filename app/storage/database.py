@@ -34,7 +34,7 @@ _IMPATIENT: dict[str, Any] = {"connect_timeout": 2, "options": "-c statement_tim
 _CLOCK = "database time of this transaction"
 
 
-def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
+def make_engine(settings: Settings, *, impatient: bool = False, idle_seconds: float = 0.0) -> Engine:
     """Create the engine for the configured database; create the directory of an SQLite file if it is missing.
 
     Other users of the machine cannot read a database in `data_dir`; one made earlier is taken from them.
@@ -42,7 +42,8 @@ def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
     SQLite: write-ahead log, foreign keys, a busy timeout, and every transaction begins as a writer (`BEGIN IMMEDIATE`)
     unless its session comes from `session_factory(..., read_only=True)`. A reader that became a writer midway would
     fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use. An impatient engine
-    serves health checks: it opens a new connection for each and gives up soon.
+    serves health checks: it opens a new connection for each and gives up soon. With `idle_seconds` above zero the
+    server ends a transaction that does nothing for so long: a stopped process would keep its rows locked.
 
     Raises
     ------
@@ -54,7 +55,8 @@ def make_engine(settings: Settings, *, impatient: bool = False) -> Engine:
     if url.get_backend_name() != "sqlite":
         if impatient:
             return create(poolclass=NullPool, connect_args=_IMPATIENT)
-        return create(pool_pre_ping=True, connect_args={"connect_timeout": 10}, **_POOL)
+        options = f"-c idle_in_transaction_session_timeout={round(1000.0 * idle_seconds)}"  # zero is no limit
+        return create(pool_pre_ping=True, connect_args={"connect_timeout": 10, "options": options}, **_POOL)
     if url.database:
         _make_folder(Path(url.database), settings.data_dir)
     patience = {"timeout": _IMPATIENT["connect_timeout"] if impatient else _BUSY_SECONDS}

@@ -26,10 +26,12 @@ TOLERANCE = timedelta(seconds=1)
 class Step:
     """What the steady clock has taken out of the database's clock: positive if that was set back.
 
-    `noted_at` is the monotonic time of the look, in seconds.
+    `noted_at` is the monotonic time of the look, in seconds. `unwatched` is the time before a process's first look in
+    which no sweeper has looked, as far as the database's clock tells.
     """
 
     by: timedelta
+    unwatched: timedelta
     noted_at: float
 
     @property
@@ -42,6 +44,11 @@ def steady_time(session: Session) -> datetime:
     """Return the steady clock's time in UTC, never one before the last reading."""
     reading, ahead = _row(session)
     return max(database_time(session) + ahead, reading)
+
+
+def last_reading(session: Session) -> datetime:
+    """Return the steady clock's last reading; unlike `steady_time` it knows of every step."""
+    return _row(session)[0]
 
 
 def unnoted_step(session: Session) -> timedelta:
@@ -73,7 +80,8 @@ def move_on(session: Session, since: float | None) -> Step | None:
     row.reading, row.ahead_seconds = reading, (reading - clock).total_seconds()
     session.info.pop(_LOOK, None)
     session.flush()
-    return Step(reading - clock - ahead, noted_at)
+    unwatched = timedelta(0) if since is not None else reading - former
+    return Step(reading - clock - ahead, unwatched, noted_at)
 
 
 def _row(session: Session) -> tuple[datetime, timedelta]:

@@ -28,7 +28,7 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("id", name="pk_steady_clock"),
         sa.CheckConstraint("id = 1", name="one_row"),
     )
-    op.bulk_insert(clock, [{"id": 1, "reading": datetime(1970, 1, 1, tzinfo=UTC), "ahead_seconds": 0.0}])
+    op.bulk_insert(clock, [{"id": 1, "reading": datetime.now(UTC), "ahead_seconds": 0.0}])
     op.add_column("jobs", sa.Column("claimed_at", UtcDateTime()))
 
 

@@ -6,7 +6,8 @@ import random
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -14,6 +15,7 @@ import httpx
 
 from app.runtime.settings import Settings
 from app.storage.migration import migrate
+from tests.moved_clocks import MovedClock
 from tests.processes import Process, children, group, pool_children, running
 from tests.servers import free_port, postgres_directory, postgres_running, redis_server, wait_until
 
@@ -36,7 +38,7 @@ class Part(Generic[Held]):
 
 @dataclass(frozen=True, slots=True)
 class Deployment:
-    """What runs, and where the API listens."""
+    """What runs, where the API listens, and the clocks that a test sets: of the server, the API and each worker."""
 
     settings: Settings
     address: str
@@ -44,6 +46,7 @@ class Deployment:
     redis: Part[str]
     api: Part[Process]
     workers: tuple[Part[Process], ...]
+    clocks: list[MovedClock] = field(default_factory=list)
 
     def is_ready(self) -> bool:
         try:
@@ -53,7 +56,7 @@ class Deployment:
 
 
 @contextlib.contextmanager
-def deployed(directory: Path, workers: int) -> Iterator[Deployment]:
+def deployed(directory: Path, workers: int, *, moved_clocks: bool = False) -> Iterator[Deployment]:
     """Run everything with short times, one process a worker, until the end of the context."""
     ports = {name: free_port() for name in ("postgres", "redis", "api")}
     settings = Settings(
@@ -68,18 +71,20 @@ def deployed(directory: Path, workers: int) -> Iterator[Deployment]:
         worker_processes=1,
     )
     with ExitStack() as stack, postgres_directory() as files:
+        clocks = [MovedClock(files / f"clock-{number}") for number in range(workers + 2)] if moved_clocks else []
+        server, own, *each = [clock.environment for clock in clocks] or [{}] * (workers + 2)
         # PostgreSQL crashes and recovers from its log; Redis forgets every message.
-        postgres = Part(lambda: postgres_running(files, ports["postgres"], signal.SIGQUIT))
+        postgres = Part(lambda: postgres_running(files, ports["postgres"], signal.SIGQUIT, server))
         stack.callback(postgres.stop)
         redis = Part(lambda: redis_server(ports["redis"], signal.SIGKILL))
         stack.callback(redis.stop)
         migrate(settings)
-        api = Part(lambda: running(settings, "-m", "app.serve", "127.0.0.1", str(ports["api"])))
+        api = Part(lambda: running(settings, "-m", "app.serve", "127.0.0.1", str(ports["api"]), extra=own))
         stack.callback(api.stop)
-        crew = tuple(Part(lambda: running(settings, "-m", "worker")) for _ in range(workers))
+        crew = tuple(Part(partial(running, settings, "-m", "worker", extra=variables)) for variables in each)
         for worker in crew:
             stack.callback(worker.stop)
-        made = Deployment(settings, f"http://127.0.0.1:{ports['api']}", postgres, redis, api, crew)
+        made = Deployment(settings, f"http://127.0.0.1:{ports['api']}", postgres, redis, api, crew, clocks)
         wait_until(made.is_ready, 60.0, "readiness")
         yield made
 

@@ -9,7 +9,7 @@ from app.runtime.settings import Settings
 from app.tables import JobStatus
 from tests.documents import add_job, look
 from tests.servers import free_port
-from worker.sweep import release, sweep
+from worker.sweep import ClockKeeper, release, sweep
 
 
 @pytest.fixture
@@ -36,6 +36,7 @@ def test_expired_lease_goes_back_and_is_sent(sessions: sessionmaker[Session], se
     job_id = add_job(sessions)
     with sessions.begin() as session:
         leases.claim(session, job_id, "gone", -1.0)
+    ClockKeeper(sessions, settings).look()
     assert sweep(sessions, settings) == 1
     job = look(sessions, job_id)
     assert (job.status, job.attempt) == (JobStatus.ACCEPTED, 1)

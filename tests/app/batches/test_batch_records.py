@@ -11,6 +11,7 @@ from app.jobs.job_records import CancelOutcome, JobFilters
 from app.jobs.leases import Failure
 from app.runtime.settings import Settings
 from app.security.caller import LOCAL
+from app.storage import steady_clock
 from app.tables import Batch, BatchItem, FailureKind, Job, JobStatus
 from tests.batch_rows import ANALYSIS, add_batch, claim, item, run
 from tests.documents import STRANGER, add_job, history, point_result
@@ -145,6 +146,7 @@ def test_lost_chunks_lines_failed(sessions: sessionmaker[Session], settings: Set
     for _ in range(settings.max_attempts):
         claim(sessions, chunk, -1.0)
         with sessions.begin() as session:
+            steady_clock.move_on(session, None)
             assert leases.release_expired(session, settings) == 1
     assert (count(sessions, batch_id).failed, count(sessions, batch_id).status) == (3, JobStatus.FAILED)
     with sessions.begin() as session:

@@ -7,9 +7,12 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.jobs import idempotency
 from app.jobs.idempotency import Answer, Kept, Key, KeyTaken, new_key
 from app.runtime.settings import Settings
+from app.storage import steady_clock
+from app.storage.database import database_time
 from app.tables import IdempotencyKey
+from tests.servers import wait_until
 from tests.statements import counted
-from worker.sweep import sweep
+from worker.sweep import ClockKeeper, sweep
 
 HELD = timedelta(seconds=15)
 ANSWER = Answer(202, {"location": "/v1/jobs/1"}, '{"id":"1"}')
@@ -107,6 +110,27 @@ def test_who_shows_life_keeps_the_key(sessions: sessionmaker[Session]) -> None:
         idempotency.renew(session, slow, HELD)
     with pytest.raises(KeyTaken), sessions.begin() as session:
         idempotency.hold(session, new_key("a", "k"), HELD)
+
+
+def test_the_key_of_a_dead_request_is_free_though_the_clock_was_set_back(
+    sessions: sessionmaker[Session], settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keeper = ClockKeeper(sessions, settings)
+    keeper.look()
+    with sessions.begin() as session:
+        idempotency.hold(session, new_key("a", "k"), timedelta(seconds=0.2))
+    monkeypatch.setattr(steady_clock, "database_time", lambda session: database_time(session) - timedelta(hours=1))
+
+    def taken_over() -> bool:
+        keeper.look()
+        try:
+            with sessions.begin() as session:
+                idempotency.hold(session, new_key("a", "k"), HELD)
+        except KeyTaken:
+            return False
+        return True
+
+    wait_until(taken_over, 10.0, "the end of the key")
 
 
 def test_the_sweeper_forgets_what_is_over(sessions: sessionmaker[Session], settings: Settings) -> None:

@@ -33,6 +33,7 @@ def take(sessions: sessionmaker[Session], job_id: UUID, seconds: float = LONG, o
 
 def give_back(sessions: sessionmaker[Session], settings: Settings, owner: str | None = None) -> int:
     with sessions.begin() as session:
+        steady_clock.move_on(session, None)
         return leases.release_expired(session, settings, owner)
 
 
@@ -169,7 +170,8 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
 def sweep(keeper: ClockKeeper, sessions: sessionmaker[Session], settings: Settings) -> int:
     keeper.look()
-    return give_back(sessions, settings)
+    with sessions.begin() as session:
+        return leases.release_expired(session, settings)
 
 
 @pytest.mark.parametrize("hours", [-1, 2])
@@ -204,6 +206,37 @@ def test_a_lease_of_a_lost_worker_ends_though_the_clock_is_set(
     clock.set_by = timedelta(hours=hours)
     wait_until(lambda: sweep(keeper, sessions, settings) == 1, 10.0, "the release")
     assert look(sessions, job_id).status is JobStatus.ACCEPTED
+
+
+def test_a_step_that_another_sweeper_is_just_noting_ends_no_lease(
+    sessions: sessionmaker[Session], settings: Settings, clock: SimpleNamespace
+) -> None:
+    ClockKeeper(sessions, settings).look()
+    job_id = add_job(sessions)
+    take(sessions, job_id)
+    clock.set_by = timedelta(hours=2)
+    with sessions.begin() as session:  # without a look of its own, which another one's may have taken the place of
+        assert leases.release_expired(session, settings) == 0
+    assert look(sessions, job_id).status is JobStatus.RUNNING
+
+
+def test_time_in_which_no_sweeper_ran_ends_no_lease_and_is_no_work(
+    sessions: sessionmaker[Session], settings: Settings, clock: SimpleNamespace
+) -> None:
+    """It may be a step of the clock, or the service was off: a job of a living worker runs on, one of a dead waits."""
+    ClockKeeper(sessions, settings).look()
+    living, lost = add_job(sessions), add_job(sessions)
+    held = take(sessions, living)
+    take(sessions, lost, 1.0)
+    clock.set_by = timedelta(hours=2)
+    keeper = ClockKeeper(sessions, settings)
+    assert sweep(keeper, sessions, settings) == 0
+    with sessions.begin() as session:
+        assert leases.heartbeat(session, held, LONG, 0.5, "") is Beat.GO_ON
+        assert steady_clock.steady_time(session) > database_time(session) + timedelta(hours=1)
+    wait_until(lambda: sweep(keeper, sessions, settings) == 1, 10.0, "the release")
+    assert look(sessions, lost).status is JobStatus.ACCEPTED
+    assert look(sessions, living).status is JobStatus.RUNNING
 
 
 def test_a_lease_given_while_the_clock_was_ahead_is_shortened(
@@ -272,8 +305,8 @@ def test_lost_job_with_a_cancel_is_dismissed(sessions: sessionmaker[Session], se
 def test_lost_job_past_the_hard_limit_fails_by_it(sessions: sessionmaker[Session], settings: Settings) -> None:
     strict = settings.model_copy(update={"soft_time_limit_seconds": 1e-6, "hard_time_limit_seconds": 1e-5})
     job_id = add_job(sessions)
-    take(sessions, job_id, OVER)
-    give_back(sessions, strict)
+    take(sessions, job_id, 0.01)
+    wait_until(lambda: give_back(sessions, strict) == 1, 10.0, "the release")
     job = look(sessions, job_id)
     assert (job.status, job.failure_kind, job.attempt) == (JobStatus.FAILED, FailureKind.TIME_LIMIT, 1)
     assert job.failure_detail == "The job ran longer than the limit of 1e-06 s."

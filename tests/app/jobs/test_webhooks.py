@@ -3,14 +3,19 @@
 from collections import Counter
 from datetime import timedelta
 
+import pytest
 from sqlalchemy import update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import webhooks
 from app.jobs.webhooks import Message, Share, Subscription
+from app.runtime.settings import Settings
+from app.storage import steady_clock
 from app.storage.database import database_time
 from app.tables import DeliveryState, WebhookDelivery
 from tests.documents import add_job
+from tests.servers import wait_until
+from worker.sweep import ClockKeeper
 
 
 def add_due(sessions: sessionmaker[Session], owner: str, host: str, count: int) -> None:
@@ -62,3 +67,13 @@ def test_a_message_is_taken_again_after_the_lease_only(sessions: sessionmaker[Se
         session.execute(update(WebhookDelivery).where(over).values(next_attempt_at=database_time(session)))
     (second,) = taken(sessions, share)
     assert (second.id, second.attempt) == (first.id, 2)
+
+
+def test_a_message_is_due_though_the_clock_was_set_back(
+    sessions: sessionmaker[Session], settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ClockKeeper(sessions, settings).look()
+    add_due(sessions, "a", "a.example", 1)
+    monkeypatch.setattr(steady_clock, "database_time", lambda session: database_time(session) - timedelta(hours=1))
+    ClockKeeper(sessions, settings).look()
+    wait_until(lambda: taken(sessions, Share(5, 5, 5)), 10.0, "the message")

@@ -111,6 +111,23 @@ def test_insert_on_a_lost_connection_is_an_operational_error(sessions: sessionma
         assert session.scalars(select(BatchItem)).all() == []
 
 
+@pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
+def test_a_process_that_is_stopped_in_a_transaction_keeps_no_row(
+    sessions: sessionmaker[Session], settings: Settings
+) -> None:
+    job_id = add_job(sessions)
+    engine = make_engine(settings, idle_seconds=0.3)
+    with pytest.raises(DBAPIError), session_factory(engine).begin() as stopped:
+        stopped.execute(update(Job).values(progress=0.7))
+        with sessions.begin() as other:  # waits for the row, and gets it
+            other.execute(update(Job).values(progress=0.5))
+        stopped.execute(update(Job).values(progress=0.7))
+    with session_factory(engine).begin() as next_one:  # the pool has a connection that works
+        assert next_one.scalars(select(Job.progress)).all() == [0.5]
+    engine.dispose()
+    assert look(sessions, job_id).progress == 0.5
+
+
 def test_other_users_cannot_read_the_embedded_database(tmp_path: Path) -> None:
     settings = Settings(data_dir=tmp_path / "data")
     migrate(settings)
