@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: audit sbom lowest setup demo test test-processes test-clients test-pages page-pictures test-faults reliability check bench capacity validation
+.PHONY: audit sbom lowest constraints-lowest setup demo test test-processes test-clients test-pages page-pictures test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -84,23 +84,34 @@ sbom: setup
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[audit]'
 	$(BIN)/cyclonedx-py environment --output-reproducible --output-file sbom.cdx.json $(BIN)/python
 
-# The tests that meet the dependencies most, with the lowest versions that pyproject.toml allows. Too slow for every run
-# of continuous integration; run it when a bound or a dependency changes. Warnings of old versions are no faults of ours.
+# The tests that meet the dependencies most, with the lowest versions that pyproject.toml allows, as constraints-lowest.txt
+# has them. Warnings of old versions are no faults of ours.
 LOWEST := tests/app/runtime tests/app/http tests/app/security tests/app/storage tests/app/export tests/app/sheets \
 	tests/app/exchange tests/app/jobs tests/app/test_main.py tests/app/routes/test_jobs.py tests/app/routes/test_results.py \
 	tests/app/routes/test_batches.py tests/app/cli/test_lines.py tests/app/client tests/app/plots/test_registry.py \
 	tests/migrations tests/worker/test_courier.py tests/e2e/test_serve.py
-lowest: setup
+LOWEST_TOOLS := pytest pytest-timeout pytest-xdist hypothesis pyyaml trustme pypdf packaging openapi-spec-validator
+
+.venv-lowest/.ready: pyproject.toml setup.py constraints-lowest.txt $(wildcard engine/kernels/*)
+	rm -rf .venv-lowest
+	$(PYTHON) -m venv .venv-lowest
+	.venv-lowest/bin/pip install --quiet --disable-pip-version-check --constraint constraints-lowest.txt --editable '.[all]' \
+		$(LOWEST_TOOLS)
+	touch $@
+
+lowest: .venv-lowest/.ready
+	PYTHONPATH=$(CURDIR) .venv-lowest/bin/python -m pytest -n 2 --dist worksteal -o filterwarnings=default $(LOWEST)
+
+# Finds the lowest versions anew after a bound has changed.
+constraints-lowest: setup
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
 	rm -rf .venv-lowest
 	$(BIN)/uv venv --quiet --python $(BIN)/python .venv-lowest
 	$(BIN)/uv pip compile --quiet --resolution lowest-direct --only-binary :all: --no-binary galloping --extra all \
 		--no-emit-package galloping --output-file .venv-lowest/lowest.txt pyproject.toml
 	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --requirement .venv-lowest/lowest.txt
-	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --constraint .venv-lowest/lowest.txt pytest pytest-timeout \
-		pytest-xdist hypothesis pyyaml trustme pypdf packaging openapi-spec-validator
-	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --no-deps --editable .
-	PYTHONPATH=$(CURDIR) .venv-lowest/bin/python -m pytest -p no:xdist -o filterwarnings=default $(LOWEST)
+	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --constraint .venv-lowest/lowest.txt $(LOWEST_TOOLS)
+	$(BIN)/uv pip freeze --python .venv-lowest/bin/python > constraints-lowest.txt
 
 capacity: setup
 	$(BIN)/python -m benchmarks.capacity

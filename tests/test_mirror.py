@@ -127,6 +127,7 @@ OF_NO_SINGLE_MODULE = {
     "tests/faults": "Processes, disks and networks fail under the whole service.",
     "tests/migrations": "Each revision is a step of one way up and down, which is tested as a whole.",
     "tests/test_documents.py": "It is about the documents of docs/.",
+    "tests/test_lowest.py": "It is about the bounds of dependencies in pyproject.toml.",
     "tests/test_mirror.py": "It is about the tests.",
     "tests/validation": "The engine is held against its source and against other codes.",
     "tests/worker/test_batches.py": "Batches run through broker, pool and database while workers are killed.",

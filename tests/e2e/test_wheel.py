@@ -1,6 +1,7 @@
 """The wheel as users install it, in a folder whose files are called like our packages and like those that we use."""
 
 import contextlib
+import json
 import os
 import shutil
 import signal
@@ -153,6 +154,23 @@ def test_client_needs_httpx_and_pydantic_only(installed: Path, folder: Path) -> 
         1,
         "this command needs typer, which is not installed: pip install 'galloping[all]'\n",
     )
+
+
+def test_client_and_command_line_need_no_module_that_windows_lacks(installed: Path, folder: Path) -> None:
+    (folder / "line.json").write_text(json.dumps(example("c11-single")))
+    script = """
+import sys
+lacking = dict.fromkeys(("fcntl", "grp", "pwd", "resource", "termios", "uvloop"))
+sys.modules.update(lacking)  # an import of one of these fails
+from galloping import Client
+from galloping.__main__ import main
+Client("http://127.0.0.1:1").close()
+sys.argv = ["galloping", "analyse", "line.json", "--json"]
+main()
+"""
+    ended = _run([str(installed), "-P", "-c", script], folder)
+    assert ended.returncode == 0, ended.stderr
+    assert json.loads(ended.stdout)["verdict"][0]["gallops"] == "yes"
 
 
 def _with_requirements(names: set[str]) -> set[str]:

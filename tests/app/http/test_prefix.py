@@ -31,7 +31,7 @@ def proxy(target: str, *, strips: bool) -> Starlette:
 
     @contextlib.asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
-        async with httpx.AsyncClient(base_url=target, timeout=30.0) as app.state.client:
+        async with httpx.AsyncClient(base_url=target, timeout=60.0) as app.state.client:
             yield
 
     async def pass_on(request: Request) -> StreamingResponse:
