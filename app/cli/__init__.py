@@ -6,7 +6,7 @@ from typing import Any
 import typer
 
 from app.cli import catalogue, climate, coefficients, lines, pictures, remedies
-from app.cli.common import Version
+from app.cli.common import Quiet, Version, with_common_options
 from app.cli.operation import keys, operate, service
 from app.cli.remote import batch, jobs, submit
 
@@ -47,13 +47,14 @@ app = typer.Typer(
 @app.callback()
 def _galloping(
     version: Version = False,
+    quiet: Quiet = False,
 ) -> None:
     pass
 
 
 for panel, commands in _COMMANDS.items():
     for command in commands:
-        app.command(rich_help_panel=panel)(command)
+        app.command(rich_help_panel=panel)(with_common_options(command))
 app.add_typer(jobs.commands, name="jobs", rich_help_panel="Send lines to a service")
 app.add_typer(keys.commands, name="keys", rich_help_panel="Run a service")
 

@@ -1,9 +1,18 @@
-"""What the command line does whatever the command: the option --version."""
+"""What the command line does whatever the command: the options --version, --config and --quiet."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
-from typing import Annotated
+import functools
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
+
+from app.cli.configuration import configured
+from app.cli.console import quietly
+
+_PANEL = "For every command"
 
 
 def _print_version(wanted: bool) -> None:
@@ -16,6 +25,57 @@ def _print_version(wanted: bool) -> None:
     raise typer.Exit
 
 
+def _be_quiet(context: typer.Context, wanted: bool) -> bool:
+    if wanted:
+        context.with_resource(quietly())
+    return wanted
+
+
+def _configure(context: typer.Context, file: Path | None) -> Path | None:
+    if not context.resilient_parsing:  # completion goes on with a wrong file
+        context.default_map = configured(file)
+    return file
+
+
 Version = Annotated[
     bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the versions and exit.")
 ]
+Quiet = Annotated[
+    bool,
+    typer.Option(
+        "--quiet",
+        "-q",
+        envvar="GALLOPING_QUIET",
+        callback=_be_quiet,
+        rich_help_panel=_PANEL,
+        help="Print results and faults only: no progress, no notes.",
+    ),
+]
+_Config = Annotated[
+    Path | None,
+    typer.Option(
+        "--config",
+        metavar="FILE",
+        envvar="GALLOPING_CONFIG",
+        callback=_configure,
+        is_eager=True,
+        rich_help_panel=_PANEL,
+        help="TOML file with defaults of options.",
+    ),
+]
+
+
+def with_common_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command that takes --config and --quiet, too; what these say is done before it begins."""
+
+    @functools.wraps(command)
+    def run(*, quiet: bool, config: Path | None, **given: Any) -> None:
+        command(**given)
+
+    signature = inspect.signature(command)
+    common = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+        for name, default, annotation in (("quiet", False, Quiet), ("config", None, _Config))
+    ]
+    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), *common])  # type: ignore[attr-defined]
+    return run

@@ -5,6 +5,7 @@ import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -17,6 +18,7 @@ BAD_INPUT = 2
 FAILED = 1
 INTERRUPTED = 130  # as shells count a program that Ctrl-C ended
 _FILE_WIDTH = 250
+_quiet = ContextVar("quiet", default=False)
 
 
 def print_table(columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:
@@ -75,6 +77,22 @@ def try_output(path: Path | None) -> None:
         end(f"{path} cannot be written: {error.strerror or error}", BAD_INPUT)
 
 
+def notice(sentence: str) -> None:
+    """Say on standard error what is good to know and no fault, unless it is to be quiet."""
+    if not _quiet.get():
+        typer.echo(sentence, err=True)
+
+
+@contextmanager
+def quietly() -> Iterator[None]:
+    """Leave out progress and notices."""
+    former = _quiet.set(True)
+    try:
+        yield
+    finally:
+        _quiet.reset(former)
+
+
 def refuse(faults: Sequence["Fault"]) -> NoReturn:
     """End with the faults of the input."""
     end("\n".join(str(fault) for fault in faults), BAD_INPUT)
@@ -88,8 +106,8 @@ def end(message: str, code: int) -> NoReturn:
 
 @contextmanager
 def progress_bar() -> Iterator[Any]:
-    """Yield a function of fraction and step that draws a bar on a terminal and does nothing elsewhere."""
-    if not sys.stderr.isatty():  # rich loads slowly
+    """Yield a function of fraction and step that draws a bar on a terminal, unless it is to be quiet."""
+    if _quiet.get() or not sys.stderr.isatty():  # rich loads slowly
         yield lambda fraction, step: None
         return
     from rich.console import Console

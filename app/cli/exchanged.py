@@ -5,9 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-import typer
-
-from app.cli.console import BAD_INPUT, end
+from app.cli.console import BAD_INPUT, end, notice
 
 if TYPE_CHECKING:
     from app.schemas.faults import Fault
@@ -46,7 +44,7 @@ def exchanged_request(path: Path, raw: bytes, defaults: Any) -> dict[str, Any]:
     except BodyTooLarge as error:
         end(f"{path}: {error}", BAD_INPUT)
     for sentence in notes.sentences():
-        typer.echo(sentence, err=True)
+        notice(sentence)
     return {"line": document, **{name: members[name] for name in ("analysis",) if name in members}}
 
 
@@ -67,7 +65,7 @@ def with_defaults(line: "PlacedLine", defaults: Any) -> dict[str, Any]:
         raise BadInput(line.faults)
     document, computed = filled(line.document, line.computed, checked_defaults(defaults))  # type: ignore[arg-type]
     for value in computed:
-        typer.echo(f"{value.name}: {value.value:.6g} {value.unit}, {value.source}", err=True)
+        notice(f"{value.name}: {value.value:.6g} {value.unit}, {value.source}")
     return {name: value for name, value in document.items() if name != "reference"}
 
 

@@ -7,9 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from app.cli.console import BAD_INPUT, end, refuse
+from app.cli.console import BAD_INPUT, end, notice, refuse
 from app.cli.exchanged import SUFFIXES, exchanged_request, with_defaults
 
 if TYPE_CHECKING:
@@ -149,7 +147,7 @@ def make_missing_database(settings: "Settings") -> None:
             engine.dispose()
         if missing:
             migrate(settings)
-            typer.echo(f"made the new database {place_of(settings)}", err=True)
+            notice(f"made the new database {place_of(settings)}")
 
 
 def _database_file(settings: "Settings") -> Path | None:

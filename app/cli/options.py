@@ -34,4 +34,6 @@ ReportFile = Annotated[
     Path | None, typer.Option("--report", metavar="REPORT.pdf", help="Write a report of the result, as PDF or .html.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON also on a terminal.")]
-DataDirectory = Annotated[Path | None, typer.Option("--data-dir", help="Directory for all files of the service.")]
+DataDirectory = Annotated[
+    Path | None, typer.Option("--data-dir", envvar="GALLOPING_DATA_DIR", help="Directory for all files of the service.")
+]

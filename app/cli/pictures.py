@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from app.cli.console import BAD_INPUT, FAILED, end
+from app.cli.console import BAD_INPUT, FAILED, end, notice
 from app.cli.inputs import read_json
 
 if TYPE_CHECKING:
@@ -193,4 +193,4 @@ def _write(drawn: bytes, file: Path | None) -> None:
         file.write_bytes(drawn)
     except OSError as error:
         end(f"{file} cannot be written: {error.strerror or error}", BAD_INPUT)
-    typer.echo(str(file), err=True)
+    notice(str(file))

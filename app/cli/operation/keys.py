@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.console import BAD_INPUT, end, print_table, write
+from app.cli.common import with_common_options
+from app.cli.console import BAD_INPUT, end, notice, print_table, write
 from app.cli.inputs import make_missing_database, read_settings, using_database
 from app.cli.options import AsJson, DataDirectory
 from app.security.caller import LOCAL, OWNER_PATTERN, Scope
@@ -20,6 +21,7 @@ _COLUMNS = ("prefix", "owner", "name", "scopes", "state", "created_at", "expires
 
 
 @commands.command()
+@with_common_options
 def create(
     owner: Annotated[
         str, typer.Option(help="Owner of the jobs and batches that the key opens; letters, digits and . _ @ -")
@@ -49,21 +51,19 @@ def create(
         key, text = keys.create(session, owner, scope or list(Scope), name, expires_at)
         before = keys.made_before(session) if owner != LOCAL.owner else 0
     if before:
-        typer.echo(
+        notice(
             f"{before} job(s) and batch(es) made before keys existed belong to the owner {LOCAL.owner}. "
-            f"`galloping keys create --owner {LOCAL.owner}` makes a key that opens them.",
-            err=True,
+            f"`galloping keys create --owner {LOCAL.owner}` makes a key that opens them."
         )
     if json:
         write({"key": text, **_document(key)}, None)
         return
     typer.echo(text)
-    typer.echo(
-        f"Store this key: it is not shown again. It belongs to {owner} and allows {', '.join(key.scopes)}.", err=True
-    )
+    notice(f"Store this key: it is not shown again. It belongs to {owner} and allows {', '.join(key.scopes)}.")
 
 
 @commands.command("list")
+@with_common_options
 def list_keys(
     owner: Annotated[str | None, typer.Option(help="Only this owner's keys.")] = None,
     json: AsJson = False,
@@ -81,6 +81,7 @@ def list_keys(
 
 
 @commands.command()
+@with_common_options
 def revoke(
     key: Annotated[str, typer.Argument(help="The key, its prefix from the list, or its id.")],
     data_dir: DataDirectory = None,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.console import BAD_INPUT, end
+from app.cli.console import BAD_INPUT, end, notice
 from app.cli.inputs import ending_on_faults, read_settings
 from app.cli.options import DataDirectory
 
@@ -67,10 +67,9 @@ def _quiet(settings: "Settings") -> "Settings":
 
 def _tell_address(settings: "Settings", host: str, port: int) -> None:
     address = f"http://{f'[{host}]' if ':' in host else host}:{port}{settings.root_path}"
-    typer.echo(
+    notice(
         f"Galloping is at {address}/ (pages) and {address}/docs (API). Its files are in {settings.data_dir}. "
-        "Ctrl-C ends it.",
-        err=True,
+        "Ctrl-C ends it."
     )
 
 

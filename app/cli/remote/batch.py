@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.console import BAD_INPUT, FAILED, end, try_output, write
+from app.cli.console import BAD_INPUT, FAILED, end, notice, try_output, write
 from app.cli.inputs import read_json
 from app.cli.options import AnalysisFile, AsJson, DefaultsFile, OutputFile
 from app.cli.remote.answers import FormOption, TableOption, print_results
@@ -60,7 +60,7 @@ def batch(  # noqa: PLR0913, PLR0917 - the options of a command are its argument
 
 def _tell_faults(sent: "BatchDocument") -> None:
     for note in sent.notes:
-        typer.echo(note, err=True)
+        notice(note)
     for fault in sent.errors:
         typer.echo(f"{fault.place or f'line {fault.number}'}: {fault.pointer}: {fault.detail}", err=True)
 

@@ -8,6 +8,7 @@ from uuid import UUID
 
 import typer
 
+from app.cli.common import with_common_options
 from app.cli.console import FAILED, end, print_table, try_output, write
 from app.cli.options import AsJson, OutputFile
 from app.cli.remote.answers import FormOption, TableOption, print_results
@@ -28,6 +29,7 @@ _COLUMNS = ("id", "status", "progress", "name", "asset_id", "created_at", "durat
 
 
 @commands.command("list")
+@with_common_options
 def list_jobs(  # noqa: PLR0913, PLR0917 - the options of a command are its arguments
     status: Annotated[Status | None, typer.Option(help="Only jobs in this state.")] = None,
     asset_id: Annotated[str | None, typer.Option(help="Only jobs of this asset.")] = None,
@@ -49,6 +51,7 @@ def list_jobs(  # noqa: PLR0913, PLR0917 - the options of a command are its argu
 
 
 @commands.command()
+@with_common_options
 def show(identity: Identity, as_json: AsJson = False, url: ServiceUrl = DEFAULT_URL, key_file: KeyFile = None) -> None:
     """Show the status of a job or batch."""
     with service_at(url, key_file) as service:
@@ -56,6 +59,7 @@ def show(identity: Identity, as_json: AsJson = False, url: ServiceUrl = DEFAULT_
 
 
 @commands.command()
+@with_common_options
 def results(  # noqa: PLR0913, PLR0917 - the options of a command are its arguments
     identity: Identity,
     table: TableOption = None,
@@ -75,6 +79,7 @@ def results(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
 
 
 @commands.command()
+@with_common_options
 def wait(identity: Identity, as_json: AsJson = False, url: ServiceUrl = DEFAULT_URL, key_file: KeyFile = None) -> None:
     """Wait until a job or batch ends and print its status; exit with 1 unless it was successful."""
     with service_at(url, key_file) as service:
@@ -84,6 +89,7 @@ def wait(identity: Identity, as_json: AsJson = False, url: ServiceUrl = DEFAULT_
 
 
 @commands.command()
+@with_common_options
 def cancel(identity: Identity, url: ServiceUrl = DEFAULT_URL, key_file: KeyFile = None) -> None:
     """Cancel a job or batch; one that has ended keeps its results."""
     with service_at(url, key_file) as service:
