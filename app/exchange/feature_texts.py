@@ -1,7 +1,7 @@
-"""Cut the text of a GeoJSON document into its members and its features, one after another, however long it is.
+"""Cut the text of a JSON document into its members and the items of a list, such as the features of GeoJSON.
 
 Libraries that parse JSON as a stream stop at the first text that is not JSON. Here only the brackets are followed, and
-each feature is parsed by itself, so that a bad one spoils no other.
+each item is parsed by itself, so that a bad one spoils no other, and no text is held or parsed in one piece.
 """
 
 import re
@@ -21,7 +21,7 @@ _MOST_MEMBERS = 100
 
 @dataclass(slots=True)
 class FeatureTexts:
-    """The members of a document before its features, and the text of each feature.
+    """The members of a document before its features, or another list, and the text of each feature.
 
     members grows by what stands behind the features when the last one is taken. whole tells that the document has no
     features, and its members are everything.
@@ -32,8 +32,8 @@ class FeatureTexts:
     whole: bool = False
 
 
-def cut_features(pieces: Iterable[bytes], most_bytes: int) -> FeatureTexts:
-    """Cut a document up to its features; they are cut while they are taken.
+def cut_features(pieces: Iterable[bytes], most_bytes: int, listed: str = "features") -> FeatureTexts:
+    """Cut a document up to its features, or another list of it; they are cut while they are taken.
 
     Parameters
     ----------
@@ -41,6 +41,8 @@ def cut_features(pieces: Iterable[bytes], most_bytes: int) -> FeatureTexts:
         The text in UTF-8.
     most_bytes : int
         Longest feature, and longest text of everything beside them.
+    listed : str
+        Name of the list.
 
     Raises
     ------
@@ -49,7 +51,7 @@ def cut_features(pieces: Iterable[bytes], most_bytes: int) -> FeatureTexts:
     BodyTooLarge
         If a part is longer than the bound.
     """
-    text = _Text(iter(pieces), most_bytes)
+    text = _Text(iter(pieces), most_bytes, listed)
     if text.peek() != b"{":
         raise _invalid("must be a JSON object")
     text.at += 1
@@ -66,10 +68,10 @@ def _members(text: "_Text", members: dict[str, bytes]) -> bool:
         if text.peek() == b"}" and not members:
             break
         name = _name(text)
-        if name == "features" and text.peek() == b"[":
-            if "features" in members:
+        if name == text.listed and text.peek() == b"[":
+            if name in members:
                 raise _repeated(name)
-            members["features"] = b"[]"
+            members[name] = b"[]"
             text.at += 1
             return True
         if name in members:
@@ -78,7 +80,7 @@ def _members(text: "_Text", members: dict[str, bytes]) -> bool:
         size += len(members[name])
         if size > text.most_bytes or len(members) > _MOST_MEMBERS:
             bound = f"{text.most_bytes} bytes or more than {_MOST_MEMBERS}"
-            raise BodyTooLarge(f"The members beside the features are longer than {bound}.")
+            raise BodyTooLarge(f"The members beside {text.listed} are longer than {bound}.")
         if text.peek() != b",":
             break
         text.at += 1
@@ -97,21 +99,21 @@ def _name(text: "_Text") -> str:
 
 
 def _features(text: "_Text", members: dict[str, bytes]) -> Iterator[bytes]:
-    number = 0
+    number, item = 0, text.listed.removesuffix("s")
     if text.peek() != b"]":
         while True:
             number += 1
-            yield text.value(f"feature {number}: ")
+            yield text.value(f"{item} {number}: ")
             if text.peek() != b",":
                 break
             text.at += 1
     if text.peek() != b"]":
-        raise _invalid(f"expected a comma or the end of the list behind feature {number}")
+        raise _invalid(f"expected a comma or the end of the list behind {item} {number}")
     text.at += 1
     if text.peek() == b",":
         text.at += 1
         if _members(text, members):
-            raise _repeated("features")
+            raise _repeated(text.listed)
     else:
         _end(text)
 
@@ -138,6 +140,7 @@ class _Text:
 
     pieces: Iterator[bytes]
     most_bytes: int
+    listed: str
     buffer: bytes = b""
     at: int = 0
     is_complete: bool = field(default=False)
@@ -198,7 +201,9 @@ class _Text:
 
     def _grow(self, place: str) -> None:
         if len(self.buffer) - self.at > self.most_bytes:
-            raise BodyTooLarge(f"A feature, or a member beside the features, is longer than {self.most_bytes} bytes.")
+            raise BodyTooLarge(
+                f"One of the {self.listed}, or a member beside them, is longer than {self.most_bytes} bytes."
+            )
         if not self.more() and self.is_complete:
             raise _invalid(f"{place}the text ends within a value")
 

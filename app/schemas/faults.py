@@ -54,11 +54,10 @@ class BodyTooLarge(Exception):
     """Raised when a body, or one line of it, is too large; the text names it and the limit."""
 
 
-def parse_json(raw: bytes, *, bounded: bool = True) -> Any:
+def parse_json(raw: bytes) -> Any:
     """Return the value of a JSON text; NaN and infinities pass, and the schema then names their fields.
 
-    A whole batch has many lines, so it is not bounded in values and names. A byte order mark is passed over, and a text
-    that begins with that of UTF-16, as PowerShell writes it, is read so.
+    A byte order mark is passed over, and a text that begins with that of UTF-16, as PowerShell writes it, is read so.
 
     Raises
     ------
@@ -68,8 +67,7 @@ def parse_json(raw: bytes, *, bounded: bool = True) -> Any:
     """
     try:
         raw = _in_utf8(raw)
-        if bounded:
-            _check_size(raw)
+        _check_size(raw)
         value = from_json(raw)
         repeated = list(islice(_repeated_names(raw.decode()), MOST_FAULTS))
     except BadInput:

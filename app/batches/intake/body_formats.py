@@ -10,6 +10,7 @@ from typing import IO, Any
 
 from app.convert.known.wrapping import without_wrapper
 from app.exchange.cim import read_segments
+from app.exchange.feature_texts import cut_features
 from app.exchange.features import read_features
 from app.schemas.faults import BadInput, BodyTooLarge, Fault, parse_json
 from app.sheets.columns import Columns
@@ -19,6 +20,7 @@ from app.sheets.encodings import as_utf8
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _INFLATED_A_STEP = 1 << 18
 _IN_MEMORY_BYTES = 4_000_000
+_WRAPPER = '{"lines": [<the lines>], "analysis": {...}}, where analysis may be absent'
 _KNOWN = frozenset({"lines", "analysis", "defaults", "webhook_url"})
 
 
@@ -75,33 +77,61 @@ def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
 
 
 def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
-    """Read a whole body `{"lines": [...], "analysis": {...}}`.
+    """Read a body `{"lines": [...], "analysis": {...}}` whose members may have any order.
+
+    The body is kept in a file and looked through twice, for its members and for its lines: parsed in one piece, it
+    would hold up the event loop.
 
     Raises
     ------
     BodyTooLarge
-        If the body is larger than `most_bytes`, the limit for bodies held in memory.
+        If the body is larger than `most_bytes`.
     BadInput
         If the body is not such an object.
     """
-    body = bytearray()
-    for piece in pieces:
-        body += piece
-        if len(body) > most_bytes:
-            raise BodyTooLarge(f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV.")
-    document = parse_json(bytes(body), bounded=False)
-    bare = without_wrapper(document, '{"lines": [<the lines>], "analysis": {...}}, where analysis may be absent')
+    with ExitStack() as until_read:
+        file = until_read.enter_context(tempfile.SpooledTemporaryFile(_IN_MEMORY_BYTES))
+        for piece in as_utf8(pieces):
+            if file.tell() + len(piece) > most_bytes:
+                raise BodyTooLarge(
+                    f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV."
+                )
+            file.write(piece)
+        _check_object(file)
+        cut = cut_features(_pieces_of(file), most_bytes, "lines")
+        for _ in cut.texts:
+            pass  # the members are complete behind the last line
+        document = {name: parse_json(text) for name, text in cut.members.items()}
+        _check_members(document)
+        lines = map(_parsed, cut_features(_pieces_of(file), most_bytes, "lines").texts)
+        until_read.pop_all()  # the lines are read from the file
+    analysis, url = document.get("analysis", {}), document.get("webhook_url")
+    return Incoming(analysis, lines, url, file=file, defaults=document.get("defaults"))
+
+
+def _pieces_of(file: IO[bytes]) -> Iterator[bytes]:
+    file.seek(0)
+    return iter(partial(file.read, _INFLATED_A_STEP), b"")
+
+
+def _check_object(file: IO[bytes]) -> None:
+    if next((piece for piece in map(bytes.lstrip, _pieces_of(file)) if piece), b"").startswith(b"{"):
+        return
+    file.seek(0)
+    bare = without_wrapper(parse_json(file.read()), _WRAPPER)
+    raise BadInput([bare or Fault("", "not_an_object", "must be an object with lines and analysis")])
+
+
+def _check_members(document: Mapping[str, Any]) -> None:
+    """Refuse unknown members of a JSON batch and one without a list of lines."""
+    bare = without_wrapper(document, _WRAPPER)
     if bare is not None:
         raise BadInput([bare])
-    if not isinstance(document, dict):
-        raise BadInput([Fault("", "not_an_object", "must be an object with lines and analysis")])
     faults = [Fault(f"/{name[:200]}", "unknown_field", "unknown field") for name in document if name not in _KNOWN]
     if not isinstance(document.get("lines"), list):
         faults.append(Fault("/lines", "list_type", "must be a list of lines"))
     if faults:
         raise BadInput(faults)
-    lines, defaults = iter(document["lines"]), document.get("defaults")
-    return Incoming(document.get("analysis", {}), lines, document.get("webhook_url"), defaults=defaults)
 
 
 def read_ndjson(pieces: Iterable[bytes], most_line_bytes: int) -> Incoming:

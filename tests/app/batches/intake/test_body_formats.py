@@ -1,6 +1,9 @@
 import gzip
 import json
+import tracemalloc
 from collections.abc import Iterator
+from contextlib import closing
+from itertools import chain
 
 import pytest
 
@@ -84,11 +87,50 @@ def test_broken_gzip_is_the_senders_fault() -> None:
         assert codes(caught) == [("", "gzip_invalid")]
 
 
-def test_json_is_read_whole_and_names_every_fault() -> None:
-    incoming = read_json([b'{"lines": [1, {"a"', b": 2}]}"], 100)
-    assert (incoming.analysis, list(incoming.lines)) == ({}, [1, {"a": 2}])
+def test_json_is_looked_through_and_names_every_fault() -> None:
+    with closing(read_json([b'{"lines": [1, {"a"', b': 2}], "analysis": {"b": 3}}'], 100)) as incoming:
+        assert (incoming.analysis, list(incoming.lines)) == ({"b": 3}, [1, {"a": 2}])
     with pytest.raises(BadInput) as caught:
         read_json([b'{"webhook": "http://x", "lines": {}}'], 100)
     assert codes(caught) == [("/webhook", "unknown_field"), ("/lines", "list_type")]
     with pytest.raises(BodyTooLarge, match="NDJSON"):
         read_json([b"x" * 101], 100)
+
+
+@pytest.mark.parametrize(
+    ("body", "code"),
+    [
+        (b"", "json_invalid"),
+        (b"nonsense", "json_invalid"),
+        (b"[1]", "not_an_object"),
+        (b' [{"span": 1, "ice": 2}]', "missing_wrapper"),
+        (b'{"span": 1, "ice": 2}', "missing_wrapper"),
+        (b'{"lines": [1], "lines": [2]}', "repeated_name"),
+        (b'{"lines": [1,]}', "json_invalid"),
+        (b'{"lines": [1]} 2', "json_invalid"),
+    ],
+)
+def test_what_is_no_json_batch_is_named(body: bytes, code: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        read_json([body], 1000)
+    assert [found for _, found in codes(caught)] == [code]
+
+
+def test_one_line_that_is_no_json_spoils_no_other() -> None:
+    with closing(read_json([b'{"lines": [1, {"a": nonsense}, {"b": 1, "b": 2}, 3]}'], 1000)) as incoming:
+        first, second, third, fourth = incoming.lines
+    assert (first, fourth) == (1, 3)
+    assert isinstance(second, BadInput) and second.faults[0].code == "json_invalid"
+    assert isinstance(third, BadInput) and third.faults[0].code == "repeated_name"
+
+
+def test_json_is_not_held_as_values_all_at_once() -> None:
+    line = b'{"a": [%b]}' % b",".join(b"%d" % number for number in range(1000, 2000))
+    pieces = chain([b'{"lines": [', line], (b"," + line for _ in range(1500)), [b"]}"])
+    tracemalloc.start()
+    try:
+        with closing(read_json(pieces, 10_000_000)) as incoming:
+            assert sum(len(document["a"]) for document in incoming.lines if isinstance(document, dict)) == 1_501_000
+        assert tracemalloc.get_traced_memory()[1] < 15_000_000
+    finally:
+        tracemalloc.stop()
