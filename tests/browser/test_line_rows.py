@@ -94,7 +94,7 @@ def test_measured_coefficients_are_pasted_from_a_sheet(open_page: Open) -> None:
     group.get_by_label(re.compile("^Largest angle of attack")).fill("")
     group.get_by_label(re.compile("^Measured: angle at rest")).fill("40")
     group.get_by_label(re.compile("^Measured: range to either side")).fill("20")
-    group.get_by_text("Paste from a sheet").click()
+    group.locator("summary", has_text="Paste from a sheet").click()
     rows = [
         (20, 0.6, 1.0, 0.1),
         (30, 0.5, 1.05, 0.05),
