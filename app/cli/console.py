@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
@@ -73,6 +74,16 @@ def try_output(path: Path | None) -> None:
     try:
         if path is not None:
             path.open("a", encoding="utf-8").close()
+    except OSError as error:
+        end(f"{path} cannot be written: {error.strerror or error}", BAD_INPUT)
+
+
+def try_folder(path: Path | None) -> None:
+    """End if no file can be made in a folder, before any work is done for it; make the folder if it is missing."""
+    try:
+        if path is not None:
+            path.mkdir(parents=True, exist_ok=True)
+            TemporaryFile(dir=path).close()
     except OSError as error:
         end(f"{path} cannot be written: {error.strerror or error}", BAD_INPUT)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, try_output, write
+from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, try_folder, try_output, write
 from app.cli.inputs import read_request
 from app.cli.options import (
     AnalysisFile,
@@ -51,11 +51,17 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     """
     try_output(output)
     try_output(report)
+    try_folder(csv)
+    try_folder(plots)
     document = read_request(line, analysis, study, placement, defaults)
     if report is not None and document.get("study"):
         end("a report is for a line, not for a study", BAD_INPUT)
     request, points = _points(document)
     result = result_document(request, points)
+    if output is not None or as_json or not sys.stdout.isatty():
+        write(result, output)
+    if not as_json and sys.stdout.isatty():
+        print_report(result)
     if csv is not None:
         _write_tables(result, csv)
     if plots is not None:
@@ -64,10 +70,6 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
         draw_all(result, {point.point: point.orbits for point in points}, Wanted(plots))
     if report is not None:
         _write_report(request, points[0], report)
-    if output is not None or as_json or not sys.stdout.isatty():
-        write(result, output)
-    if not as_json and sys.stdout.isatty():
-        print_report(result)
 
 
 def clearance(

@@ -174,6 +174,10 @@ def test_what_is_given_twice_is_refused(tmp_path: Path) -> None:
 def test_a_result_that_cannot_be_written_ends_with_2(tmp_path: Path) -> None:
     request = written(tmp_path, "request", short_request())
     assert "cannot be written" in refused("analyse", request, "--output", str(tmp_path / "no" / "result.json"))
+    (tmp_path / "file").touch()
+    for option in ("--csv", "--plots"):
+        folder = str(tmp_path / "file" / "folder")
+        assert f"{folder} cannot be written: " in refused("analyse", request, option, folder)
 
 
 def test_wrong_settings_end_with_2_and_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
