@@ -137,8 +137,6 @@ def cancel(session: Session, caller: Caller, batch_id: UUID, *, may_remove: bool
     before = batch_progress.counts(session, [batch_id])[batch_id]
     if not before.accepted + before.running and not may_remove:
         return CancelOutcome.KEPT
-    if not before.accepted + before.running and not may_remove:
-        return CancelOutcome.KEPT
     if not before.accepted + before.running:
         session.execute(delete(Job).where(Job.batch_id == batch_id))
         session.execute(delete(Batch).where(Batch.id == batch_id))
