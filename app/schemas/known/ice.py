@@ -50,9 +50,7 @@ class Accretion(Document):
 class CatalogueShape(Document):
     """An ice shape of the catalogue, or an own table, by its name."""
 
-    catalogue: Label = Field(
-        description="Name of an own table or of a shape in `GET /v1/ice-shapes`", examples=["c11-40"]
-    )
+    catalogue: Label = Field(description="Name of an own table or of a shape in the catalogue", examples=["c11-40"])
     angle: float | None = quantity(
         "angle_deg",
         "Angle of the ice; a shape of the catalogue has one only, an own table is fitted at it",

@@ -31,7 +31,7 @@ class KnownConductor(Document):
 
     catalogue: Label | None = Field(
         default=None,
-        description="Name or designation of an own conductor or of one in `GET /v1/conductors`",
+        description="Name or designation of an own conductor or of one in the catalogue",
         examples=["Drake"],
     )
     diameter: float | None = as_in(Conductor, "diameter")
@@ -83,7 +83,7 @@ class KnownBundle(Document):
         Literal["horizontal", "vertical", "triangle", "inverted_triangle", "square", "diamond", "polygon"] | None
     ) = Field(
         default=None,
-        description="Arrangement with spacing_m; if null, horizontal for two, one below for three, a square for four",
+        description="Arrangement with this spacing; if null, horizontal for two, one below for three, a square for four",
         examples=["horizontal"],
     )
     section: Literal["rigid", "free"] | None = Field(
