@@ -83,7 +83,7 @@ class KnownBundle(Document):
         Literal["horizontal", "vertical", "triangle", "inverted_triangle", "square", "diamond", "polygon"] | None
     ) = Field(
         default=None,
-        description="Arrangement with this spacing; if null, horizontal for two, one below for three, a square for four",
+        description="Arrangement with this spacing; if null, horizontal for two, one below for three, square for four",
         examples=["horizontal"],
     )
     section: Literal["rigid", "free"] | None = Field(
