@@ -27,6 +27,7 @@ from app.jobs.watched_states import batches_seen, jobs_seen
 from app.ogc import routes as ogc
 from app.openapi import about, finished
 from app.operation import metrics
+from app.operation.write_probe import WriteProbe
 from app.pages import assets, frame, views
 from app.routes import (
     aerodynamics,
@@ -54,6 +55,7 @@ from app.routes import (
 )
 from app.runtime import telemetry
 from app.runtime.settings import Settings, get_settings
+from app.runtime.signing import make_signing_key
 from app.security.gate import Gate
 from app.security.quotas import Meter
 from app.security.strangers import Strangers
@@ -87,7 +89,7 @@ def create_app(settings: Settings | None = None) -> Service:
     Raises
     ------
     OSError
-        If the directory of an SQLite database cannot be made.
+        If the directory of an SQLite database or the signing secret cannot be made.
     """
     settings = settings or get_settings()
     database = make_engine(settings)
@@ -164,11 +166,13 @@ def _add_addresses(app: Service) -> None:
 
 def _equip(app: Service, settings: Settings, database: Engine) -> None:
     """Attach what routes share: database sessions, grouped calls, the message sender and the watches behind streams."""
+    make_signing_key(settings)
     app.state.settings = settings
     app.state.requests = metrics.requests()
     app.state.readers = session_factory(database, read_only=True)
     app.state.writers = session_factory(database)
-    app.state.prober = make_engine(settings, impatient=True)
+    app.state.prober = prober = make_engine(settings, impatient=True)
+    app.state.probe = WriteProbe(prober)
     app.state.studio = Workshop(settings.drawing_processes)
     app.state.printers = Workshop(1, most_of_owner=_REPORTS_OF_OWNER, most=_REPORTS)
     app.state.previews = Previews(settings.preview_seconds)

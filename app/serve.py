@@ -21,7 +21,8 @@ import uvicorn
 
 from app.runtime import logs, processes, telemetry
 from app.runtime.loopback import is_loopback
-from app.runtime.settings import Settings, get_settings, signing_key
+from app.runtime.settings import Settings, get_settings
+from app.runtime.signing import make_signing_key
 from app.security import keys
 from app.storage.database import make_engine, session_factory
 from app.storage.migration import migrate
@@ -72,7 +73,7 @@ def api(settings: Settings, host: str, port: int) -> int:
     """
     logs.configure(settings)
     os.environ.update(settings.environment())  # the application reads them here, and in the child processes of uvicorn
-    signing_key(settings)  # made now, since the disk may be full when the first cursor is signed
+    make_signing_key(settings)  # now, since the disk may be full when the first cursor is signed
     os.environ[_SHARED_METRICS] = str(_empty_folder(settings.data_dir / f"metrics-{port}"))
     uvicorn.run(
         f"{__package__}.serve:_application",

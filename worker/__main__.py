@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.jobs import leases
 from app.runtime import logs, processes
 from app.runtime.settings import Settings, get_settings
+from app.runtime.signing import make_signing_key
 from app.storage.database import make_engine, session_factory
 from worker.courier import courier
 from worker.health import show_life
@@ -31,6 +32,7 @@ def main() -> int:
     processes.end_with_parent()
     settings = get_settings()
     logs.configure(settings)
+    make_signing_key(settings)  # for webhooks
     engine = make_engine(settings, idle_seconds=settings.lease_seconds)
     try:
         _supervise(session_factory(engine), settings, f"{socket.gethostname()}:{os.getpid()}:{uuid4().hex[:8]}")

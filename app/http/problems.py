@@ -8,7 +8,7 @@ from typing import Any
 from anyio import to_thread
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import InternalError, OperationalError
 from sqlalchemy.exc import TimeoutError as NoConnectionFree
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
@@ -17,9 +17,11 @@ from app import convert
 from app.http.body_limit import BodyLimit, Limit, Pace
 from app.http.conditional import Bodiless
 from app.http.prefix import LinkedJSON
+from app.runtime.signing import SecretUnavailable
 from app.schemas.faults import MOST_FAULTS, Fault, faults_of, json_pointer
 from app.storage.pages import Removed
 from app.storage.stored_results import CorruptResult
+from app.storage.database import takes_no_changes
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -153,7 +155,9 @@ def install(app: FastAPI, max_body_bytes: Mapping[str, int], slowest_body: tuple
     app.add_exception_handler(Bodiless, _on_bodiless)
     app.add_exception_handler(HTTPException, _on_http)
     app.add_exception_handler(RequestValidationError, _on_validation)
-    app.add_exception_handler(OperationalError, _on_database)
+    for of_database in (OperationalError, InternalError):  # PostgreSQL calls it internal when it takes no changes
+        app.add_exception_handler(of_database, _on_database)
+    app.add_exception_handler(SecretUnavailable, _on_secret)
     app.add_exception_handler(NoConnectionFree, _on_database)
     app.add_exception_handler(CorruptResult, _on_corrupt)
     app.add_exception_handler(Removed, _on_removed)
@@ -245,10 +249,22 @@ async def _on_database(request: Request, error: Exception) -> Response:
     return _respond(request, database_fault(error))
 
 
+async def _on_secret(request: Request, error: Exception) -> Response:
+    return _respond(request, secret_fault(error))
+
+
 def database_fault(error: Exception) -> ProblemError:
-    """Log that the database does not answer, and return the problem for it."""
-    _logger.error("the database does not answer: %s", error)
-    return ProblemError(ProblemKind.UNAVAILABLE, "The database does not answer.", headers={"Retry-After": "5"})
+    """Log that the database does not answer, or takes no changes, and return the problem for it."""
+    detail = "The database takes no changes." if takes_no_changes(error) else "The database does not answer."
+    _logger.error("%s %s", detail, error)
+    return ProblemError(ProblemKind.UNAVAILABLE, detail, headers={"Retry-After": "5"})
+
+
+def secret_fault(error: Exception) -> ProblemError:
+    """Log that the signing secret cannot be read, and return the problem for it."""
+    _logger.error("the signing secret cannot be read: %s", error)
+    detail = "The service cannot read its signing secret; its operator must put it back."
+    return ProblemError(ProblemKind.UNAVAILABLE, detail, headers={"Retry-After": "5"})
 
 
 async def _on_corrupt(request: Request, error: Exception) -> Response:

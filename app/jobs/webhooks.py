@@ -19,7 +19,8 @@ from standardwebhooks import Webhook
 from uuid_utils.compat import uuid7
 
 from app.jobs import batch_progress
-from app.runtime.settings import Settings, signing_key
+from app.runtime.settings import Settings
+from app.runtime.signing import signing_key
 from app.storage import counters
 from app.storage.counters import CounterName
 from app.storage.database import database_time

@@ -25,7 +25,7 @@ from app.routes.dependencies import CallerOf, Readers, SettingsOf, Writers, vet_
 from app.routes.job_intake import check_request, stored_job
 from app.routes.streaming import streamed
 from app.routes.waiting import wait_for_end
-from app.runtime.settings import signing_key
+from app.runtime.signing import signing_key
 from app.schemas.faults import BadInput
 from app.security.caller import Caller, Owned
 from app.tables import ENDED, Job

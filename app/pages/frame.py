@@ -15,6 +15,7 @@ from app.http.prefix import path_of, prefix_of
 from app.http.problems import ProblemError, ProblemKind
 from app.pages import assets, measures
 from app.pages.wording import word_for, words
+from app.runtime.signing import SecretUnavailable
 from app.security import sessions
 from app.security.caller import LOCAL, Caller
 from app.security.origins import is_told_of_another_site
@@ -96,7 +97,10 @@ def shown_problem(request: Request, problem: ProblemError) -> Response | None:
         return moved(request, f"/pages/sign-in?back={quote(back)}")
     said = words().problem
     hint = getattr(said, problem.kind.slug.replace("-", "_"), said.other)
-    return page(request, "problem.html", problem.status_code, headers=problem.headers, problem=problem, hint=hint)
+    try:
+        return page(request, "problem.html", problem.status_code, headers=problem.headers, problem=problem, hint=hint)
+    except SecretUnavailable:  # every page has a form, whose mark cannot be made
+        return None
 
 
 def _common(request: Request) -> dict[str, Any]:

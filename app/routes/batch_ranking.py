@@ -19,7 +19,7 @@ from app.http.strict_routes import KnownParametersRoute
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import batch_address, require_results
 from app.routes.dependencies import PREFIX, CallerOf, Readers, SettingsOf
-from app.runtime.settings import signing_key
+from app.runtime.signing import signing_key
 from app.storage.stored_results import ranking_columns
 
 router = APIRouter(prefix=f"{PREFIX}/batches/{{batch_id}}", tags=["batches"], route_class=KnownParametersRoute)

@@ -30,7 +30,7 @@ from app.routes.dependencies import RETRY_SECONDS, CallerOf, Readers, SenderOf, 
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
 from app.routes.moments import Moment
 from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
-from app.runtime.settings import signing_key
+from app.runtime.signing import signing_key
 from app.security.caller import Owned
 from app.tables import ENDED
 

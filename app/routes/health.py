@@ -17,9 +17,11 @@ from app.answers.problem_pages import ProblemPage
 from app.http.problems import ProblemError, ProblemKind
 from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.operation import metrics
+from app.operation.write_probe import WriteProbe
 from app.routes import documentation
 from app.routes.dependencies import Readers, SettingsOf
 from app.runtime.settings import Settings
+from app.runtime.signing import SecretUnavailable, signing_key
 from app.storage.migration import is_newest
 
 router = APIRouter(tags=["service"])
@@ -51,7 +53,9 @@ def check_live() -> JSONResponse:
     },
 )
 async def check_ready(request: Request, settings: SettingsOf) -> JSONResponse:
-    """Check database (reachable, migrated, with room on its disk) and broker; answer 503 if not ready, within 3 s.
+    """Check database (reachable, migrated, with room on its disk, takes changes), broker and signing secret.
+
+    Answer 503 if not ready, within 3 s.
 
     Without the broker the service still accepts work, and does it when the broker is back.
     """
@@ -62,7 +66,8 @@ async def check_ready(request: Request, settings: SettingsOf) -> JSONResponse:
 
     with move_on_after(_PATIENCE_SECONDS):
         async with create_task_group() as running:
-            running.start_soon(run_check, partial(_database_checks, request.app.state.prober))
+            running.start_soon(run_check, partial(_database_checks, request.app.state.prober, request.app.state.probe))
+            running.start_soon(run_check, partial(_secret_check, settings))
             running.start_soon(run_check, partial(_broker_check, settings))
     good = all(value == "ok" for value in checks.values())
     return JSONResponse({"status": "ok" if good else "unavailable", "checks": checks}, 200 if good else 503)
@@ -97,16 +102,24 @@ def prometheus_metrics(request: Request, readers: Readers) -> Response:
     return Response(text, media_type=media_type)
 
 
-def _database_checks(prober: Engine) -> dict[str, str]:
+def _database_checks(prober: Engine, probe: WriteProbe) -> dict[str, str]:
+    reading = prober.execution_options(read_only=True)  # which a writer does not hold up
     try:
-        with prober.connect() as connection:
+        with reading.connect() as connection:
             newest = is_newest(connection)
+        state = probe.state() if _has_room(prober) else "its disk is full"
     except SQLAlchemyError:
         return {"database": "cannot be reached", "migrations": "unknown"}
-    return {
-        "database": "ok" if _has_room(prober) else "its disk is full",
-        "migrations": "ok" if newest else "not the newest",
-    }
+    return {"database": state, "migrations": "ok" if newest else "not the newest"}
+
+
+def _secret_check(settings: Settings) -> dict[str, str]:
+    """Return nothing where all is well: most services have their secret from their settings."""
+    try:
+        signing_key(settings)
+    except SecretUnavailable:
+        return {"secret": "cannot be read"}
+    return {}
 
 
 def _has_room(prober: Engine) -> bool:

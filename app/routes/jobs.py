@@ -23,7 +23,7 @@ from app.routes.job_status import find_job, find_status, job_address, job_docume
 from app.routes.known_lines import KnownLineRoute
 from app.routes.moments import Moment
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
-from app.runtime.settings import signing_key
+from app.runtime.signing import signing_key
 from app.schemas.fields import Label, example_of
 from app.security.caller import Owned
 from app.tables import ENDED, JobStatus

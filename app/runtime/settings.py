@@ -2,7 +2,6 @@
 
 import os
 import re
-import secrets
 from functools import cache
 from ipaddress import ip_network
 from pathlib import Path
@@ -13,13 +12,10 @@ from pydantic import AliasChoices, Field, FilePath, SecretStr, field_validator, 
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from app.runtime.loopback import is_loopback
-from app.runtime.private_files import make_private_folder
 from app.runtime.weak_secrets import weak_secrets
 
 _PREFIX = "GALLOPING_"
-_SECRET_FILE = "signing-secret"
 _SECRETS = ("database_url", "broker_url", "signing_secret")  # the addresses hold passwords
-_FORMER_SECRET_FILE = "cursor-secret"  # written by earlier versions
 
 _SECRET_NAMES = AliasChoices("GALLOPING_SIGNING_SECRET", "GALLOPING_CURSOR_SECRET")  # the second is deprecated
 
@@ -246,36 +242,3 @@ def _secret_in(name: str, file: str) -> str:
 def get_settings() -> Settings:
     """Return the settings of this process, read once from its environment."""
     return Settings()
-
-
-def signing_key(settings: Settings) -> bytes:
-    """Return the key that signs cursors and webhooks: the `signing_secret`, or one generated once in a private file.
-
-    Raises
-    ------
-    OSError
-        If the file can be neither read nor written.
-    """
-    if settings.signing_secret is not None:
-        return settings.signing_secret.get_secret_value().encode()
-    path, former = settings.data_dir / _SECRET_FILE, settings.data_dir / _FORMER_SECRET_FILE
-    if former.exists():
-        return former.read_bytes()
-    if not path.exists():
-        make_private_folder(settings.data_dir)
-        _keep_secret(path)
-    return path.read_bytes()
-
-
-def _keep_secret(path: Path) -> None:
-    """Write a random secret; linking a finished file is atomic, so several processes agree on one secret."""
-    draft = path.with_name(f"{path.name}.{os.getpid()}.{secrets.token_hex(4)}")
-    descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(descriptor, "w") as file:
-        file.write(secrets.token_urlsafe(32))
-    try:
-        path.hardlink_to(draft)
-    except FileExistsError:
-        pass  # another process was first; use its secret
-    finally:
-        draft.unlink()

@@ -14,6 +14,7 @@ from app.http import problems
 from app.http.prefix import path_of
 from app.http.problems import ProblemError, ProblemKind
 from app.runtime.settings import Settings
+from app.runtime.signing import SecretUnavailable
 from app.security import keys, sessions
 from app.security.caller import LOCAL, Caller, Scope
 from app.security.origins import Headers, is_from_this_machine, is_of_another_site, is_told_of_another_site
@@ -97,6 +98,8 @@ class Gate:
             caller = await self._caller(scope, headers)
         except OperationalError as error:
             raise problems.database_fault(error) from error
+        except SecretUnavailable as error:
+            raise problems.secret_fault(error) from error
         needed = _needed(scope)
         if needed is not None and needed not in caller.scopes:
             detail = f"The key lacks the scope {needed}."

@@ -9,7 +9,8 @@ from http.cookies import CookieError, SimpleCookie
 
 from itsdangerous import BadSignature, URLSafeTimedSerializer
 
-from app.runtime.settings import Settings, signing_key
+from app.runtime.settings import Settings
+from app.runtime.signing import signing_key
 
 COOKIE = "galloping_session"
 LASTS_SECONDS = 12 * 3600

@@ -9,6 +9,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.types import Message, Receive
 
 from app.http.problems import ProblemError, ProblemKind
+from app.runtime.signing import SecretUnavailable
 
 Serve = Callable[[Receive], Awaitable[None]]
 Check = Callable[[], Awaitable[object]]
@@ -37,7 +38,7 @@ async def while_admitted(serve: Serve, receive: Receive, check: Check, seconds: 
                 if problem.kind is ProblemKind.UNAUTHENTICATED:
                     refusals.append(problem)
                     serving.cancel()
-            except SQLAlchemyError:
+            except (SQLAlchemyError, SecretUnavailable):
                 pass
             await asyncio.sleep(seconds)
 

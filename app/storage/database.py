@@ -25,12 +25,14 @@ from sqlalchemy.sql.functions import func
 
 from app.runtime.private_files import keep_private, make_private_file, make_private_folder
 from app.runtime.settings import Settings
+from app.storage.replaced_files import stay_with_file
 from app.tables import Base, UtcDateTime
 
 _BUSY_SECONDS = 30.0
 # One connection for each thread of the API: a connection above the pool size would be reopened for every use.
 _POOL: dict[str, Any] = {"pool_size": 40, "max_overflow": 0}
 _IMPATIENT: dict[str, Any] = {"connect_timeout": 2, "options": "-c statement_timeout=2000"}
+_READ_ONLY = "25006"  # PostgreSQL's code for a change where none may be made, as on a standby
 _CLOCK = "database time of this transaction"
 
 
@@ -41,9 +43,10 @@ def make_engine(settings: Settings, *, impatient: bool = False, idle_seconds: fl
 
     SQLite: write-ahead log, foreign keys, a busy timeout, and every transaction begins as a writer (`BEGIN IMMEDIATE`)
     unless its session comes from `session_factory(..., read_only=True)`. A reader that became a writer midway would
-    fail at once with "locked", whatever the timeout. PostgreSQL: connections are tested before use. An impatient engine
-    serves health checks: it opens a new connection for each and gives up soon. With `idle_seconds` above zero the
-    server ends a transaction that does nothing for so long: a stopped process would keep its rows locked.
+    fail at once with "locked", whatever the timeout. A connection whose file was replaced is not used again.
+    PostgreSQL: connections are tested before use. An impatient engine serves health checks: it opens a new connection
+    for each and gives up soon. With `idle_seconds` above zero the server ends a transaction that does nothing for so
+    long: a stopped process would keep its rows locked.
 
     Raises
     ------
@@ -57,23 +60,32 @@ def make_engine(settings: Settings, *, impatient: bool = False, idle_seconds: fl
             return create(poolclass=NullPool, connect_args=_IMPATIENT)
         options = f"-c idle_in_transaction_session_timeout={round(1000.0 * idle_seconds)}"  # zero is no limit
         return create(pool_pre_ping=True, connect_args={"connect_timeout": 10, "options": options}, **_POOL)
-    if url.database:
-        _make_folder(Path(url.database), settings.data_dir)
     patience = {"timeout": _IMPATIENT["connect_timeout"] if impatient else _BUSY_SECONDS}
-    engine = create(connect_args=patience, **_POOL)
+    engine = create(poolclass=NullPool, connect_args=patience) if impatient else create(connect_args=patience, **_POOL)
+    if url.database:
+        _make_file(Path(url.database), settings.data_dir)
+        stay_with_file(engine, Path(url.database))
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine
 
 
-def _make_folder(file: Path, data_dir: Path) -> None:
+def _make_file(file: Path, data_dir: Path) -> None:
     if file.parent != data_dir:  # the operator chose this place, and who may read it
         file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()
         return
     make_private_folder(data_dir)
     make_private_file(file)
     for beside in data_dir.glob(f"{file.name}-*"):  # new ones get the mode of the database
         keep_private(beside)
+
+
+def takes_no_changes(error: Exception) -> bool:
+    """Tell whether the database refuses a statement because it may not write, or has no room to."""
+    cause = getattr(error, "orig", None)
+    of_sqlite = str(getattr(cause, "sqlite_errorname", "")).startswith(("SQLITE_READONLY", "SQLITE_FULL"))
+    return of_sqlite or getattr(cause, "sqlstate", None) == _READ_ONLY
 
 
 def session_factory(engine: Engine, *, read_only: bool = False) -> sessionmaker[Session]:

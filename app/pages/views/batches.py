@@ -24,7 +24,7 @@ from app.routes.batch_results import MEDIA_TYPES, BatchFormat, result_pieces
 from app.routes.batch_status import batch_document, batch_summary, find_batch, require_results
 from app.routes.dependencies import CallerOf, Readers, SenderOf, Writers
 from app.routes.streaming import streamed
-from app.runtime.settings import signing_key
+from app.runtime.signing import signing_key
 from app.security.caller import Scope
 from app.tables import ENDED
 

@@ -14,7 +14,7 @@ from app.jobs import job_records
 from app.jobs.job_records import JobFilters
 from app.pages.frame import page
 from app.routes.dependencies import CallerOf, Readers
-from app.runtime.settings import signing_key
+from app.runtime.signing import signing_key
 from app.tables import JobStatus
 
 router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)

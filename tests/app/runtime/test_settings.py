@@ -1,12 +1,10 @@
-import stat
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pydantic import SecretStr, ValidationError
 
-from app.runtime.settings import Settings, signing_key
+from app.runtime.settings import Settings
 
 
 def test_defaults_need_no_other_server(tmp_path: Path) -> None:
@@ -57,36 +55,6 @@ def test_child_processes_get_the_same_settings(tmp_path: Path, monkeypatch: pyte
 
 def test_secret_is_not_shown(tmp_path: Path) -> None:
     assert "s3cret" not in repr(Settings(data_dir=tmp_path, signing_secret=SecretStr("s3cret")))
-
-
-def test_signing_key_that_is_set_is_used(tmp_path: Path) -> None:
-    settings = Settings(data_dir=tmp_path / "none", signing_secret=SecretStr("s3cret"))
-    assert signing_key(settings) == b"s3cret"
-    assert not (tmp_path / "none").exists()
-
-
-def test_the_former_name_of_the_signing_secret_still_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("GALLOPING_CURSOR_SECRET", "former")
-    assert signing_key(Settings(data_dir=tmp_path)) == b"former"
-    monkeypatch.setenv("GALLOPING_SIGNING_SECRET", "present")
-    assert signing_key(Settings(data_dir=tmp_path)) == b"present"
-
-
-def test_a_secret_file_of_an_earlier_version_is_used(tmp_path: Path) -> None:
-    (tmp_path / "cursor-secret").write_text("kept since then")
-    assert signing_key(Settings(data_dir=tmp_path)) == b"kept since then"
-    assert [path.name for path in tmp_path.iterdir()] == ["cursor-secret"]
-
-
-def test_signing_key_is_made_once_in_a_private_file(tmp_path: Path) -> None:
-    settings = Settings(data_dir=tmp_path / "data")
-    with ThreadPoolExecutor(8) as pool:
-        keys = set(pool.map(lambda _: signing_key(settings), range(32)))
-    files = list((tmp_path / "data").iterdir())
-    assert len(keys) == 1
-    assert len(next(iter(keys))) >= 40
-    assert [stat.S_IMODE(path.stat().st_mode) for path in files] == [0o600]
-    assert signing_key(Settings(data_dir=tmp_path / "other")) not in keys
 
 
 def test_secrets_may_stand_in_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

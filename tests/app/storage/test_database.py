@@ -9,7 +9,7 @@ from sqlalchemy.exc import DBAPIError, OperationalError
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.runtime.settings import Settings
-from app.storage.database import database_time, insert_rows, make_engine, session_factory
+from app.storage.database import database_time, insert_rows, make_engine, session_factory, takes_no_changes
 from app.storage.migration import migrate
 from app.tables import BatchItem, Job, PointRow
 from tests.documents import add_job, look
@@ -142,3 +142,19 @@ def test_other_users_cannot_read_the_embedded_database(tmp_path: Path) -> None:
     engine.dispose()
     assert set(held.values()) == {0o600}, held
     assert settings.data_dir.stat().st_mode & 0o777 == 0o700
+
+
+def test_refusals_to_write_are_told_from_other_faults(sessions: sessionmaker[Session]) -> None:
+    def fault(statement: str, prepare: str) -> DBAPIError:
+        with sessions() as session, pytest.raises(DBAPIError) as found:
+            session.execute(text(prepare))
+            session.execute(text(statement))
+        return found.value
+
+    bind = sessions.kw["bind"]
+    held, free = ("PRAGMA query_only=1", "PRAGMA query_only=0")
+    if bind.dialect.name == "postgresql":
+        held, free = ("SET TRANSACTION READ ONLY", "SELECT 1")
+    assert takes_no_changes(fault("DELETE FROM jobs", held))
+    assert not takes_no_changes(fault("DELETE FROM nothing", free))
+    assert not takes_no_changes(ValueError())
