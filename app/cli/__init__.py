@@ -7,7 +7,7 @@ import typer
 
 from app.cli import catalogue, climate, coefficients, lines, pictures, remedies
 from app.cli.common import Quiet, Version, with_common_options
-from app.cli.operation import keys, operate, service
+from app.cli.operation import audit, keys, operate, service
 from app.cli.remote import batch, jobs, submit
 
 Command = Callable[..., Any]
@@ -32,7 +32,6 @@ _COMMANDS: Mapping[str, Sequence[Command]] = {
         service.migrate,
         operate.status,
         operate.prune,
-        operate.audit,
     ),
 }
 
@@ -56,6 +55,7 @@ for panel, commands in _COMMANDS.items():
     for command in commands:
         app.command(rich_help_panel=panel)(with_common_options(command))
 app.add_typer(jobs.commands, name="jobs", rich_help_panel="Send lines to a service")
+app.add_typer(audit.commands, name="audit", rich_help_panel="Run a service")
 app.add_typer(keys.commands, name="keys", rich_help_panel="Run a service")
 
 

@@ -30,6 +30,10 @@ class _HeadTooLarge(Exception):
     """Raised in the parser's callbacks, which ends the parsing."""
 
 
+class _SeveralHosts(Exception):
+    """Raised in the parser's callbacks, which answers 400: a proxy may have judged by another one (RFC 9112, 3.2)."""
+
+
 class BoundedHeads(HttpToolsProtocol):
     """Uvicorn's protocol, which also answers 431 to a head that is too large and ends connections that are too slow.
 
@@ -82,6 +86,8 @@ class BoundedHeads(HttpToolsProtocol):
         if len(self.url) + sum(len(name) + len(value) + len(": \r\n") for name, value in self.headers) > MOST_BYTES:
             self._refuse()
             raise _HeadTooLarge
+        if [name for name, _ in self.headers].count(b"host") > 1:
+            raise _SeveralHosts
         self._stop_timer()
         super().on_headers_complete()
 

@@ -1,6 +1,6 @@
 """The audit record: who changed what, written in the transaction of the change."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from datetime import datetime
 from uuid import UUID
 
@@ -11,6 +11,8 @@ from uuid_utils.compat import uuid7
 from app.security.caller import Caller
 from app.storage.database import database_time, insert_rows
 from app.tables import AuditAction, AuditEvent
+
+_AT_ONCE = 1000
 
 OPERATOR = Caller("operator", frozenset())
 """The caller on the command line of the service's own machine."""
@@ -55,3 +57,17 @@ def latest(session: Session, owner: str | None, since: datetime | None, limit: i
     if since is not None:
         statement = statement.where(AuditEvent.at >= since)
     return session.scalars(statement).all()
+
+
+def between(
+    session: Session, owner: str | None, since: datetime | None, until: datetime | None
+) -> Iterator[AuditEvent]:
+    """Yield events in the order of their ids, optionally of one owner, since a moment, or before another."""
+    statement = select(AuditEvent).order_by(AuditEvent.id).execution_options(yield_per=_AT_ONCE)
+    if owner is not None:
+        statement = statement.where(AuditEvent.owner == owner)
+    if since is not None:
+        statement = statement.where(AuditEvent.at >= since)
+    if until is not None:
+        statement = statement.where(AuditEvent.at < until)
+    yield from session.scalars(statement)

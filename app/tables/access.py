@@ -16,6 +16,7 @@ class AuditAction(StrEnum):
     KEY_CREATED = "key_created"
     KEY_REVOKED = "key_revoked"
     KEY_REFUSED = "key_refused"
+    SIGNED_IN = "signed_in"
     JOB_SUBMITTED = "job_submitted"
     JOB_CANCELLED = "job_cancelled"
     JOB_RELABELLED = "job_relabelled"

@@ -1,8 +1,8 @@
-"""Commands for the operator of a service: `status`, `prune`, `audit`."""
+"""Commands for the operator of a service: `status`, `prune`."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
-from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, Annotated, Any
+from datetime import timedelta
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from app.operation.service_status import Contents, Status
 
 _WORKERS = ("name", "version", "processes", "running", "seen")
-_EVENTS = ("at", "owner", "key_id", "action", "subject", "detail")
 
 
 def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
@@ -62,36 +61,6 @@ def prune(
         return
     summary = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in counts.items())
     typer.echo(f"{'would remove' if dry_run else 'removed'} {summary}")
-
-
-def audit(
-    owner: Annotated[str | None, typer.Option(help="Only events of this owner's keys.")] = None,
-    days: Annotated[int | None, typer.Option(min=1, help="Only events of this many last days.")] = None,
-    limit: Annotated[int, typer.Option(min=1, max=100_000, help="Most events to show.")] = 50,
-    json: AsJson = False,
-    data_dir: DataDirectory = None,
-) -> None:
-    """Show who changed what, newest first."""
-    from app.security import audit as record
-
-    since = datetime.now(UTC) - timedelta(days=days) if days else None
-    with using_database(read_settings(data_dir)) as sessions, sessions() as session:
-        events = [_event(event) for event in record.latest(session, owner, since, limit)]
-    if json:
-        write({"events": events}, None)
-    else:
-        print_table(_EVENTS, events)
-
-
-def _event(event: Any) -> dict[str, Any]:
-    named = {name: getattr(event, name) for name in ("key_id", "subject")}
-    return {
-        "at": event.at.isoformat(timespec="seconds"),
-        "owner": event.owner,
-        "action": event.action.value,
-        "detail": event.detail,
-        **{name: str(value) if value else None for name, value in named.items()},
-    }
 
 
 def _show(found: "Status") -> None:

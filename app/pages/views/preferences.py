@@ -2,6 +2,7 @@
 
 from fastapi import APIRouter, Request, Response
 
+from app.http.forwarded import is_encrypted
 from app.http.strict_routes import KnownParametersRoute
 from app.pages.forms import Fields, local_path
 from app.pages.frame import THEMES, address, moved
@@ -30,7 +31,7 @@ def keep(request: Request, answer: Response, name: str, choice: str) -> None:
         choice,
         max_age=_YEAR_SECONDS,
         path=address(request)("/"),
-        secure=request.url.scheme == "https",
+        secure=is_encrypted(request.scope),
         httponly=True,
         samesite="lax",
     )

@@ -1,7 +1,11 @@
 """Sign in with a key, and out again. The cookie is for this service only, and scripts cannot read it."""
 
+from contextlib import suppress
+
 from anyio import to_thread
 from fastapi import APIRouter, Request, Response
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.datastructures import State
 
 from app.http.forwarded import is_encrypted
 from app.http.problems import ProblemError, ProblemKind
@@ -9,7 +13,8 @@ from app.http.strict_routes import KnownParametersRoute
 from app.pages.forms import Fields, local_path
 from app.pages.frame import address, moved, page
 from app.pages.wording import words
-from app.security import keys, sessions
+from app.security import audit, keys, sessions
+from app.tables import AuditAction
 
 router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
@@ -35,11 +40,7 @@ async def sign_in(request: Request, fields: Fields) -> Response:
     if standing is not None and standing.left is None:
         raise ProblemError(ProblemKind.TOO_MANY_REQUESTS, words().sign_in.too_often, headers=standing.fields)
 
-    def is_valid() -> bool:
-        with request.app.state.readers() as session:
-            return keys.look_up(session, digest)[0] is not None
-
-    if not await to_thread.run_sync(is_valid):
+    if not await to_thread.run_sync(_begin, request.app.state, digest):
         return page(request, "sign_in.html", 401, back=back, fault=words().sign_in.wrong)
     answer = moved(request, back)
     answer.set_cookie(
@@ -60,3 +61,14 @@ async def sign_out(request: Request, fields: Fields) -> Response:
     answer = moved(request, "/pages/sign-in")
     answer.delete_cookie(sessions.COOKIE, path=address(request)("/"), httponly=True, samesite="lax")
     return answer
+
+
+def _begin(state: State, digest: str) -> bool:
+    """Tell whether a key is valid, and add to the audit record that a session begins with it."""
+    with state.readers() as session:
+        caller = keys.look_up(session, digest)[0]
+    if caller is None:
+        return False
+    with suppress(SQLAlchemyError), state.writers.begin() as session:  # pages may be read even if the database is full
+        audit.record(session, caller, AuditAction.SIGNED_IN, caller.key_id)
+    return True

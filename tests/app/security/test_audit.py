@@ -34,3 +34,21 @@ def test_the_newest_events_come_first_and_may_be_of_one_owner_or_since_a_moment(
         assert [event.id for event in audit.latest(session, "other", None, 10)] == [events[2].id]
         since = now - timedelta(minutes=90)
         assert [event.id for event in audit.latest(session, None, since, 10)] == [event.id for event in events[:2]]
+
+
+def test_the_record_is_exported_in_order_between_two_moments(sessions: sessionmaker[Session]) -> None:
+    with sessions.begin() as session:
+        now = database_time(session)
+    for hours, caller in ((3, ACME), (2, OTHER), (1, ACME)):
+        with sessions.begin() as session:
+            audit.record(session, caller, AuditAction.SIGNED_IN, detail=str(hours), at=now - timedelta(hours=hours))
+
+    def told(owner: str | None, since: int | None, until: int | None) -> list[str | None]:
+        span = [None if hours is None else now - timedelta(hours=hours) for hours in (since, until)]
+        with sessions() as session:
+            return [event.detail for event in audit.between(session, owner, *span)]
+
+    assert told(None, None, None) == ["3", "2", "1"]
+    assert told(None, 2, None) == ["2", "1"]
+    assert told(None, 3, 1) == ["3", "2"]
+    assert told("acme", None, None) == ["3", "1"]
