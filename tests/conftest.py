@@ -9,6 +9,7 @@ import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.runtime.settings import Settings
+from app.runtime.signing import make_signing_key
 from app.storage.database import make_engine, session_factory
 from app.storage.migration import migrate
 from tests import servers
@@ -46,7 +47,9 @@ def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str
 @pytest.fixture
 def settings(database_url: str, tmp_path: Path) -> Settings:
     """Give settings with short times, an empty database and the embedded broker."""
-    return Settings(data_dir=tmp_path, database_url=database_url, lease_seconds=3.0, heartbeat_seconds=0.1)
+    found = Settings(data_dir=tmp_path, database_url=database_url, lease_seconds=3.0, heartbeat_seconds=0.1)
+    make_signing_key(found)
+    return found
 
 
 @pytest.fixture
@@ -62,6 +65,7 @@ def sessions(settings: Settings) -> Iterator[sessionmaker[Session]]:
 def deployment(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Settings]:
     """Give settings of a migrated service with short times: SQLite and a folder, or PostgreSQL and Redis."""
     common = hasty_settings(tmp_path)
+    make_signing_key(common)
     if request.param == "embedded":
         migrate(common)
         yield common

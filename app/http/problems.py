@@ -19,9 +19,9 @@ from app.http.conditional import Bodiless
 from app.http.prefix import LinkedJSON
 from app.runtime.signing import SecretUnavailable
 from app.schemas.faults import MOST_FAULTS, Fault, faults_of, json_pointer
+from app.storage.database import takes_no_changes
 from app.storage.pages import Removed
 from app.storage.stored_results import CorruptResult
-from app.storage.database import takes_no_changes
 
 MEDIA_TYPE = "application/problem+json"
 

@@ -4,7 +4,6 @@ import logging
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 from uuid import UUID
 
@@ -83,8 +82,8 @@ def open_queue(settings: Settings) -> Iterator[Queue]:
     BrokerUnavailable
         If the broker cannot be reached or does not answer in time, now or while the queue is used.
     """
-    if settings.has_embedded_broker and not _folder(settings).is_dir():  # whoever asks must not make it
-        raise BrokerUnavailable(f"{_folder(settings)} is gone")
+    if settings.has_embedded_broker and not settings.data_dir.is_dir():  # whoever asks must not make it
+        raise BrokerUnavailable(f"{settings.data_dir} is gone")
     try:
         with closing(celery_application(settings)) as application, application.connection_for_write() as connection:
             yield Queue(application, connection)
@@ -156,13 +155,9 @@ def _transport_options(settings: Settings) -> dict[str, object]:
     }
 
 
-def _folder(settings: Settings) -> Path:
-    return settings.data_dir / "broker"
-
-
 def _folders(settings: Settings) -> dict[str, object]:
     """Make the folders of the embedded broker; sender and worker use the same one for both directions."""
-    folders = {name: _folder(settings) / name for name in ("messages", "control", "processed")}
+    folders = {name: settings.data_dir / "broker" / name for name in ("messages", "control", "processed")}
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)
     return {

@@ -4,14 +4,21 @@ import pytest
 from itsdangerous import URLSafeTimedSerializer
 
 from app.runtime.settings import Settings
+from app.runtime.signing import make_signing_key
 from app.security import sessions
 
 DIGEST = "5f" * 32
 
 
+def started(data_dir: Path) -> Settings:
+    found = Settings(data_dir=data_dir)
+    make_signing_key(found)
+    return found
+
+
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    return Settings(data_dir=tmp_path)
+    return started(tmp_path)
 
 
 def test_a_session_gives_back_the_digest_of_its_key(settings: Settings) -> None:
@@ -27,7 +34,7 @@ def test_what_is_no_session_gives_nothing(settings: Settings, cookies: str) -> N
 def test_a_session_of_another_service_or_an_old_one_gives_nothing(
     settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    other = Settings(data_dir=tmp_path / "other")
+    other = started(tmp_path / "other")
     assert sessions.digest_of(settings, f"{sessions.COOKIE}={sessions.issue(other, DIGEST)}") is None
     text = sessions.issue(settings, DIGEST)
     monkeypatch.setattr(sessions, "LASTS_SECONDS", -1)
