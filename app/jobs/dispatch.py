@@ -82,7 +82,7 @@ def open_queue(settings: Settings) -> Iterator[Queue]:
     BrokerUnavailable
         If the broker cannot be reached or does not answer in time, now or while the queue is used.
     """
-    if settings.has_embedded_broker and not settings.data_dir.is_dir():  # whoever asks must not make it
+    if settings.has_embedded_broker and not settings.data_dir.exists():  # whoever asks must not make it
         raise BrokerUnavailable(f"{settings.data_dir} is gone")
     try:
         with closing(celery_application(settings)) as application, application.connection_for_write() as connection:
