@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from app.cli.common import with_common_options
 from app.cli.console import print_table, write
 from app.cli.inputs import read_settings, using_database
 from app.cli.options import AsJson, DataDirectory
@@ -20,6 +21,7 @@ Moment = Annotated[datetime | None, typer.Option(help="In UTC, such as 2026-11-3
 
 
 @commands.callback(invoke_without_command=True)
+@with_common_options
 def show(
     context: typer.Context,
     owner: Owner = None,
@@ -43,6 +45,7 @@ def show(
 
 
 @commands.command()
+@with_common_options
 def export(
     since: Moment = None,
     until: Moment = None,

@@ -5,6 +5,7 @@ import httpx
 import pytest
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.routes import jobs
 from app.runtime.settings import Settings
 from tests.app import service
 from tests.documents import look, short_request
@@ -60,9 +61,9 @@ def test_the_log_names_the_route_of_what_goes_wrong(
 
 
 def test_the_answer_to_a_defect_carries_the_id(
-    own_settings: Settings, own_client: httpx.Client, caplog: pytest.LogCaptureFixture
+    own_client: httpx.Client, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    (own_settings.data_dir / "signing-secret").mkdir()  # so that reading the secret fails as nobody foresaw
+    monkeypatch.setattr(jobs, "signing_key", lambda _: int("signing-secret"))  # a defect that nobody foresaw
     caplog.set_level(logging.INFO, "app.http.request_log")
     answer = own_client.get("/v1/jobs", headers={"X-Request-ID": "d1"})
     assert (answer.status_code, answer.headers["x-request-id"]) == (500, "d1")

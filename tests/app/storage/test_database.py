@@ -150,7 +150,6 @@ def test_refusals_to_write_are_told_from_other_faults(sessions: sessionmaker[Ses
             session.execute(text(prepare))
             with pytest.raises(DBAPIError) as found:
                 session.execute(text(statement))
-            session.rollback()
             session.invalidate()  # SQLite keeps the pragma for as long as the connection
         return found.value
 
