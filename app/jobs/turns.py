@@ -8,12 +8,13 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, func, select
+from sqlalchemy import ColumnElement, bindparam, func, select
 from sqlalchemy.orm import Session
 
 from app.tables import Job, JobStatus
 
-_WAITS = Job.status == JobStatus.ACCEPTED
+# The status stands in the statement itself, or databases would not know that the index of waiting jobs has these rows.
+_WAITS = Job.status == bindparam("waits", JobStatus.ACCEPTED, unique=True, literal_execute=True)
 
 
 def in_turn(session: Session, job_id: UUID) -> UUID | None:
@@ -26,17 +27,19 @@ def in_turn(session: Session, job_id: UUID) -> UUID | None:
     if not owners:
         return None
     owner = _next(session, owners)
-    for wanted, order in _preferences(job_id):
+    own = Job.id == job_id
+    for wanted, order in _preferences(own):
         waiting = select(Job.id).where(_WAITS, Job.owner == owner, wanted).order_by(*order).limit(1)
-        found = session.scalar(waiting.with_for_update(skip_locked=True))
+        # The API may hold the message's own job for a moment, while it notes that the message was sent.
+        found = session.scalar(waiting.with_for_update(skip_locked=wanted is not own))
         if found is not None:
             return found
     return None
 
 
-def _preferences(job_id: UUID) -> Iterator[tuple[ColumnElement[bool], Sequence[Any]]]:
+def _preferences(own: ColumnElement[bool]) -> Iterator[tuple[ColumnElement[bool], Sequence[Any]]]:
     """Yield which of an owner's jobs are looked for, and their order, as the index of waiting jobs has it."""
-    yield Job.id == job_id, ()
+    yield own, ()
     yield Job.batch_id.is_(None), (Job.created_at,)
     yield Job.batch_id.is_not(None), (Job.batch_id, Job.created_at)
 

@@ -4,11 +4,13 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import BigInteger, CheckConstraint, ForeignKey, Index, Integer, String, Text
+from sqlalchemy import BigInteger, CheckConstraint, ForeignKey, Index, Integer, String, Text, text
 from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from app.runtime import correlation
 from app.tables.base import Base, FailureKind, JobEventKind, JobStatus
+
+_WAITS = text("status = 'accepted'")
 
 
 class Job(Base):
@@ -27,7 +29,9 @@ class Job(Base):
         Index(None, "owner", "created_at", "id"),
         Index(None, "status", "dispatched_at"),
         Index(None, "status", "lease_expires_at"),
-        Index(None, "status", "owner", "batch_id", "created_at"),
+        Index(
+            "ix_jobs_waiting", "status", "owner", "batch_id", "created_at", postgresql_where=_WAITS, sqlite_where=_WAITS
+        ),
         Index(None, "owner", "asset_id", "created_at"),
         Index(None, "batch_id", "created_at"),
         Index(None, "owner", "input_hash"),

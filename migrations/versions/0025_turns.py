@@ -3,6 +3,7 @@
 Revision: 0025
 """
 
+import sqlalchemy as sa
 from alembic import op
 
 revision = "0025"
@@ -10,11 +11,12 @@ down_revision = "0024"
 branch_labels = None
 depends_on = None
 
-_NAME, _COLUMNS = "ix_jobs_status_owner_batch_id_created_at", ["status", "owner", "batch_id", "created_at"]
+_NAME, _COLUMNS = "ix_jobs_waiting", ["status", "owner", "batch_id", "created_at"]
+_WAITS = sa.text("status = 'accepted'")
 
 
 def upgrade() -> None:
-    op.create_index(_NAME, "jobs", _COLUMNS)
+    op.create_index(_NAME, "jobs", _COLUMNS, postgresql_where=_WAITS, sqlite_where=_WAITS)
 
 
 def downgrade() -> None:

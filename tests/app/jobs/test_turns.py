@@ -1,7 +1,8 @@
+from typing import Any
 from uuid import UUID, uuid4
 
 import pytest
-from sqlalchemy import update
+from sqlalchemy import event, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import leases, turns
@@ -73,3 +74,26 @@ def test_an_owners_single_jobs_come_before_chunks_and_these_by_batch(
     as_chunks(sessions, chunks[2:], first)
     expected = add_job(sessions) if single else chunks[2]
     assert draw(sessions, uuid4()) == expected
+
+
+def test_turns_are_found_along_the_index_of_waiting_jobs(sessions: sessionmaker[Session]) -> None:
+    of_stranger(sessions)
+    job_id, asked = add_job(sessions), []
+
+    def note(_: Any, __: Any, statement: str, parameters: Any, *___: Any) -> None:
+        asked.append((statement, parameters))
+
+    with sessions() as session:
+        connection = session.connection()
+        event.listen(connection, "before_cursor_execute", note)
+        turns.in_turn(session, uuid4())
+        turns.in_turn(session, job_id)
+        event.remove(connection, "before_cursor_execute", note)
+        explain = "EXPLAIN QUERY PLAN"
+        if connection.dialect.name == "postgresql":
+            connection.exec_driver_sql("SET LOCAL enable_seqscan = off")  # of a table almost without rows
+            explain = "EXPLAIN"
+        plans = [str(connection.exec_driver_sql(f"{explain} {text}", values).all()) for text, values in asked]
+    waiting = [plan for plan in plans if "ix_jobs_waiting" in plan]
+    assert len(waiting) >= 4, plans
+    assert all("_jobs" in plan and "Seq Scan" not in plan for plan in plans), plans
