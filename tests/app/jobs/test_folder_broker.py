@@ -1,12 +1,15 @@
 import contextlib
 import json
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 import pytest
+from kombu.utils.json import dumps
 
+from app.jobs import folder_broker
 from app.jobs.dispatch import QUEUE_NAME, celery_application
 from app.runtime.settings import Settings
 
@@ -52,3 +55,23 @@ def test_a_full_disk_leaves_no_draft_behind(settings: Settings, tmp_path: Path) 
         channel._put(QUEUE_NAME, {"number": 2})
     (message,) = (tmp_path / "broker" / "messages").iterdir()
     assert json.loads(message.read_text()) == {"number": 2}
+
+
+def test_queues_are_bound_by_many_at_once_and_the_table_is_never_half_written(settings: Settings) -> None:
+    with contextlib.ExitStack() as stack:
+        opened = [stack.enter_context(celery_application(settings).connection_for_write()) for _ in range(9)]
+        found: list[Any] = [connection.default_channel for connection in opened]
+        reader, *channels = found
+        seen: list[int] = []
+
+        def probe(table: Any) -> str:
+            seen.append(len(reader.get_table("shared")))
+            return dumps(table)
+
+        def bind(number: int) -> None:
+            channels[number]._queue_bind("shared", "", "", f"queue {number % 4}")
+
+        with patch.object(folder_broker, "dumps", probe), ThreadPoolExecutor(len(channels)) as pool:
+            list(pool.map(bind, range(len(channels))))
+        assert seen == [0, 1, 2, 3]
+        assert {row.queue for row in reader.get_table("shared")} == {f"queue {number}" for number in range(4)}
