@@ -47,7 +47,7 @@ def cut_features(pieces: Iterable[bytes], most_bytes: int, listed: str = "featur
     Raises
     ------
     BadInput
-        If the text is no JSON object; while the features are taken, if it is none further on.
+        If the text is no JSON object, or has too many members; while the features are taken, if it is none further on.
     BodyTooLarge
         If a part is longer than the bound.
     """
@@ -78,9 +78,11 @@ def _members(text: "_Text", members: dict[str, bytes]) -> bool:
             raise _repeated(name)
         members[name] = text.value()
         size += len(members[name])
-        if size > text.most_bytes or len(members) > _MOST_MEMBERS:
-            bound = f"{text.most_bytes} bytes or more than {_MOST_MEMBERS}"
-            raise BodyTooLarge(f"The members beside {text.listed} are longer than {bound}.")
+        if size > text.most_bytes:
+            raise BodyTooLarge(f"The members beside {text.listed} are longer than {text.most_bytes} bytes.")
+        if len(members) > _MOST_MEMBERS:
+            rule = f"may have at most {_MOST_MEMBERS} members beside {text.listed}, got {name[:50]!r} beyond them"
+            raise BadInput([Fault("", "too_many", rule)])
         if text.peek() != b",":
             break
         text.at += 1
