@@ -18,6 +18,13 @@ from tests.documents import short_request
 from tests.in_process import run_job
 from tests.servers import wait_until
 
+# A shell starts what runs in the background so that it ignores Ctrl-C, and so would we if the tests run there.
+HEEDING_CTRL_C = (
+    sys.executable,
+    "-c",
+    "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])",
+)
+
 
 def written(directory: Path) -> str:
     path = directory / "line.json"
@@ -32,7 +39,9 @@ def test_ctrl_c_says_the_job_and_how_to_go_on(
     command = [sys.executable, "-m", "app.cli", "submit", written(tmp_path), "--wait", "--url", url]
     with (
         caplog.at_level(logging.DEBUG, "app.http.request_log"),
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as waiting,
+        subprocess.Popen(
+            [*HEEDING_CTRL_C, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as waiting,
     ):
         wait_until(lambda: any(getattr(record, "method", "") == "GET" for record in caplog.records), what="a poll")
         waiting.send_signal(signal.SIGINT)
