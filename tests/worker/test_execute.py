@@ -150,14 +150,14 @@ def test_long_step_does_not_lose_the_lease(
 
     def slow(*_: object) -> Iterator[Advance | PointResult]:
         for _step in range(6):
-            time.sleep(0.2)  # a step without news that is longer than the lease
+            time.sleep(0.6)  # all steps together are longer than the lease, which bears a slow heartbeat
             with sessions.begin() as session:
                 steady_clock.move_on(session, None)
                 released.append(leases.release_expired(session, short))
         yield point_result(0)
 
     monkeypatch.setattr(convert, "run", slow)
-    short = settings.model_copy(update={"lease_seconds": 0.8, "heartbeat_seconds": 0.05})
+    short = settings.model_copy(update={"lease_seconds": 3.0, "heartbeat_seconds": 0.05})
     job_id = add_job(sessions)
     run_job(short, job_id)
     assert released == [0] * 6
