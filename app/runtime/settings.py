@@ -152,7 +152,7 @@ class Settings(BaseSettings):
     def _origins(cls, value: object) -> object:
         if not isinstance(value, str):
             return value
-        origins = tuple(origin.strip() for origin in value.split(",") if origin.strip())
+        origins = _parts(value)
         for origin in origins:
             if origin != "*" and not _ORIGIN.fullmatch(origin):
                 raise ValueError(f"{origin} is no origin such as https://grid.example")
@@ -163,7 +163,7 @@ class Settings(BaseSettings):
     def _proxies(cls, value: object) -> object:
         if not isinstance(value, str):
             return value
-        proxies = tuple(proxy.strip() for proxy in value.split(",") if proxy.strip())
+        proxies = _parts(value)
         for proxy in proxies:
             try:
                 ip_network(proxy)
@@ -229,6 +229,11 @@ class Settings(BaseSettings):
         plain = {k: v.get_secret_value() if isinstance(v, SecretStr) else str(v) for k, v in values.items()}
         plain |= {name: ",".join(values[name]) for name in ("cors_origins", "trusted_proxies")}
         return {_PREFIX + name.upper(): value for name, value in plain.items()}
+
+
+def _parts(text: str) -> tuple[str, ...]:
+    """Return the parts of a text that commas separate, without spaces and empty ones."""
+    return tuple(part.strip() for part in text.split(",") if part.strip())
 
 
 def _secret_in(name: str, file: str) -> str:
