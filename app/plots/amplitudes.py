@@ -1,7 +1,7 @@
 """Draw amplitudes over wind speed: whole branches from the onset on, with the winds asked for as symbols."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import Any, Literal
 
 from matplotlib.axes import Axes
@@ -240,22 +240,7 @@ def _legend(
             label=NAMES[model],
         )
     rows = found.get("limit_cycles", ())
-    present = {row["stability"] for row in rows} | {stretch.stability for stretch in lines}
-    words = {"stable": "stable (filled)", "unstable": "unstable (hollow)", "unknown": "stability not known (grey)"}
-    for stability, label in words.items():
-        if stability in present:
-            fill = {"stable": palette.text, "unstable": palette.background}.get(stability, palette.unknown)
-            style = _STYLES[stability]
-            yield Line2D(
-                [],
-                [],
-                color=palette.text,
-                linestyle=style,
-                marker="o",
-                markersize=5.0,
-                markerfacecolor=fill,
-                label=label,
-            )
+    yield from _stabilities({row["stability"] for row in rows} | {stretch.stability for stretch in lines}, options)
     crossings = {row["crossing"] for row in found.get("critical_wind_speeds", ())}
     if "onset" in crossings:
         yield Line2D([], [], color=palette.muted, linestyle="--", linewidth=1.0, label="onset")
@@ -269,3 +254,21 @@ def _legend(
         )
     if any(row.get("kind") == "quasi_periodic" for row in rows):
         yield Patch(color=palette.text, alpha=0.3, label="quasi-periodic, smallest to largest amplitude")
+
+
+def _stabilities(present: Set[str], options: Options) -> Iterator[Line2D]:
+    palette = PALETTES[options.theme]
+    words = {"stable": "stable (filled)", "unstable": "unstable (hollow)", "unknown": "stability not known (grey)"}
+    for stability, label in words.items():
+        if stability in present:
+            fill = {"stable": palette.text, "unstable": palette.background}.get(stability, palette.unknown)
+            yield Line2D(
+                [],
+                [],
+                color=palette.text,
+                linestyle=_STYLES[stability],
+                marker="o",
+                markersize=5.0,
+                markerfacecolor=fill,
+                label=label,
+            )
