@@ -27,6 +27,14 @@ def lengths(vectors: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))
 
 
+def times_matrix(vectors: FloatArray, matrix: FloatArray) -> FloatArray:
+    """Return the products of row vectors (..., n) with a matrix (n, k): (..., k).
+
+    Taken as one product of two matrices: numpy multiplies those of a stack one by one.
+    """
+    return np.asarray((vectors.reshape(-1, matrix.shape[0]) @ matrix).reshape(*vectors.shape[:-1], matrix.shape[1]))
+
+
 def merge_axes(array: AnyArray, first: int, last: int = -1) -> AnyArray:
     """Merge the axes from first to last (both negative) into one, of empty stacks too."""
     shape = array.shape

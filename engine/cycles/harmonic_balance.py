@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray, merge_axes
+from engine.arrays import FloatArray, IntArray, merge_axes, times_matrix
 from engine.kernels import compiled
 from engine.models.reduced_model import ReducedModel, force, resultant, resultant_gradient, samples_in_period, take
 from engine.numerics.newton import NewtonOptions, Solution, newton
@@ -76,8 +76,8 @@ def states(orbits: Orbits, tau: FloatArray) -> FloatArray:
     fourier_basis = basis(harmonics)
     values = fourier(tau, harmonics)
     rate = (orbits.angular_frequency / orbits.wind_speed)[:, None, None]
-    q = orbits.coefficients @ values.T
-    velocity = rate * (orbits.coefficients @ (values @ fourier_basis.derivative).T)
+    q = times_matrix(orbits.coefficients, values.T)
+    velocity = rate * times_matrix(orbits.coefficients, (values @ fourier_basis.derivative).T)
     return np.concatenate([q, velocity], axis=1).swapaxes(-1, -2)
 
 
@@ -250,16 +250,16 @@ def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
     The extremes on a grid, the same up to twelve harmonics, however far a stack pads, are refined by a parabola.
     """
     harmonics = coefficients.shape[-1] // 2
-    values = coefficients @ basis(harmonics, max(READ_SAMPLES, 16 * harmonics + 16)).values.T
+    values = times_matrix(coefficients, basis(harmonics, max(READ_SAMPLES, 16 * harmonics + 16)).values.T)
     return np.asarray(0.5 * (peaks(values) + peaks(-values)))
 
 
 def peaks(values: FloatArray) -> FloatArray:
     """Return the largest of samples (..., samples) over one period, by a parabola through three of them: (...)."""
-    top = values.argmax(axis=-1)[..., None]
-    left, middle, right = (
-        np.take_along_axis(values, (top + shift) % values.shape[-1], axis=-1)[..., 0] for shift in (-1, 0, 1)
-    )
+    samples = values.shape[-1]
+    flat = values.reshape(-1, samples)
+    every, top = np.arange(flat.shape[0]), flat.argmax(axis=-1)
+    left, middle, right = (flat[every, (top + shift) % samples].reshape(values.shape[:-1]) for shift in (-1, 0, 1))
     bend = left - 2.0 * middle + right
     return np.asarray(
         middle - np.where(bend < 0.0, (right - left) ** 2 / (8.0 * np.where(bend < 0.0, bend, -1.0)), 0.0)

@@ -170,7 +170,7 @@ def dynamic_tension(stretching: StretchingForce, q: FloatArray) -> FloatArray:
     """
     half = polynomial.collected(0.5 * merge_axes(stretching.square, -2), q.shape[-1], 2)
     forms = np.concatenate([stretching.linear, half], axis=-1)
-    return np.asarray(polynomial.powers(q, 2) @ np.swapaxes(forms, -1, -2))
+    return np.asarray((forms @ polynomial.powers(q, 2).swapaxes(-1, -2)).swapaxes(-1, -2))  # samples side by side
 
 
 def tension_range(stretching: StretchingForce, q: FloatArray, spans: int = 1) -> FloatArray:

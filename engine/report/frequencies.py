@@ -7,7 +7,7 @@ import numpy as np
 from engine.arrays import FloatArray, IntArray
 from engine.mechanics.modes import FullModes, assign, solve_symmetric
 from engine.outcome import Outcome
-from engine.report.cells import finite_or_none, lists_by_line
+from engine.report.cells import lists_by_line, numbers
 from engine.report.findings import ModelFindings
 from engine.result import FrequencyRow
 from engine.spec import Model
@@ -49,9 +49,9 @@ def frequency_rows(table: NaturalFrequencies, loops: tuple[int, ...]) -> list[li
     """Return the rows of the requested numbers of loops, one list per line."""
     frequency = np.sqrt(np.where(table.squared_frequency > 0.0, table.squared_frequency, np.nan)) / (2.0 * np.pi)
     rows: list[list[FrequencyRow]] = lists_by_line(table.line)
-    for member, line in enumerate(table.line.tolist()):
+    for line, own, known in zip(table.line.tolist(), map(numbers, frequency), table.loops.tolist(), strict=True):
         for k in loops:
-            values = [finite_or_none(f) for f in frequency[member, table.loops[member] == k].tolist()]
+            values = [value for value, number in zip(own, known, strict=True) if number == k]
             if values:
                 outcome = Outcome.STATICALLY_UNSTABLE if None in values else Outcome.CONVERGED
                 rows[line].append(FrequencyRow(table.name, k, values[0], values[1], values[2], outcome))

@@ -4,6 +4,7 @@ The source: "an internal resonance occurs when the ratio of at least two of the 
 of two positive integers" (paper section 5.1).
 """
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 from math import gcd, sqrt
@@ -54,7 +55,7 @@ def _pairs(row: FrequencyRow) -> Iterator[InternalResonanceRow]:
 
 def nearest_ratio(ratio: float) -> tuple[int, int]:
     """Return the p and q up to `LARGEST_INTEGER` whose ratio p/q differs least from a positive number, relatively."""
-    return _RATIOS[sum(ratio > limit for limit in _LIMITS)]
+    return _RATIOS[bisect_left(_LIMITS, ratio)]
 
 
 def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArray) -> FloatArray:

@@ -1,8 +1,9 @@
 """The table of limit cycles: equilibrium, cycles and quasi-periodic motions at each wind speed. Theory section 8."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import chain, repeat
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from engine.kernels import compiled
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
 from engine.models.relative_wind import FASTEST, NodalMotion, largest_reach
 from engine.outcome import Outcome, Stability
-from engine.report.cells import finite_or_none, lists_by_line
+from engine.report.cells import filled_rows, lists_by_line, numbers
 from engine.report.findings import (
     MissingMotions,
     ModelFindings,
@@ -39,8 +40,7 @@ _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
 _REACH = ("largest_angle_of_attack_rad", "largest_velocity_ratio")
 _MIDDLES = ("vertical_middle_m", "horizontal_middle_m", "torsional_middle_rad")
 _FREQUENCIES = ("frequency_hz", "second_frequency_hz")
-_VERDICTS = (Stability.UNKNOWN, Stability.UNSTABLE, Stability.STABLE)
-_NAMES = tuple(field.name for field in fields(LimitCycleRow))
+_VERDICTS = np.array([Stability.UNKNOWN, Stability.UNSTABLE, Stability.STABLE], dtype=np.object_)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,28 +68,29 @@ def limit_cycle_rows(
         Lowest vertical frequency of each line [Hz].
     """
     table: list[list[Motion]] = lists_by_line(findings.line)
-    seen = _Seen(observer, findings, tensions, lowest * observer.span_length, analysis.aerodynamic_model)
+    local = observer.local_motion(findings, analysis.aerodynamic_model)
+    seen = _Seen(observer, findings, tensions, lowest * observer.span_length, local)
     for line, motion in chain(_equilibria(seen, analysis.loops), _cycles(seen), _quasi_periodic_motions(seen)):
         table[line].append(motion)
     for motions in table:
-        motions.sort(key=lambda m: (m.row.loops, m.row.wind_speed_m_per_s, m.row.kind != "equilibrium"))
+        motions.sort(key=attrgetter("row.loops", "row.wind_speed_m_per_s"))  # equilibria stay first
     return table
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """Findings with who observes them, their tensions, f L_x [m/s] of each line (lines,), and the aerodynamic model."""
+    """Findings with who observes them, their tensions, f L_x [m/s] of each line (lines,), and motion at the nodes."""
 
     observer: Observer
     findings: ModelFindings
     tensions: MotionTensions
     speed: FloatArray
-    model: AerodynamicModel
+    local: NodalMotion
 
     @property
     def is_expanded(self) -> bool:
         """Whether the load is expanded in velocities, and so holds for small ones only."""
-        return self.model is not AerodynamicModel.PUBLISHED and self.findings.model.unexpanded is None
+        return self.local.model is not AerodynamicModel.PUBLISHED and self.findings.model.unexpanded is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +122,7 @@ def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[tuple[int, Moti
     amplitude = np.where(static[member], np.nan, 0.0)
     labels: dict[str, Iterable[Any]] = {
         "kind": repeat("equilibrium"),
-        "stability": [_VERDICTS[finite_or_none] for finite_or_none in verdict[member, wind].tolist()],
+        "stability": _VERDICTS[verdict[member, wind]].tolist(),
         "outcome": [_UNSTABLE if missing else Outcome.CONVERGED for missing in static[member].tolist()],
     }
     yield from _rows(seen, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
@@ -154,7 +155,7 @@ def _cycles(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     state = states(cycles.orbits, 2.0 * np.pi * np.arange(REACH_SAMPLES) / REACH_SAMPLES)
     observed = observer.moving(findings, cycles.member, cycle_coordinates(findings), state)
     series = observed.shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients
-    reach = _reach(observer.local_motion(findings, seen.model), cycles.member, state)
+    reach = _reach(seen.local, cycles.member, state)
     measures = _measures(findings, series) | dict(zip(_REACH, reach, strict=True))
     slack = seen.tensions.cycles[..., 0].min(axis=-1) <= 0.0
     keys = _RowKeys(findings.line[cycles.member], cycle_loops(findings), cycles.orbits.wind_speed, observed)
@@ -201,7 +202,6 @@ def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     state = sampled_states(tori)
     observed = observer.moving(findings, member, torus_coordinates(findings), state)
     slack = seen.tensions.tori[..., 0].min(axis=-1) <= 0.0
-    motion = observer.local_motion(findings, seen.model)
     ranges, reach, middle = np.empty((2, 3, member.size)), np.empty((2, member.size)), np.empty((3, member.size))
     for i in range(member.size):
         one = tori.select(np.array([i]))
@@ -209,7 +209,7 @@ def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
         ranges[..., i] = amplitude_range(series, one, float(frequency[i, 0]))
         path = state[i, :, : model.mass.shape[-1]] @ observed.shapes[i]
         middle[:, i] = 0.5 * (path.max(axis=0) + path.min(axis=0))
-        reach[:, [i]] = _reach(motion, member[[i]], state[[i]])
+        reach[:, [i]] = _reach(seen.local, member[[i]], state[[i]])
     measures = {
         **dict(zip((*_AMPLITUDES, *_SMALLEST), ranges.reshape(6, -1), strict=True)),
         **dict(zip(_MIDDLES, middle, strict=True)),
@@ -257,24 +257,16 @@ def _rows(
     measures: columns of numbers, which include the amplitudes; labels: all others.
     """
     sag, speed = keys.observed.sag, seen.speed[keys.line]
-    lines = keys.line.tolist()
     with np.errstate(invalid="ignore"):  # the speed of a line without a vertical frequency is infinite
         reduced = np.where(np.isfinite(speed), keys.wind_speed / speed, np.nan)
-    numbers = dict(measures) | {
+    measures = dict(measures) | {
         "wind_speed_m_per_s": keys.wind_speed,
         "observed_at_m": keys.observed.position,
         "vertical_ratio": measures["vertical_m"] / sag,
         "horizontal_ratio": measures["horizontal_m"] / sag,
         "reduced_wind_speed": reduced,
     }
-    columns: dict[str, Iterable[Any]] = dict.fromkeys(_NAMES, repeat(None))
-    columns |= {name: _numbers(column) for name, column in numbers.items()} | dict(labels)
-    columns |= {"model": repeat(seen.findings.name), "loops": keys.loops.tolist()}
+    columns: dict[str, Iterable[Any]] = {name: numbers(column) for name, column in measures.items()}
+    columns |= {"model": repeat(seen.findings.name), "loops": keys.loops.tolist(), **labels}
     columns |= {"span": keys.observed.span, "span_shares": keys.observed.shares}
-    return zip(lines, map(Motion, map(LimitCycleRow, *columns.values()), series), strict=False)
-
-
-def _numbers(column: FloatArray) -> list[Any]:
-    """Return the numbers of a column, None in place of those that are not finite."""
-    values: list[Any] = column.tolist()
-    return values if np.isfinite(column).all() else [finite_or_none(value) for value in values]
+    return zip(keys.line.tolist(), map(Motion, filled_rows(LimitCycleRow, columns), series), strict=False)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from engine import ENGINE_VERSION
-from engine.arrays import BoolArray
+from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.modes import DirectionalShapes, longitudinal_share
 from engine.models.discretization import Discretization
 from engine.models.stretching import relieved_share
@@ -89,7 +89,7 @@ def line_results(
         "bifurcations": [bifurcation_rows(one) for one in findings],
         "amplitude_curves": [amplitude_curve_rows(observer, one) for one in reported],
     }
-    about_lines = _warnings_about_lines(discretization, shapes, findings, analysis)
+    about_lines = _warnings_about_lines(discretization, shapes.loops, longitudinal, findings, analysis)
     dropped = [dropped_warnings(one, len(discretization.lines)) for one in findings]
     equilibria = static_equilibrium_rows(discretization, np.unique(analysis.wind_speeds))
     results = []
@@ -145,19 +145,19 @@ def _neighbours(line: Line) -> Neighbours:
 
 def _warnings_about_lines(
     discretization: Discretization,
-    shapes: DirectionalShapes,
+    loops: tuple[int, ...],
+    longitudinal: FloatArray,
     findings: tuple[ModelFindings, ...],
     analysis: Analysis,
 ) -> list[list[str]]:
-    """Return the warnings about each line, whatever its motions."""
-    longitudinal = longitudinal_share(discretization.matrices, shapes)
+    """Return the warnings about each line, whatever its motions; longitudinal: as `longitudinal_share` returns it."""
     relieved = relieved_share(*discretization.parts[:3])
     neglected = neglected_twist_warnings(discretization, _statically_unstable(findings, len(discretization.lines)))
     return [
         line_warnings(line)
         + physics_warnings(line, analysis)
         + twist_warnings(discretization, i)
-        + longitudinal_warnings(shapes.loops, longitudinal[i], analysis)
+        + longitudinal_warnings(loops, longitudinal[i], analysis)
         + relief_warnings(analysis, float(relieved[i]))
         + neglected[i]
         + wind_twist_warnings(discretization, i)

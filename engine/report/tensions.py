@@ -1,17 +1,17 @@
 """The table of dynamic tensions: extremes over the sub-conductors and over time. Theory sections 12.1 and 12.2."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, repeat
 from typing import Any
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import FloatArray, IntArray, times_matrix
 from engine.cycles.harmonic_balance import fourier, peaks
 from engine.models.stretching import dynamic_tension, take_members, tension_range
 from engine.outcome import Outcome
-from engine.report.cells import lists_by_line
+from engine.report.cells import lists_by_line, numbers
 from engine.report.findings import ModelFindings, cycle_loops, torus_loops
 from engine.report.observers.observer import Observer
 from engine.result import TensionRow
@@ -19,7 +19,7 @@ from engine.tori.spectrum import sampled_states
 
 SAMPLES = 64  # over one period; a parabola through the extremes leaves an error of 1e-4 of the range
 BLOCK = 64  # motions sampled together, so that all their samples stay in the processor's cache
-_NONE = None, None, None, None, None
+_OUTCOMES = np.array([Outcome.CONVERGED, Outcome.SLACK], dtype=np.object_)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,26 +58,30 @@ def tension_rows(observer: Observer, findings: ModelFindings, tensions: MotionTe
 def _rows(
     observer: Observer, findings: ModelFindings, member: IntArray, keys: tuple[Any, ...], own: FloatArray
 ) -> Iterator[tuple[int, TensionRow]]:
-    """Yield a row for each motion and span, with the line of each.
+    """Return a row for each motion and span, with the line of each.
 
     keys: loops, wind speed and branch of each motion, their kind, and the stability of each; own: (motions, spans, 2),
     the ranges of H + N_i.
     """
-    line = findings.line[member]
+    motions, spans, _ = own.shape
+    line = np.repeat(findings.line[member], spans)
     loops, wind, branch, kind, stability = keys
-    at_support = own * observer.steepness[line][..., None]
-    strength = [one.conductor.rated_strength for one in observer.lines]
-    columns = (line.tolist(), loops.tolist(), wind.tolist(), branch.tolist(), stability.tolist())
-    ranges = (own.tolist(), at_support.tolist())
-    for i, number, speed, family, verdict, horizontal, at_end in zip(*columns, *ranges, strict=True):
-        for span, (here, there) in enumerate(zip(horizontal, at_end, strict=True), start=1):
-            slack = here[0] <= 0.0
-            share = None if strength[i] is None else there[1] / strength[i]
-            forces = _NONE if slack else (*here, *there, share)
-            outcome = Outcome.SLACK if slack else Outcome.CONVERGED
-            which = span if len(horizontal) > 1 else None
-            cells: tuple[Any, ...] = (findings.name, number, speed, family, kind, verdict, *forces, outcome, which)
-            yield i, TensionRow(*cells)
+    horizontal = own.reshape(-1, 2)
+    at_support = horizontal * observer.steepness[findings.line[member]].reshape(-1, 1)
+    strengths = [one.conductor.rated_strength or np.nan for one in observer.lines]
+    share = at_support[:, 1] / np.array(strengths)[line]
+    slack = horizontal[:, 0] <= 0.0
+    forces = np.where(slack, np.nan, [*horizontal.T, *at_support.T, share])
+    columns: tuple[Iterable[Any], ...] = (
+        repeat(findings.name),
+        *(np.repeat(column, spans).tolist() for column in (loops, wind, branch)),
+        repeat(kind),
+        np.repeat(stability, spans).tolist(),
+        *map(numbers, forces),
+        _OUTCOMES[slack.astype(np.intp)].tolist(),
+        list(range(1, spans + 1)) * motions if spans > 1 else repeat(None),
+    )
+    return zip(line.tolist(), map(TensionRow, *columns), strict=True)
 
 
 def _cycle_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:
@@ -90,7 +94,7 @@ def _cycle_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:
     values = fourier(2.0 * np.pi * np.arange(SAMPLES) / SAMPLES, cycles.orbits.coefficients.shape[-1] // 2)
     for first in range(0, cycles.member.size, BLOCK):
         here = slice(first, first + BLOCK)
-        q = (cycles.orbits.coefficients[here] @ values.T).swapaxes(-1, -2)
+        q = times_matrix(cycles.orbits.coefficients[here], values.T).swapaxes(-1, -2)
         tension = dynamic_tension(take_members(stretching, cycles.member[here]), q).swapaxes(-1, -2)
         by_span = tension.reshape(tension.shape[0], static.shape[1], -1, SAMPLES)
         ranges[here] = np.stack([-peaks(-by_span).max(axis=-1), peaks(by_span).max(axis=-1)], axis=-1)

@@ -85,10 +85,9 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
 
 def _evidence(result: Result, line: Line, analysis: Analysis) -> _Evidence:
     rows, design = result.limit_cycles, line.design_wind
-    known = {row.wind_speed_m_per_s for row in rows} - {
-        row.wind_speed_m_per_s for row in rows if row.vertical_m is None
-    }
-    moving = [row for row in rows if row.stability is Stability.STABLE and row.kind != "equilibrium"]
+    unknown = tuple(row for row in rows if row.vertical_m is None)
+    known = {row.wind_speed_m_per_s for row in rows} - {row.wind_speed_m_per_s for row in unknown}
+    moving = [row for row in rows if row.kind != "equilibrium" and row.stability is Stability.STABLE]
     onsets = [
         row.wind_speed_m_per_s
         for row in result.critical_wind_speeds
@@ -96,7 +95,7 @@ def _evidence(result: Result, line: Line, analysis: Analysis) -> _Evidence:
     ]
     return _Evidence(
         moving=tuple(sorted(moving, key=lambda row: row.vertical_m or 0.0, reverse=True)),
-        unknown=tuple(row for row in rows if row.vertical_m is None),
+        unknown=unknown,
         onset=min(onsets, default=None),
         highest=max(analysis.wind_speeds, default=None),
         design=design if design in known else None,

@@ -158,10 +158,11 @@ def _lacks_rest(aerodynamics: Aerodynamics | None) -> bool:
 def _inertia_share(line: Line, piece: Ice | IceSegment) -> float:
     """Return the section's polar inertia about its mass centre over that about the reference curve."""
     e_y, e_z, mass = ice_properties(line, piece)
-    centres = np.add(line.bundle.positions, (e_y, e_z))
-    own = line.conductor.polar_inertia - mass * (e_y**2 + e_z**2)
-    about_mass_centre = own + mass * centres.var(axis=0).sum()
-    return float(about_mass_centre / (own + mass * (centres**2).sum(axis=-1).mean()))
+    positions = line.bundle.positions
+    y, z = (sum(coordinates) / len(positions) for coordinates in zip(*positions, strict=True))
+    spread = sum((own_y - y) ** 2 + (own_z - z) ** 2 for own_y, own_z in positions) / len(positions)
+    about_mass_centre = line.conductor.polar_inertia - mass * (e_y**2 + e_z**2) + mass * spread
+    return float(about_mass_centre / (about_mass_centre + mass * ((y + e_y) ** 2 + (z + e_z) ** 2)))
 
 
 def twist_warnings(discretization: Discretization, line: int) -> list[str]:
@@ -211,7 +212,8 @@ def _neglected_twist(angle: float, unstable: bool) -> list[str]:
 
 def fit_warnings(cycles: Sequence[LimitCycleRow], analysis: Analysis) -> list[str]:
     """Return a sentence if cycles leave the fitted range of the coefficients, and one if the range of the expansion."""
-    outside = [cycle for cycle in cycles if cycle.outcome is Outcome.OUTSIDE_FIT]
+    beyond = Outcome.OUTSIDE_FIT  # looked up once: that takes longer than the comparison
+    outside = [cycle for cycle in cycles if cycle.outcome is beyond]
     expanded = analysis.aerodynamic_model is not AerodynamicModel.PUBLISHED and not analysis.load_stands
     fast = sum(expanded and (cycle.largest_velocity_ratio or 0.0) > FASTEST for cycle in outside)
     result = []
@@ -228,9 +230,11 @@ def fit_warnings(cycles: Sequence[LimitCycleRow], analysis: Analysis) -> list[st
 
 def motion_warnings(motions: Sequence[LimitCycleRow]) -> list[str]:
     """Return a sentence for each way in which motions go beyond what the input carries, and for missing ones."""
-    # An unstable cycle without data to carry it is no motion that anyone would see, so its row says enough.
-    reported = (m.outcome for m in motions if (m.outcome, m.stability) != (Outcome.BEYOND_DATA, Stability.UNSTABLE))
-    counts = Counter(reported)
+    counts = Counter(motion.outcome for motion in motions)
+    if counts[Outcome.BEYOND_DATA]:
+        # An unstable cycle without data to carry it is no motion that anyone would see, so its row says enough.
+        unseen = (Outcome.BEYOND_DATA, Stability.UNSTABLE)
+        counts[Outcome.BEYOND_DATA] -= sum((motion.outcome, motion.stability) == unseen for motion in motions)
     return [text.format(counts[outcome]) for outcome, text in MOTION_WARNINGS.items() if counts[outcome]]
 
 

@@ -14,9 +14,9 @@ def model_comparisons(cycles: Sequence[LimitCycleRow]) -> tuple[ModelComparisonR
     Of several cycles with as many loops at the same wind speed, stable or not, the one with the nearest amplitudes is
     used.
     """
-    moving = [row for row in cycles if row.kind == "periodic" and row.vertical_m is not None]
-    if not any(row.model is Model.FINITE_ELEMENT for row in cycles):
+    if Model.FINITE_ELEMENT not in {row.model for row in cycles}:
         return ()
+    moving = [row for row in cycles if row.kind == "periodic" and row.vertical_m is not None]
     others = [row for row in moving if row.model is Model.FINITE_ELEMENT]
     alone = [row for row in moving if row.model is Model.HYBRID and row.stability is Stability.STABLE]
     return tuple(_compared(row, others) for row in alone)
