@@ -12,7 +12,7 @@ from starlette.types import ASGIApp
 from app.batches.intake import Places
 from app.coalescing.grouped_calls import GroupedCalls, committed_together
 from app.coalescing.shared_watch import SharedWatch
-from app.http import cors, problems
+from app.http import beside_loop, cors, problems
 from app.http.compression import Compression
 from app.http.forwarded import believing
 from app.http.head_as_get import HeadAsGet
@@ -167,6 +167,7 @@ def _add_addresses(app: Service) -> None:
 def _equip(app: Service, settings: Settings, database: Engine) -> None:
     """Attach what routes share: database sessions, grouped calls, the message sender and the watches behind streams."""
     make_signing_key(settings)
+    beside_loop.install(app)
     app.state.settings = settings
     app.state.requests = metrics.requests()
     app.state.readers = session_factory(database, read_only=True)

@@ -4,16 +4,16 @@ from collections import Counter
 from collections.abc import Callable, Collection, Coroutine, Iterator
 from typing import Any, get_args, get_origin
 
-from anyio import to_thread
+import orjson
 from fastapi import Request, Response
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 from pydantic import BaseModel
 
+from app.http.beside_loop import QUICK_BYTES, beside_loop, mark_large
 from app.http.problems import ProblemError, ProblemKind, invalid_document, validation_problem
 from app.schemas.faults import BadInput, Fault, json_pointer, parse_json
 
-_QUICK_BYTES = 32_768  # read and checked sooner than a thread is switched to; a line has some 1,000
 _READING = frozenset({"GET", "HEAD"})
 
 
@@ -83,50 +83,59 @@ class StrictJsonRoute(KnownParametersRoute):
         async def strict(request: Request) -> Response:
             if takes_body:
                 _require_json(request)
-            return await handler(_StrictRequest(request, self.prepared, self._check))
+            return await handler(_StrictRequest(request, self))
 
         return strict
 
-    def _check(self, document: Any) -> None:
-        """Raise the problem of a document that the schema refuses."""
+    def checked(self, document: Any) -> Any:
+        """Return a document as the schema reads it, or raise the problem of one that it refuses."""
         assert self.body_field is not None, "only routes with a body check one"
-        _, errors = self.body_field.validate(document, {}, loc=("body",))
+        found, errors = self.body_field.validate(document, {}, loc=("body",))
         if errors:
             raise validation_problem(errors, document)
+        return found
 
-    async def prepared(self, request: Request, document: Any) -> Any:
-        """Return the document that the schema is to read; a kind of route may change what was posted.
+    def preparation(self, request: Request, document: Any) -> Callable[[], Any] | None:
+        """Return the function that makes of a posted document the one for the schema; None where that is the same.
+
+        The function is called in a thread.
 
         Raises
         ------
         BadInput
-            If the document cannot be prepared.
+            If the document cannot be prepared; the function may raise it, too.
         """
-        del request
-        return document
+        del request, document
+        return None
 
 
 class _StrictRequest(Request):
-    def __init__(
-        self,
-        request: Request,
-        prepare: Callable[[Request, Any], Coroutine[Any, Any, Any]],
-        check: Callable[[Any], None],
-    ) -> None:
+    def __init__(self, request: Request, route: StrictJsonRoute) -> None:
         super().__init__(request.scope, request.receive)
-        self._prepare, self._check = prepare, check
+        self._route = route
 
     async def json(self) -> Any:
+        """Return the document for the schema; a large one as the schema has read it, which then leaves it as it is."""
         body = await self.body()
         try:
-            if len(body) <= _QUICK_BYTES:
-                return await self._prepare(self, parse_json(body))
-            # FastAPI checks it again on the event loop, which is quick where there is nothing to complain of.
-            document = await self._prepare(self, await to_thread.run_sync(parse_json, body))
-            await to_thread.run_sync(self._check, document)
+            if len(body) > QUICK_BYTES:
+                mark_large(self)
+                return await beside_loop(self, lambda: self._read(body))
+            document = parse_json(body)
+            prepare = self._route.preparation(self, document)
+            return document if prepare is None else await beside_loop(self, lambda: self._checked(prepare()))
         except BadInput as error:
             raise invalid_document(error.faults) from error
-        return document
+
+    def _read(self, body: bytes) -> Any:
+        document = parse_json(body)
+        prepare = self._route.preparation(self, document)
+        return self._checked(document if prepare is None else prepare())
+
+    def _checked(self, document: Any) -> Any:
+        if len(orjson.dumps(document, option=orjson.OPT_PASSTHROUGH_SUBCLASS)) > QUICK_BYTES:
+            mark_large(self)
+        return self._route.checked(document)
 
 
 def _require_json(request: Request) -> None:

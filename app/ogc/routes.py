@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 from app import convert, schemas
 from app.export import formats
 from app.http import paging
+from app.http.beside_loop import beside_loop, mark_large
 from app.http.prefix import LinkedJSON
 from app.http.problems import invalid_document, query_fault
 from app.http.strict_routes import StrictJsonRoute
@@ -22,7 +23,7 @@ from app.ogc.links import BASE, PROCESS, link
 from app.ogc.requests import Execution, JobsQuery
 from app.owned import records
 from app.routes.dependencies import CallerOf, Readers, SettingsOf, Writers, vet_webhook
-from app.routes.job_intake import check_request, stored_job
+from app.routes.job_intake import checked, stored_job
 from app.routes.streaming import streamed
 from app.routes.waiting import wait_for_end
 from app.runtime.signing import signing_key
@@ -72,13 +73,14 @@ async def execute(request: Request, process_id: str, execution: Annotated[Execut
     """
     _require_process(process_id)
     caller, shared = request.state.caller, request.app.state
-    document = await to_thread.run_sync(_request_of, request, execution)
-    await check_request(request, document)
+    document = await beside_loop(request, lambda: _request_of(request, execution))
+    mark_large(request)  # its rows of the owner may be
+    kept = await checked(request, document, document.kept)
     told = {} if execution.subscriber is None else execution.subscriber.subscriptions()
     for pointer, wanted in told.items():
         await vet_webhook(shared.settings, wanted.url, pointer)
     line = document.line
-    submission = Submission(caller, document.kept(), line.name, line.asset_id, line.tags)
+    submission = Submission(caller, kept, line.name, line.asset_id, line.tags)
     job = await stored_job(request, Order(submission, tuple(told.values())))
     preferred = "respond-async" in ", ".join(request.headers.getlist("prefer")).lower()
     seconds, most = convert.estimate(document).seconds, shared.settings.longest_wait_seconds

@@ -11,6 +11,8 @@ from app.schemas.faults import MOST_FAULTS, BadInput, Fault, json_pointer
 from app.schemas.units import WrongUnit, in_unit
 
 MOST_ROWS = 1000
+MOST_READ = MOST_ROWS + 2
+"""Rows of a sheet that are read: one more than conductors and a row of units, which tells that there are too many."""
 _SOURCE = "own row"
 _STRANDING = re.compile(r"(\d{1,3})\s*/\s*(\d{1,3})")
 _DECLARED = re.compile(r"(.*?)\s*[\[(]\s*([^\])]*)\s*[\])]")
@@ -78,7 +80,8 @@ def read_conductors(sheet: Sheet) -> list[CatalogueRow]:
     """
     columns, rows = _columns(sheet.header, sheet.rows)
     if not 1 <= len(rows) <= MOST_ROWS:
-        raise BadInput([Fault("", "csv_rows", f"the sheet must have 1 to {MOST_ROWS} conductors, got {len(rows)}")])
+        found = len(rows) if len(rows) <= MOST_ROWS else "more"
+        raise BadInput([Fault("", "csv_rows", f"the sheet must have 1 to {MOST_ROWS} conductors, got {found}")])
     faults: list[Fault] = []
     made = [_conductor(row, columns, faults) for row in rows]
     faults += _repeated(rows, columns)

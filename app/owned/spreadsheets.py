@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 from app.schemas.faults import MOST_FAULTS, BadInput, Fault, json_pointer
 from app.sheets.delimited import SheetRow, read_delimited
@@ -27,8 +28,8 @@ class Sheet:
     notes: tuple[str, ...]
 
 
-def read_sheet(raw: bytes) -> Sheet:
-    """Return the rows of a text.
+def read_sheet(raw: bytes, most_rows: int | None = None) -> Sheet:
+    """Return the rows of a text, so many at most.
 
     Raises
     ------
@@ -36,7 +37,7 @@ def read_sheet(raw: bytes) -> Sheet:
         If it is no text, has no names of columns, or a row cannot be read.
     """
     table = read_delimited([raw], _lines)
-    header, found = tuple(name.strip() for name in table.header), list(table.rows)
+    header, found = tuple(name.strip() for name in table.header), list(islice(table.rows, most_rows))
     if not any(header):
         raise BadInput([Fault("", "csv_empty", "the text has no rows")])
     faults = [Fault(json_pointer(["rows", row.number]), "csv_row", row.fault) for row in found if row.fault]

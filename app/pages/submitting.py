@@ -1,13 +1,13 @@
 """Submit what a form says, by the same way as `POST /v1/jobs`."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from anyio import to_thread
 from fastapi import Request
 from pydantic import ValidationError
 
 from app import convert, schemas
+from app.http.beside_loop import beside_loop
 from app.jobs.job_records import Submission
 from app.jobs.submissions import Order
 from app.owned import records
@@ -16,17 +16,22 @@ from app.schemas.faults import BadInput, faults_of
 from app.tables import Job, JobStatus
 
 
-async def submit(request: Request, document: Mapping[str, Any], *, may_reuse: bool = True) -> Job:
+async def submit(request: Request, say: Callable[[], Mapping[str, Any]], *, may_reuse: bool = True) -> Job:
     """Check a request document, store its job and tell the workers.
+
+    say: returns the document; it is called in a thread, since it may read the database or a large form.
 
     Raises
     ------
     BadInput
         With every fault of the document.
     """
-    sound = await to_thread.run_sync(lambda: checked(request, document))
-    line, shared = sound.line, request.app.state
-    submission = Submission(caller_of(request), sound.kept(), line.name, line.asset_id, line.tags)
+
+    def checked_submission() -> Submission:
+        sound = checked(request, say())
+        return Submission(caller_of(request), sound.kept(), sound.line.name, sound.line.asset_id, sound.line.tags)
+
+    submission, shared = await beside_loop(request, checked_submission), request.app.state
     job: Job = await shared.inbox.call(Order(submission, may_reuse=may_reuse))
     if job.status is JobStatus.ACCEPTED:
         shared.messages.submit(job.id)

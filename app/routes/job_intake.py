@@ -1,12 +1,15 @@
 """Check requests that become jobs, store them, and answer with their status."""
 
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from functools import partial
+from typing import TypeVar
 
 from anyio import to_thread
 from fastapi import Request, Response
 
 from app import convert, schemas
+from app.http.beside_loop import beside_loop_if_large, mark_large
 from app.http.prefix import LinkedJSON
 from app.http.problems import invalid_document
 from app.jobs import idempotency, job_records
@@ -20,6 +23,8 @@ from app.routes.job_status import job_address, job_document
 from app.security.caller import Caller
 from app.tables import Job, JobStatus
 
+Made = TypeVar("Made")
+
 JOBS = f"{PREFIX}/jobs"
 
 
@@ -31,8 +36,8 @@ async def accepted_job(request: Request, document: schemas.JobRequest, key: Key 
     ProblemError
         422 with every fault of the document.
     """
-    await check_request(request, document)
-    return await accepted_order(request, _order(request.state.caller, document, key, may_reuse=may_reuse))
+    order = partial(_order, request.state.caller, document, key, may_reuse=may_reuse)
+    return await accepted_order(request, await checked(request, document, order))
 
 
 async def accepted_order(request: Request, order: Order) -> Response:
@@ -96,23 +101,28 @@ async def estimate(request: Request, document: schemas.JobRequest) -> Response:
     ProblemError
         422 with every fault of the document.
     """
-    await check_request(request, document)
-    return LinkedJSON({"valid": True, **asdict(convert.estimate(document))})
+    cost = await checked(request, document, partial(convert.estimate, document))
+    return LinkedJSON({"valid": True, **asdict(cost)})
 
 
-async def check_request(request: Request, document: schemas.JobRequest) -> None:
-    """Check a request beyond its schema.
+async def checked(request: Request, document: schemas.JobRequest, make: Callable[[], Made]) -> Made:
+    """Check a request beyond its schema, and return what is made of it if it has no faults.
 
     Raises
     ------
     ProblemError
         422 with every fault of the document.
     """
+
+    def made() -> Made:
+        if faults := convert.request_faults(document):
+            raise invalid_document(faults)
+        return make()
+
     # Checking all points of a study, or remedies, takes time; a single line takes less than a switch to a thread.
-    check = partial(convert.request_faults, document)
-    quick = document.study is None and document.remedies is None
-    faults = check() if quick else await to_thread.run_sync(check)
-    if faults:
-        raise invalid_document(faults)
+    if document.study is not None or document.remedies is not None:
+        mark_large(request)
+    found = await beside_loop_if_large(request, made)
     if document.webhook_url is not None:
         await vet_webhook(request.app.state.settings, document.webhook_url)
+    return found

@@ -4,17 +4,17 @@ import hashlib
 from typing import Annotated, Any
 from uuid import UUID
 
-from anyio import to_thread
 from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
 from app.answers.owned import OwnConductorList, StoredConductors
+from app.http.beside_loop import beside_loop
 from app.http.problems import ProblemError, ProblemKind, invalid_document
 from app.http.strict_routes import KnownParametersRoute
 from app.jobs import idempotency
 from app.owned import records
-from app.owned.conductor_sheets import read_conductors
+from app.owned.conductor_sheets import MOST_READ, read_conductors
 from app.owned.records import TooMany
 from app.owned.spreadsheets import read_sheet
 from app.reference.conductor_doubts import doubts
@@ -51,7 +51,7 @@ async def _sheet(request: Request) -> bytes:
     openapi_extra=own_documentation.SHEET_BODY,
 )
 async def store_conductors(
-    raw: Annotated[bytes, Depends(_sheet)], caller: CallerOf, key: KeyOf, writers: Writers
+    request: Request, raw: Annotated[bytes, Depends(_sheet)], caller: CallerOf, key: KeyOf, writers: Writers
 ) -> Response:
     """Store the conductors of a CSV, in place of the owner's rows with the same names; with a fault, store none.
 
@@ -60,7 +60,7 @@ async def store_conductors(
     """
 
     def make(session: Session) -> PostOutcome:
-        sheet = read_sheet(raw)
+        sheet = read_sheet(raw, MOST_READ)
         rows = records.put_conductors(session, caller.owner, read_conductors(sheet))
         return PostOutcome(JSONResponse({"conductors": [*map(_listed, rows)], "notes": list(sheet.notes)}))
 
@@ -68,7 +68,7 @@ async def store_conductors(
         return idempotency.fingerprint(router.prefix, hashlib.sha256(raw).hexdigest())
 
     try:
-        made = await to_thread.run_sync(run_once, writers, key, fingerprint, make)
+        made = await beside_loop(request, lambda: run_once(writers, key, fingerprint, make))
     except BadInput as error:
         raise invalid_document(error.faults) from error
     except TooMany as error:

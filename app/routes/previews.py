@@ -9,6 +9,7 @@ from app import convert, interactive, schemas
 from app.answers.results import ResultDocument
 from app.convert import PointResult
 from app.export import formats
+from app.http.beside_loop import beside_loop_if_large
 from app.http.problems import ProblemError, ProblemKind, invalid_document
 from app.routes import documentation
 from app.routes.dependencies import PREFIX, CallerOf
@@ -59,9 +60,7 @@ async def preview(request: Request, caller: Caller, document: schemas.JobRequest
     ProblemError
         422 if only a job takes it, the engine refuses it or it takes too long; 429 if too many previews wait.
     """
-    if faults := [*_only_for_jobs(document), *convert.request_faults(document)]:
-        raise invalid_document(faults)
-    kept = _without_samples(document.kept())
+    kept = await beside_loop_if_large(request, lambda: _sound(document))
     previews: interactive.Previews = request.app.state.previews
     try:
         point = await previews.compute(caller.owner, kept)
@@ -73,6 +72,13 @@ async def preview(request: Request, caller: Caller, document: schemas.JobRequest
     except (ArithmeticError, ValueError) as error:
         raise invalid_document([Fault("/line", "invalid", str(error))]) from error
     return kept, point
+
+
+def _sound(document: schemas.JobRequest) -> dict[str, Any]:
+    """Return a request as it is computed; raise the problem of one that is not sound or that only a job takes."""
+    if faults := [*_only_for_jobs(document), *convert.request_faults(document)]:
+        raise invalid_document(faults)
+    return _without_samples(document.kept())
 
 
 def _only_for_jobs(document: schemas.JobRequest) -> list[Fault]:

@@ -17,6 +17,8 @@ MOST_VALUES = 200_000
 """Values of a JSON text, told by the marks between them; a measured table of 10,000 rows has 50,000."""
 MOST_NAMES = 50_000
 """Names in a JSON text, told by the colons behind them."""
+MOST_ESCAPES = 500_000
+"""Backslashes in a JSON text; a document has one now and then."""
 _MOST_MEMBERS = 1000  # names of one object; the largest of a document has some 50
 _MOST_SUGGESTED = 50  # each looks through all names of fields
 _MOST_CHARACTERS = 200
@@ -62,8 +64,8 @@ def parse_json(raw: bytes) -> Any:
     Raises
     ------
     BadInput
-        If the text is not JSON, neither UTF-8 nor UTF-16, nested too deeply, has more than `MOST_VALUES` values or
-        `MOST_NAMES` names, or an object repeats a name.
+        If the text is not JSON, neither UTF-8 nor UTF-16, nested too deeply, has more than `MOST_VALUES` values,
+        `MOST_NAMES` names or `MOST_ESCAPES` escapes, or an object repeats a name.
     """
     try:
         raw = _in_utf8(raw)
@@ -81,7 +83,12 @@ def parse_json(raw: bytes) -> Any:
 
 def _check_size(raw: bytes) -> None:
     """Refuse a text whose values alone would cost; counting its bytes costs a thousandth of reading them."""
-    for most, what, marks in ((MOST_VALUES, "values", (b",", b"[", b"{")), (MOST_NAMES, "names", (b":",))):
+    bounds: tuple[tuple[int, str, tuple[bytes, ...]], ...] = (
+        (MOST_VALUES, "values", (b",", b"[", b"{")),
+        (MOST_NAMES, "names", (b":",)),
+        (MOST_ESCAPES, "escapes", (b"\\",)),
+    )
+    for most, what, marks in bounds:
         found = sum(map(raw.count, marks))
         if found > most:
             raise BadInput([Fault("", "too_many", f"has some {found} {what}; a document may have at most {most}")])

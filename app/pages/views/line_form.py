@@ -9,6 +9,7 @@ from anyio import to_thread
 from fastapi import APIRouter, Query, Request, Response
 
 from app.convert.known import OwnRows
+from app.http.beside_loop import beside_loop, beside_loop_if_large
 from app.http.strict_routes import KnownParametersRoute
 from app.owned import records
 from app.pages import examples
@@ -61,11 +62,12 @@ def new_line(
 @router.post("/new")
 async def submit_line(request: Request, fields: Fields) -> Response:
     """Submit what the form says; show it again, as it was typed, with its faults if it has any."""
-    texts, units = numbered(fields), _units(fields)
+    texts, units = await beside_loop_if_large(request, lambda: numbered(fields)), _units(fields)
     try:
-        job = await submit(request, to_document(texts, units))
+        job = await submit(request, lambda: to_document(texts, units))
     except BadInput as error:
-        return _form(request, texts, units, error.faults)
+        faults = error.faults
+        return await beside_loop(request, lambda: _form(request, texts, units, faults))
     return moved(request, f"/pages/jobs/{job.id}")
 
 

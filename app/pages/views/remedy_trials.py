@@ -1,5 +1,6 @@
 """Compare remedies on the line of a job: a button of its result makes another job of it."""
 
+from typing import Any
 from uuid import UUID
 
 from fastapi import APIRouter, Request, Response
@@ -30,14 +31,17 @@ async def try_remedies(request: Request, job_id: UUID, caller: CallerOf, readers
         404 if there is no such job or it computes lines of a batch; 422 if the line cannot have remedies.
     """
     del fields
-    with readers() as session:
-        job = find_job(session, caller, job_id)
+
+    def trial() -> dict[str, Any]:
+        with readers() as session:
+            job = find_job(session, caller, job_id)
         if job.batch_id is not None:
             raise ProblemError(ProblemKind.NOT_FOUND, words().what_if.of_batch)
         document = {name: value for name, value in said(job.document).items() if name not in _INSTEAD}
-    analysis = {**(document.get("analysis") or {}), "models": ["hybrid"]}
+        return {**document, "analysis": {**(document.get("analysis") or {}), "models": ["hybrid"]}, "remedies": {}}
+
     try:
-        made = await submit(request, {**document, "analysis": analysis, "remedies": {}})
+        made = await submit(request, trial)
     except BadInput as error:
         raise invalid_document(error.faults) from error
     return moved(request, f"/pages/jobs/{made.id}")

@@ -112,8 +112,11 @@ def cancel(request: Request, job_id: UUID, caller: CallerOf, writers: Writers, f
 async def again(request: Request, job_id: UUID, caller: CallerOf, readers: Readers, fields: Fields) -> Response:
     """Submit the document of a job once more, to be computed anew."""
     del fields
-    with readers() as session:
-        document: dict[str, Any] = dict(find_job(session, caller, job_id).document)
+
+    def document() -> dict[str, Any]:
+        with readers() as session:
+            return dict(find_job(session, caller, job_id).document)
+
     job = await submit(request, document, may_reuse=False)
     return moved(request, f"/pages/jobs/{job.id}")
 

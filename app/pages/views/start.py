@@ -58,7 +58,7 @@ async def run_example(request: Request, name: str, fields: Fields) -> Response:
     """
     if name not in examples.NAMES:
         raise ProblemError(ProblemKind.NOT_FOUND, f"There is no example {name[:40]!r}.")
-    job = await submit(request, {"line": examples.line(name), "analysis": examples.ANALYSIS})
+    job = await submit(request, lambda: {"line": examples.line(name), "analysis": examples.ANALYSIS})
     return moved(request, f"/pages/jobs/{job.id}")
 
 

@@ -11,6 +11,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.http.beside_loop import beside_loop
 from app.http.problems import ProblemError, ProblemKind, invalid_document
 from app.http.strict_routes import KnownParametersRoute
 from app.pages.charts.curves import curves
@@ -68,9 +69,10 @@ async def curves_of_moved_line(
     base = await to_thread.run_sync(lambda: _base(readers, caller, (job_id, point), units))
     if ties_phases(base.explicit):
         raise ProblemError(ProblemKind.TAKES_TOO_LONG, words().what_if.tied)
-    document = to_look(base.request, base.explicit, base.sliders, fields)
     try:
-        sound = await to_thread.run_sync(lambda: checked(request, document))
+        sound = await beside_loop(
+            request, lambda: checked(request, to_look(base.request, base.explicit, base.sliders, fields))
+        )
     except BadInput as error:
         raise invalid_document(error.faults) from error
     kept, result = await preview(request, caller, sound)
@@ -78,7 +80,7 @@ async def curves_of_moved_line(
         raise invalid_document([Fault("/line", "failed", result.failure)])
     here = {"static": result.static, "warnings": result.warnings, "point": 0, "axes": {}}
     found = Findings(0, [here], kept["line"], kept["analysis"], result.tables)
-    return JSONResponse(_drawn(found, units))
+    return JSONResponse(await to_thread.run_sync(_drawn, found, units))
 
 
 @router.post("")
@@ -88,9 +90,9 @@ async def submit_moved_line(
     """Submit the line with its sliders where the form says, with the analysis of the job."""
     base = await to_thread.run_sync(lambda: _base(readers, caller, (job_id, point), units_of(request)))
     try:
-        job = await submit(request, as_job(base.request, base.explicit, base.sliders, fields))
+        job = await submit(request, lambda: as_job(base.request, base.explicit, base.sliders, fields))
     except BadInput as error:
-        return _shown(request, base, fields, error.faults)
+        return await to_thread.run_sync(_shown, request, base, fields, error.faults)
     return moved(request, f"/pages/jobs/{job.id}")
 
 

@@ -141,6 +141,7 @@ def test_a_document_with_very_many_faults_gets_a_bounded_answer(shared_client: h
     [
         (json.dumps({f"x{i}": 0 for i in range(1001)}), "an object has 1001 names, the first of them 'x0'"),
         (json.dumps([{"x": 0}] * 50_001), "some 50001 names; a document may have at most 50000"),
+        ('["' + "\\n" * 500_001 + '"]', "some 500001 escapes; a document may have at most 500000"),
         ("[" + "1," * 200_000 + "1]", "some 200001 values; a document may have at most 200000"),
     ],
 )

@@ -32,3 +32,7 @@ def test_a_text_without_names_is_refused(raw: bytes) -> None:
 def test_a_quote_that_never_ends_is_refused() -> None:
     with pytest.raises(BadInput):
         read_sheet(b'a;b\n"x;1')
+
+
+def test_no_more_rows_are_read_than_are_asked_for() -> None:
+    assert [row.number for row in read_sheet(b"a\n1\n2\n3\n4", 2).rows] == [2, 3]
