@@ -52,8 +52,13 @@ class SharedWatch(Generic[Subject, State]):
         self._came = asyncio.Event()
         self._released = False
 
-    async def follow(self, subject: Subject) -> AsyncGenerator[State]:
-        """Yield the current state, then every change, until the subject disappears or `release` is called."""
+    async def follow(self, subject: Subject, seconds: float) -> AsyncGenerator[State]:
+        """Yield the current state, then every change, until the subject disappears or `release` is called.
+
+        It ends after so many seconds in any case.
+        """
+        clock = asyncio.get_running_loop().time
+        until = clock() + seconds
         watched = self._watched.setdefault(subject, _Watched())
         watched.followers += 1
         self._came.set()
@@ -61,13 +66,15 @@ class SharedWatch(Generic[Subject, State]):
             self._work = asyncio.create_task(self._query_repeatedly())
         last: State | None = None
         try:
-            while not self._released and not (watched.queried and watched.state is None):
+            while not self._released and not (watched.queried and watched.state is None) and clock() < until:
                 changed = watched.changed
                 if watched.state is not None and watched.state != last:
                     last = watched.state
                     yield last
                 else:
-                    await changed.wait()
+                    with contextlib.suppress(TimeoutError):
+                        async with asyncio.timeout_at(until):
+                            await changed.wait()
         finally:
             watched.followers -= 1
             if not watched.followers:

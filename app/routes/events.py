@@ -17,7 +17,7 @@ from app.jobs import batch_progress
 from app.jobs.watched_states import BatchSeen, Happening
 from app.routes import documentation
 from app.routes.batch_status import find_batch, line_counts
-from app.routes.dependencies import PREFIX, CallerOf, Readers
+from app.routes.dependencies import PREFIX, CallerOf, Readers, SettingsOf
 from app.routes.job_status import find_job
 from app.routes.waiting import BatchWatch, JobWatch
 from app.security.caller import Owned
@@ -37,7 +37,8 @@ _LastId = Annotated[
 ]
 _STREAM: dict[int | str, dict[str, Any]] = {
     200: {
-        "description": "Events until the final state; a comment every 15 s keeps the connection alive",
+        "description": "Events until the final state, by default for an hour at most; "
+        "a comment every 15 s keeps the connection alive",
         "content": {
             "text/event-stream": {
                 "schema": {"type": "string"},
@@ -88,14 +89,18 @@ def _last_batch_event(batch_id: UUID, caller: CallerOf, readers: Readers, last_e
     tags=["jobs"],
 )
 async def job_events(
-    job_id: UUID, caller: CallerOf, watch: JobWatch, last: Annotated[int, Depends(_last_job_event)]
+    job_id: UUID,
+    caller: CallerOf,
+    settings: SettingsOf,
+    watch: JobWatch,
+    last: Annotated[int, Depends(_last_job_event)],
 ) -> AsyncIterator[ServerSentEvent]:
     """Stream the events of a job: one with an id for each change of state, and its progress in between.
 
     A client that reconnects with `Last-Event-ID` receives the events that it missed. The stream ends with the final
-    state.
+    state, or by default after an hour; the client then reconnects.
     """
-    async with aclosing(watch.follow(Owned(caller.owner, job_id))) as states:
+    async with aclosing(watch.follow(Owned(caller.owner, job_id), settings.stream_seconds)) as states:
         async for job in states:
             for happening in job.events:
                 if happening.id > last:
@@ -115,10 +120,17 @@ async def job_events(
     tags=["batches"],
 )
 async def batch_events(
-    batch_id: UUID, caller: CallerOf, watch: BatchWatch, last: Annotated[str, Depends(_last_batch_event)]
+    batch_id: UUID,
+    caller: CallerOf,
+    settings: SettingsOf,
+    watch: BatchWatch,
+    last: Annotated[str, Depends(_last_batch_event)],
 ) -> AsyncIterator[ServerSentEvent]:
-    """Stream the state of a batch and its lines by state at every change, until no line waits or runs."""
-    async with aclosing(watch.follow(Owned(caller.owner, batch_id))) as states:
+    """Stream the state of a batch and its lines by state at every change, until no line waits or runs.
+
+    By default a stream ends after an hour at the latest; the client then reconnects.
+    """
+    async with aclosing(watch.follow(Owned(caller.owner, batch_id), settings.stream_seconds)) as states:
         async for batch in states:
             if _batch_event_id(batch.counts) != last:
                 yield _batch_event(batch)

@@ -4,7 +4,6 @@ import re
 from contextlib import aclosing
 from typing import Annotated, Any
 
-import anyio
 from fastapi import Depends, Header, Request
 
 from app.coalescing.shared_watch import SharedWatch
@@ -58,8 +57,7 @@ async def wait_for_end(
     """Return at the end of a job or a batch, after so many seconds, or at once if the owner has none of that id."""
     if not seconds:
         return
-    with anyio.move_on_after(seconds):
-        async with aclosing(watch.follow(subject)) as states:
-            async for state in states:
-                if state.ended:
-                    return
+    async with aclosing(watch.follow(subject, seconds)) as states:
+        async for state in states:
+            if state.ended:
+                return

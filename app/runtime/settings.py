@@ -84,6 +84,7 @@ class Settings(BaseSettings):
     most_chunk_lines: Count = Field(default=256, description="Most lines in one chunk of a batch")
 
     longest_wait_seconds: Seconds = Field(default=30.0, description="Longest wait granted to `Prefer: wait`")
+    stream_seconds: Seconds = Field(default=3600.0, description="Longest life of a stream of events")
     watch_seconds: Seconds = Field(default=0.3, description="Longest pause between queries for what clients wait for")
     preview_seconds: Seconds = Field(default=3.0, description="Longest computation of a line that is not stored")
 

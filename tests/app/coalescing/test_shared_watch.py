@@ -28,7 +28,7 @@ class Table:
 
 
 async def first(watch: SharedWatch[int, str], subject: int) -> str | None:
-    async with aclosing(watch.follow(subject)) as states:
+    async with aclosing(watch.follow(subject, 60.0)) as states:
         async for state in states:
             return state
     return None
@@ -40,7 +40,7 @@ def test_every_change_arrives_until_the_subject_disappears() -> None:
     async def main() -> list[str]:
         watch = SharedWatch("test", table.query, 0.01)
         seen: list[str] = []
-        async with aclosing(watch.follow(1)) as states:
+        async with aclosing(watch.follow(1, 60.0)) as states:
             async for state in states:
                 seen.append(state)
                 if state == "a":
@@ -51,6 +51,24 @@ def test_every_change_arrives_until_the_subject_disappears() -> None:
         return seen
 
     assert asyncio.run(main()) == ["a", "b"]
+
+
+def test_it_ends_after_its_seconds_with_changes_and_without() -> None:
+    class Restless(Table):
+        def query(self, before: Seen) -> dict[int, str]:
+            self.states[1] = str(len(self.queries))
+            return super().query(before)
+
+    async def main(table: Table) -> list[str]:
+        watch = SharedWatch("test", table.query, 0.01)
+        async with asyncio.timeout(10.0), aclosing(watch.follow(1, 0.2)) as states:
+            seen = [state async for state in states]
+        await watch.close()
+        return seen
+
+    assert asyncio.run(main(Table(n1="a"))) == ["a"]
+    seen = asyncio.run(main(Restless(n1="")))
+    assert len(seen) > 1 and seen == sorted(set(seen), key=int)
 
 
 def test_a_subject_that_does_not_exist_ends_at_once() -> None:
@@ -70,7 +88,7 @@ def test_followers_share_one_query_and_one_thread() -> None:
         watch = SharedWatch("test", table.query, 0.01)
 
         async def wait_for_b(subject: int) -> None:
-            async with aclosing(watch.follow(subject)) as states:
+            async with aclosing(watch.follow(subject, 60.0)) as states:
                 async for state in states:
                     if state == "b":
                         return
@@ -124,7 +142,7 @@ def test_release_ends_all_followers() -> None:
         watch = SharedWatch("test", Table(n1="a").query, 0.01)
 
         async def follow() -> list[str]:
-            async with aclosing(watch.follow(1)) as states:
+            async with aclosing(watch.follow(1, 60.0)) as states:
                 return [state async for state in states]
 
         following = [asyncio.create_task(follow()) for _ in range(3)]
@@ -143,7 +161,7 @@ def test_a_request_that_comes_cuts_the_pause_of_those_that_have_waited_long() ->
     async def main() -> str | None:
         watch = SharedWatch("test", table.query, 3600.0)
         with patch("app.coalescing.shared_watch._SHARE_OF_WAIT", 1e9):  # as after hours
-            async with aclosing(watch.follow(1)) as states:
+            async with aclosing(watch.follow(1, 60.0)) as states:
                 await anext(states)
                 await asyncio.sleep(0.05)  # a pause of an hour has begun
                 async with asyncio.timeout(30.0):
@@ -160,7 +178,7 @@ def test_pauses_grow_with_the_wait() -> None:
     async def main() -> None:
         watch = SharedWatch("test", table.query, 3600.0)
         with suppress(TimeoutError):
-            async with asyncio.timeout(0.5), aclosing(watch.follow(1)) as states:
+            async with asyncio.timeout(0.5), aclosing(watch.follow(1, 60.0)) as states:
                 async for _ in states:
                     pass
         await watch.close()

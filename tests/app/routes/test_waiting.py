@@ -4,6 +4,7 @@ import json
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 from uuid import UUID
 
@@ -176,6 +177,22 @@ def test_a_batch_tells_its_counts_until_it_ends(client: httpx.Client, settings: 
     assert len({event["id"] for event in seen}) == len(seen)
     assert stream(client, address, "other")[-1] == seen[-1]
     assert client.get(f"{address}/events", headers={"Last-Event-ID": seen[-1]["id"]}).status_code == 204
+
+
+def test_a_stream_ends_in_time_and_is_gone_on_with(tmp_path: Path) -> None:
+    settings = service.sqlite_settings(tmp_path, stream_seconds=0.5)
+    with service.running(settings) as client:
+        job, batch = service.submit(client), batch_address(client)
+        address = f"/v1/jobs/{job['id']}"
+        first = stream(client, address)  # reading raises if it does not end as a whole answer
+        assert [event["event"] for event in first] == ["accepted"]
+        assert stream(client, address, first[-1]["id"]) == []
+        waiting = stream(client, batch)
+        assert [event["event"] for event in waiting] == ["accepted"]
+        assert stream(client, batch, waiting[-1]["id"]) == []
+        run_job(settings, UUID(job["id"]))
+        rest = stream(client, address, first[-1]["id"])
+        assert [event["event"] for event in rest if "id" in event] == ["running", "successful"]
 
 
 def test_the_head_of_a_stream_ends_at_once(client: httpx.Client) -> None:
