@@ -161,16 +161,16 @@ def _database_file(settings: "Settings") -> Path | None:
 def using_database(settings: "Settings") -> Iterator["sessionmaker[Session]"]:
     """Yield sessions on a database of this version; end with one sentence, and make nothing, if there is none."""
     from app.storage.database import make_engine, session_factory
-    from app.storage.migration import is_newest
+    from app.storage.migration import schema_fault
 
     require_database(settings)
     with ending_on_faults():
         engine = make_engine(settings)
         try:
             with engine.connect() as connection:
-                newest = is_newest(connection)
-            if not newest:
-                end(f"the database {place_of(settings)} has an older schema: run `galloping migrate`", BAD_INPUT)
+                fault = schema_fault(connection)
+            if fault:
+                end(f"the database {place_of(settings)} {fault}", BAD_INPUT)
             yield session_factory(engine)
         finally:
             engine.dispose()

@@ -12,7 +12,7 @@ from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.operation import workers
 from app.runtime.settings import Settings
 from app.storage.database import database_time, make_engine, session_factory
-from app.storage.migration import is_newest
+from app.storage.migration import schema_fault
 from app.storage.steady_clock import TOLERANCE, steady_time, unnoted_step
 from app.tables import Job, JobStatus
 
@@ -113,7 +113,7 @@ def read_status(settings: Settings) -> Status:
     engine = make_engine(settings)
     try:
         with engine.connect() as connection:
-            database = GOOD if is_newest(connection) else "has an older schema; run `galloping migrate`"
+            database = schema_fault(connection) or GOOD
         with session_factory(engine, read_only=True)() as session:
             contents = _contents(session, settings) if database == GOOD else None
     except SQLAlchemyError:

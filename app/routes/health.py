@@ -22,7 +22,7 @@ from app.routes import documentation
 from app.routes.dependencies import Readers, SettingsOf
 from app.runtime.settings import Settings
 from app.runtime.signing import SecretUnavailable, signing_key
-from app.storage.migration import is_newest
+from app.storage.migration import schema_fault
 
 router = APIRouter(tags=["service"])
 
@@ -106,11 +106,11 @@ def _database_checks(prober: Engine, probe: WriteProbe) -> dict[str, str]:
     reading = prober.execution_options(read_only=True)  # which a writer does not hold up
     try:
         with reading.connect() as connection:
-            newest = is_newest(connection)
+            migrated = schema_fault(connection) is None
         state = probe.state() if _has_room(prober) else "its disk is full"
     except SQLAlchemyError:
         return {"database": "cannot be reached", "migrations": "unknown"}
-    return {"database": state, "migrations": "ok" if newest else "not the newest"}
+    return {"database": state, "migrations": "ok" if migrated else "not those of this version"}
 
 
 def _secret_check(settings: Settings) -> dict[str, str]:

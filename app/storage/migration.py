@@ -1,9 +1,12 @@
-"""Bring the database's schema to the newest revision, and tell whether it has it."""
+"""Bring the database's schema to another revision, and tell whether it has that of this version."""
+
+from dataclasses import dataclass
 
 from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
+from alembic.util import CommandError
 from sqlalchemy import Connection, text
 
 from app.runtime.settings import Settings
@@ -12,11 +15,23 @@ from app.storage.database import make_engine
 _MIGRATION_LOCK = 4_105_912_717  # an arbitrary number, the same in every process
 
 
-def migrate(settings: Settings) -> int:
-    """Bring the database to the newest revision and return 0; concurrent calls wait for each other.
+@dataclass(frozen=True)
+class Migrated:
+    """The revisions of a database before and after; None before the first migration."""
+
+    before: str | None
+    after: str
+
+
+def migrate(settings: Settings, to: str | None = None) -> Migrated:
+    """Bring the database to a revision, the newest if None; concurrent calls wait for each other.
+
+    The way back to an older one removes what its schema has no place for.
 
     Raises
     ------
+    alembic.util.CommandError
+        If this version does not know the revision, or that of the database.
     sqlalchemy.exc.SQLAlchemyError
         If the database cannot be reached or refuses a statement.
     """
@@ -24,10 +39,21 @@ def migrate(settings: Settings) -> int:
     try:
         with engine.begin() as connection:
             _take_turns(connection)
-            command.upgrade(alembic_config(connection), "head")
+            return _move(connection, to)
     finally:
         engine.dispose()
-    return 0
+
+
+def _move(connection: Connection, to: str | None) -> Migrated:
+    known = _known(connection)
+    before, after = _present(connection), known[-1] if to is None else to
+    if before is not None and before not in known:
+        raise CommandError(f"it {_of_a_newer_version(before, known[-1])}")
+    if after not in known:
+        raise CommandError(f"this version knows no revision {after}, only {known[0]} to {known[-1]}")
+    back = before is not None and known.index(after) < known.index(before)
+    (command.downgrade if back else command.upgrade)(alembic_config(connection), after)
+    return Migrated(before, after)
 
 
 def alembic_config(connection: Connection) -> Config:
@@ -38,15 +64,33 @@ def alembic_config(connection: Connection) -> Config:
     return config
 
 
-def is_newest(connection: Connection) -> bool:
-    """Tell whether the database has the newest schema."""
-    present = MigrationContext.configure(connection).get_current_heads()
-    return set(present) == set(ScriptDirectory.from_config(alembic_config(connection)).get_heads())
+def schema_fault(connection: Connection) -> str | None:
+    """Return what is wrong with the database's schema as the end of a sentence, or None if it is this version's."""
+    present, known = _present(connection), _known(connection)
+    if present == known[-1]:
+        return None
+    if present is None or present in known:
+        return "has an older schema: run `galloping migrate`"
+    return _of_a_newer_version(present, known[-1])
 
 
 def is_empty(connection: Connection) -> bool:
     """Tell whether the database was never migrated, as a new one."""
-    return not MigrationContext.configure(connection).get_current_heads()
+    return _present(connection) is None
+
+
+def _of_a_newer_version(present: str, newest: str) -> str:
+    return f"has the schema {present} of a newer version, whose `galloping migrate --to {newest}` takes it back"
+
+
+def _present(connection: Connection) -> str | None:
+    return MigrationContext.configure(connection).get_current_revision()
+
+
+def _known(connection: Connection) -> list[str]:
+    """Return the revisions of this version, the oldest first."""
+    scripts = ScriptDirectory.from_config(alembic_config(connection))
+    return [script.revision for script in scripts.walk_revisions()][::-1]
 
 
 def _take_turns(connection: Connection) -> None:

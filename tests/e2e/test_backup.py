@@ -1,52 +1,20 @@
 """Backup and restore by the commands of docs/deployment.md: dump under a running service, lose everything, restore."""
 
 import os
-import re
-import shlex
 import shutil
 import sqlite3
 import subprocess
 from pathlib import Path
-from typing import Any
-
-import httpx
 
 from app.runtime.settings import Settings
-from tests.documents import hasty_settings, long_request, short_request
-from tests.embedded import serving, status, submit, wait_for
+from tests.documents import hasty_settings
+from tests.e2e.operators import all_is_there, documented, work
+from tests.embedded import serving
 from tests.servers import binary, free_port, postgres_database, postgres_server
-
-PAGE = (Path(__file__).parents[2] / "docs" / "deployment.md").read_text()
-
-
-def documented(program: str, **values: str) -> list[str]:
-    """Return the words of the page's command, with values in place of its variables."""
-    (line,) = re.findall(rf"^{program} [^#\n]*", PAGE, re.MULTILINE)
-    for name, value in values.items():
-        line = line.replace(f"${name}", value)
-    return shlex.split(line)
 
 
 def run(command: list[str], folder: Path) -> None:
     subprocess.run([binary(command[0]), *command[1:]], check=True, cwd=folder, env=dict(os.environ), timeout=60.0)
-
-
-def work(client: httpx.Client) -> tuple[str, str, dict[str, Any]]:
-    """Have one job done and one in progress; return their addresses, and the results of the first."""
-    done = submit(client, short_request())
-    wait_for(client, done, "successful")
-    waiting = submit(client, long_request(2))
-    wait_for(client, waiting, "running")
-    return done, waiting, client.get(f"{done}/results").raise_for_status().json()
-
-
-def all_is_there(client: httpx.Client, done: str, waiting: str, results: dict[str, Any]) -> None:
-    assert client.get(f"{done}/results").raise_for_status().json() == results
-    assert {job["id"] for job in client.get("/v1/jobs").json()["jobs"]} == {
-        x.rpartition("/")[2] for x in (done, waiting)
-    }
-    wait_for(client, waiting, "successful")  # it was running when the backup was taken
-    assert status(client, waiting)["status"] == "successful"
 
 
 def test_postgresql_is_dumped_lost_and_restored(tmp_path: Path) -> None:

@@ -8,12 +8,13 @@ from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
+from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, Inspector, inspect, text
 
 from app.runtime.processes import environment
 from app.runtime.settings import Settings
 from app.storage.database import make_engine
-from app.storage.migration import alembic_config, migrate
+from app.storage.migration import Migrated, alembic_config, migrate, schema_fault
 from app.tables import Base
 
 
@@ -64,6 +65,27 @@ def test_down_leaves_nothing_and_up_works_again(settings: Settings, engine: Engi
     migrate(settings)
     with engine.connect() as connection:
         assert differences(connection) == []
+
+
+def test_goes_to_a_named_revision_and_says_where_it_was(settings: Settings, engine: Engine) -> None:
+    newest = _newest()
+    assert migrate(settings) == Migrated(None, newest)
+    assert migrate(settings, "0021") == Migrated(newest, "0021")
+    with engine.connect() as connection:
+        assert "tags" not in {column["name"] for column in inspect(connection).get_columns("batches")}
+        assert schema_fault(connection) == "has an older schema: run `galloping migrate`"
+    assert migrate(settings, "0022") == Migrated("0021", "0022")
+    assert migrate(settings) == Migrated("0022", newest)
+    assert migrate(settings) == Migrated(newest, newest)
+
+
+@pytest.mark.parametrize("revision", ["base", "-1", "9999", ""])
+def test_a_revision_that_is_not_known_changes_nothing(settings: Settings, engine: Engine, revision: str) -> None:
+    migrate(settings)
+    with pytest.raises(CommandError, match=f"knows no revision {revision}, only 0001 to {_newest()}"):
+        migrate(settings, revision)
+    with engine.connect() as connection:
+        assert schema_fault(connection) is None
 
 
 def test_missing_column_would_be_seen(settings: Settings, engine: Engine) -> None:

@@ -89,9 +89,22 @@ def worker(
     run(read_settings(data_dir), check=check)
 
 
-def migrate(data_dir: DataDirectory = None) -> None:
-    """Bring the configured database to the newest schema."""
+def migrate(
+    data_dir: DataDirectory = None,
+    to: Annotated[
+        str | None,
+        typer.Option(
+            metavar="REVISION",
+            help="The schema to go to, also an older one; what has no place in that is removed. The newest if absent.",
+        ),
+    ] = None,
+) -> None:
+    """Bring the configured database to the newest schema, or back to that of an older version."""
     from app.storage.migration import migrate as run
 
     with ending_on_faults():
-        run(read_settings(data_dir))
+        done = run(read_settings(data_dir), to)
+    if done.before == done.after:
+        notice(f"the schema is {done.after} already")
+    else:
+        notice(f"the schema is {done.after} now" + (f"; it was {done.before}" if done.before else ""))

@@ -219,7 +219,9 @@ def test_a_database_of_a_newer_version_ends_with_2(tmp_path: Path) -> None:
     assert galloping("migrate", "--data-dir", str(tmp_path)).returncode == 0
     with closing(sqlite3.connect(tmp_path / "galloping.sqlite3")) as database, database:
         database.execute("UPDATE alembic_version SET version_num = '9999'")
-    assert "9999" in refused("migrate", "--data-dir", str(tmp_path))
+    for words in (("migrate",), ("migrate", "--to", "0021"), ("serve",), ("keys", "list")):
+        told = refused(*words, "--data-dir", str(tmp_path))
+        assert "has the schema 9999 of a newer version, whose `galloping migrate --to 00" in told
 
 
 def test_analyse_runs_on_one_blas_thread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -40,7 +40,7 @@ def test_a_database_of_another_revision_is_not_ready(settings: Settings, session
             session.execute(text("UPDATE alembic_version SET version_num = 'older'"))
         answer = client.get("/health/ready")
     assert answer.status_code == 503
-    assert answer.json()["checks"] == {"database": "ok", "migrations": "not the newest", "broker": "ok"}
+    assert answer.json()["checks"] == {"database": "ok", "migrations": "not those of this version", "broker": "ok"}
 
 
 @contextlib.contextmanager
