@@ -8,7 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from engine.arrays import AnyArray, FloatArray, IntArray
+from engine.arrays import AnyArray, ComplexArray, FloatArray, IntArray
+from engine.kernels.layout import contiguous, model_parts, model_shape, unexpanded_parts
 from engine.models.reduced_model import ReducedModel
 from engine.models.relative_wind import NodalMotion
 from engine.models.unexpanded_load import UnexpandedLoad
@@ -32,7 +33,7 @@ class UnexpandedStarts(Protocol):
 
 
 try:
-    from engine.kernels._kernels import even_parts, flows, linearization, monodromies, newton, reaches
+    from engine.kernels._kernels import eigenvalues, even_parts, flows, linearization, monodromies, newton, reaches
 
     AVAILABLE = True
 except ImportError:
@@ -111,7 +112,7 @@ def _newton(
     harmonics = cycles[2].shape[-1] // model.mass.shape[-1] // 2
     limits = (options.tolerance, options.largest_step, options.iterations)
     size = (x.shape[0], harmonics, tangent.size > 0)
-    newton(_parts(model), _shape(model), size, _contiguous(*cycles), limits, (x, step, iterations, tangent))
+    newton(model_parts(model), model_shape(model), size, contiguous(*cycles), limits, (x, step, iterations, tangent))
     return solution_from_steps(x, step, iterations, options)
 
 
@@ -136,8 +137,8 @@ def balance_slopes(
     cycles, m, size = orbits[0].shape
     n = m * size
     residuals, slopes = np.empty((cycles, n)), np.empty((cycles, n, n + 2))
-    cycle_arrays = _contiguous(member, *orbits)
-    linearization(_parts(model), _shape(model), (cycles, size // 2), cycle_arrays, (residuals, slopes))
+    cycle_arrays = contiguous(member, *orbits)
+    linearization(model_parts(model), model_shape(model), (cycles, size // 2), cycle_arrays, (residuals, slopes))
     return residuals, slopes
 
 
@@ -169,9 +170,16 @@ def products_over_period(
     """
     cycles, m, size = orbits[2].shape
     matrices = np.empty((cycles, 2 * m, 2 * m))
-    cycle_arrays = _contiguous(*orbits, *basis, *steps)
-    monodromies(_parts(model), _shape(model), (cycles, basis[0].shape[0], size // 2), cycle_arrays, matrices)
+    cycle_arrays = contiguous(*orbits, *basis, *steps)
+    monodromies(model_parts(model), model_shape(model), (cycles, basis[0].shape[0], size // 2), cycle_arrays, matrices)
     return matrices
+
+
+def small_eigenvalues(matrices: FloatArray) -> ComplexArray:
+    """Return the eigenvalues (cycles, n) of finite matrices (cycles, n, n), NaN where the kernel's method fails."""
+    values = np.empty((*matrices.shape[:2], 2))
+    eigenvalues((matrices.shape[0], matrices.shape[1]), np.ascontiguousarray(matrices), values)
+    return values.view(np.complex128)[..., 0]
 
 
 def even_part(
@@ -192,7 +200,7 @@ def even_part(
     """
     even, square = np.empty((2, *angle.shape, 2))
     inputs = (polynomials, statics, np.broadcast_to(member, angle.shape), angle)
-    even_parts((polynomials.shape[0], angle.size), _contiguous(*inputs), (even, square))
+    even_parts((polynomials.shape[0], angle.size), contiguous(*inputs), (even, square))
     return even, square
 
 
@@ -204,7 +212,7 @@ def largest_reaches(motion: NodalMotion, member: IntArray, state: FloatArray) ->
     reach = np.empty((2, motions))
     published = motion.model is AerodynamicModel.PUBLISHED
     size = (members, motions, samples, nodes, width // 2, subconductors, published)
-    reaches(size, _contiguous(motion.forms, arms, motion.diameter, member, state), reach)
+    reaches(size, contiguous(motion.forms, arms, motion.diameter, member, state), reach)
     return reach
 
 
@@ -236,60 +244,11 @@ def integrated_block(
     size = (starts, window.size, m, points, rows, forms.shape[1], restoring.size > 0)
     results = (end, square, largest)
     if unexpanded is None:
-        flows(size, _contiguous(*equations, window), results)
+        flows(size, contiguous(*equations, window), results)
     else:
         load = unexpanded.load
-        extra = _contiguous(unexpanded.gain, unexpanded.linear, unexpanded.wind_speed, unexpanded.member)
+        extra = contiguous(unexpanded.gain, unexpanded.linear, unexpanded.wind_speed, unexpanded.member)
         shape = load.fields.shape[-3], load.present.shape[-1]
         none = (load.fields,) * 5  # of the model's structure only the number of members is read
-        flows(size, _contiguous(*equations, window), results, (*extra, *shape), (*none, *_unexpanded_parts(load)))
+        flows(size, contiguous(*equations, window), results, (*extra, *shape), (*none, *unexpanded_parts(load)))
     return end, square, np.sqrt(largest)
-
-
-def _shape(model: ReducedModel) -> tuple[int, int, int, int, bool, int]:
-    """Return members, coordinates, points, local variables, whether the model stretches, and samples in a period.
-
-    An unexpanded load has sub-conductors in place of local variables; otherwise the number of samples is 0.
-    """
-    load, m = model.unexpanded, model.mass.shape[-1]
-    members, stretches = model.mass.shape[0], model.stretching is not None
-    if load is not None:
-        return members, m, load.fields.shape[-3], load.present.shape[-1], stretches, load.samples
-    return members, m, *model.load.forms.shape[1:3], stretches, 0
-
-
-def _parts(model: ReducedModel) -> tuple[AnyArray, ...]:
-    load, stretching, none = model.load, model.stretching, np.empty(0)
-    own = (none, none) if stretching is None else (stretching.table, stretching.slopes)
-    structure = (model.mass, model.damping, model.stiffness, *own)
-    if model.unexpanded is not None:
-        return (*_contiguous(*structure), *_unexpanded_parts(model.unexpanded))
-    return _contiguous(*structure, load.forms, load.table, load.slopes)
-
-
-def _unexpanded_parts(load: UnexpandedLoad) -> tuple[AnyArray, ...]:
-    curves = load.curves
-    first, begins = curves.pieces
-    return _contiguous(
-        load.which,
-        first,
-        curves.periodic.astype(np.intp),
-        curves.turning.astype(np.intp),
-        load.fields,
-        load.strength,
-        load.factor,
-        load.diameter,
-        load.positions,
-        load.present,
-        load.rest_angle,
-        load.at_rest,
-        curves.origin,
-        curves.density,
-        begins,
-        curves.knots,
-        curves.powers,
-    )
-
-
-def _contiguous(*arrays: AnyArray) -> tuple[AnyArray, ...]:
-    return tuple(np.ascontiguousarray(array) for array in arrays)

@@ -129,6 +129,18 @@ typedef struct {
  * theory section 7.3. */
 int integrate_monodromies(const Model *stack, const Monodromies *wanted);
 
+/* Arguments and results of find_eigenvalues: finite matrices (count, n, n); values (count, n, 2), real and imaginary parts,
+ * NaN where the method fails. */
+typedef struct {
+    ptrdiff_t count;
+    int n;
+    const double *matrices;
+    double *values;
+} Eigenproblems;
+
+/* Find the eigenvalues of every matrix, in no particular order; return 0 if memory is short. */
+int find_eigenvalues(const Eigenproblems *wanted);
+
 /* Arguments and results of integrate_flows, laid out as engine.checks.settled_motion.LawsonEquations with the starts on the
  * last axis: half_step (2 m, 2 m), nonlinear (points, rows, monomials of degree 2 and 3), outward (points, m, rows), forms
  * (points, local, 2 m), restoring (m, monomials of degree 2 and 3 of q) if it `stretches`, step and angle (2 m). One step is taken for every

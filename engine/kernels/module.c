@@ -275,6 +275,23 @@ static PyObject *monodromies(PyObject *Py_UNUSED(self), PyObject *arguments)
     return finished(&buffers, done);
 }
 
+static PyObject *eigenvalues(PyObject *Py_UNUSED(self), PyObject *arguments)
+{
+    Buffers buffers = {.count = 0};
+    PyObject *matrices, *values;
+    Eigenproblems wanted;
+    int done = 1;
+    if (!PyArg_ParseTuple(arguments, "(ni)OO", &wanted.count, &wanted.n, &matrices, &values) || !SOME(wanted.n))
+        return NULL;
+    if ((wanted.matrices = REALS(matrices, SIZE(wanted.count, wanted.n, wanted.n)))
+        && (wanted.values = RESULT(values, SIZE(wanted.count, wanted.n, 2)))) {
+        Py_BEGIN_ALLOW_THREADS
+        done = find_eigenvalues(&wanted);
+        Py_END_ALLOW_THREADS
+    }
+    return finished(&buffers, done);
+}
+
 static PyObject *even_parts(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
@@ -381,6 +398,7 @@ static PyMethodDef methods[] = {
     {"newton", newton, METH_VARARGS, "Solve the harmonic balance of a stack of cycles by Newton's method."},
     {"linearization", linearization, METH_VARARGS, "Evaluate the harmonic balance of a stack of cycles with its slopes."},
     {"monodromies", monodromies, METH_VARARGS, "Integrate the linearized equations of a stack of cycles over one period."},
+    {"eigenvalues", eigenvalues, METH_VARARGS, "Find the eigenvalues of a stack of small matrices."},
     {"even_parts", even_parts, METH_VARARGS, "Evaluate the scalar equation of the explicit first harmonic."},
     {"reaches", reaches, METH_VARARGS, "Find the largest angle of attack and velocity ratio of a stack of motions."},
     {"flows", flows, METH_VARARGS, "Integrate the equations of motion of a stack of starts directly."},

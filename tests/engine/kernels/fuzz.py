@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-NAMES = ("newton", "linearization", "monodromies", "even_parts", "reaches", "flows")
+NAMES = ("newton", "linearization", "monodromies", "eigenvalues", "even_parts", "reaches", "flows")
 NUMBERS = (-1, 0, 1, 2, 3, 5, 8, 1 << 10, 1 << 20, (1 << 31) - 1, -(1 << 31), 1 << 40, 1 << 62, (1 << 63) - 1)
 REFUSALS = (ValueError, IndexError, TypeError, OverflowError, BufferError, MemoryError)
 SEED = 7
@@ -63,7 +63,7 @@ def recorded(kernels: Any) -> list[Call]:
 def _exercise(model: Any, motions: Any) -> None:
     from engine.checks.direct_starts import spread_starts  # noqa: PLC0415
     from engine.checks.settled_motion import integrate_until_settled  # noqa: PLC0415
-    from engine.cycles.floquet import monodromy  # noqa: PLC0415
+    from engine.cycles.floquet import floquet  # noqa: PLC0415
     from engine.cycles.harmonic_balance import balance, linearized  # noqa: PLC0415
     from engine.numerics.newton import NewtonOptions  # noqa: PLC0415
 
@@ -72,7 +72,7 @@ def _exercise(model: Any, motions: Any) -> None:
     orbits = motions.random_orbits(model, 2, 2)
     balance(model, member, orbits, NewtonOptions(iterations=1))
     linearized(model, member, orbits)
-    monodromy(model, member, orbits)
+    floquet(model, member, orbits)
     starts = spread_starts(model, member[:1], np.array([4.0]), (0.1,), np.random.default_rng(SEED))
     integrate_until_settled(model, member[[0] * starts.shape[1]], np.full(starts.shape[1], 4.0), starts[0], 1)
 

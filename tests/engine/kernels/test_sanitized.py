@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine.kernels import compiled
+from engine.kernels import compiled, layout
 from tests.engine.motions import COPIES, MODELS, perturbed, random_orbits
 
 ROOT = Path(__file__).parents[3]
@@ -63,7 +63,7 @@ def test_steps_whose_double_is_no_number_are_refused(steps: int) -> None:
 @pytest.mark.skipif(not compiled.AVAILABLE, reason="the kernels were not built")
 def test_short_tuples_are_refused() -> None:
     model = perturbed(next(iter(MODELS.values()))())
-    parts, shape = compiled._parts(model), compiled._shape(model)
+    parts, shape = layout.model_parts(model), layout.model_shape(model)
     none, linearization = np.empty(0), vars(compiled)["linearization"]
     for count in range(len(parts)):
         with pytest.raises(ValueError, match=r"a tuple must hold (8|22) items"):
