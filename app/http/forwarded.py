@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from starlette.datastructures import URL
 from starlette.types import ASGIApp, Scope
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
@@ -21,3 +22,12 @@ def is_encrypted(scope: Scope) -> bool:
     For headers that only tell a browser to be careful, so that a client who lies harms nobody.
     """
     return scope["scheme"] == "https" or (b"x-forwarded-proto", b"https") in scope["headers"]
+
+
+def own_address(scope: Scope) -> str:
+    """Return the address of this service as the client of a request has reached it, without a slash at its end.
+
+    It is made from what the client says, and is for answers to this client only.
+    """
+    place = URL(scope={**scope, "path": str(scope.get("root_path", "")).rstrip("/"), "query_string": b""})
+    return str(place.replace(scheme="https") if is_encrypted(scope) else place)

@@ -5,6 +5,8 @@ from typing import Any
 from fastapi.responses import JSONResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.http.forwarded import own_address
+
 
 class UnderPrefix:
     """ASGI middleware that finds the prefix on every path, whether or not the proxy has removed it."""
@@ -47,13 +49,27 @@ class LinkedJSON(JSONResponse):
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send the answer under the prefix of its request."""
-        prefix = prefix_of(scope)
-        if prefix:
-            self.body = self.render(_linked(self._content, prefix))
+        place = self._place(scope)
+        if place:
+            self.body = self.render(_linked(self._content, place))
             self.headers["content-length"] = str(len(self.body))
             if "location" in self.headers:
-                self.headers["location"] = prefix + self.headers["location"]
+                self.headers["location"] = place + self.headers["location"]
         await super().__call__(scope, receive, send)
+
+    def _place(self, scope: Scope) -> str:
+        """Return what comes before the addresses."""
+        return prefix_of(scope)
+
+
+class AddressedJSON(LinkedJSON):
+    """JSON whose `links`, `next` and `Location` become whole addresses when it is sent.
+
+    For clients that use an address as they find it, and do not resolve it against that of the request.
+    """
+
+    def _place(self, scope: Scope) -> str:
+        return own_address(scope)
 
 
 def _linked(document: Any, prefix: str) -> Any:

@@ -5,6 +5,7 @@ from typing import Any
 
 from app.answers.results import ResultDocument
 from app.convert import ENGINE_VERSION
+from app.ogc.dialect import shared
 from app.ogc.links import BASE, PROCESS, link
 from app.openapi.line_forms import FORMS
 from app.schemas import JobRequest
@@ -74,13 +75,13 @@ def description() -> dict[str, Any]:
         name: {
             "title": name.capitalize(),
             "description": fields[name]["description"],
-            "schema": schemas[name],
+            "schema": shared(schemas[name]),
             "minOccurs": 1 if name == "line" else 0,
             "maxOccurs": 1,
         }
         for name in _INPUTS
     }
     result = ResultDocument.model_json_schema(by_alias=True)
-    output = {**inlined(result, result["$defs"]), "contentMediaType": "application/json"}
+    output = {**shared(inlined(result, result["$defs"])), "contentMediaType": "application/json"}
     about = {"title": "Result", "description": "Every table of the result", "schema": output}
     return {**summary(), "inputs": inputs, "outputs": {"result": about}}

@@ -4,7 +4,16 @@ from collections.abc import Iterator
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import (
+    AliasChoices,
+    AwareDatetime,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+)
 
 from app import convert, schemas
 from app.http.problems import query_fault
@@ -15,6 +24,7 @@ from app.schemas.faults import BadInput, Fault, faults_of
 from app.tables import DeliveryEvent, JobStatus
 
 _QUALIFIED = frozenset({"value", "mediaType", "encoding", "schema"})
+_LARGEST_PAGE = 500
 _MOMENT: TypeAdapter[datetime] = TypeAdapter(AwareDatetime)
 
 
@@ -23,7 +33,7 @@ class Subscriber(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, populate_by_name=True)
 
-    success: str = Field(alias="successUri", max_length=2000)
+    success: str | None = Field(None, alias="successUri", max_length=2000)
     in_progress: str | None = Field(None, alias="inProgressUri", max_length=2000)
     failed: str | None = Field(None, alias="failedUri", max_length=2000)
 
@@ -45,7 +55,8 @@ class Execution(BaseModel):
     inputs: dict[str, Any]
     outputs: dict[Literal["result"], Any] | None = None
     response: Literal["raw", "document"] = "raw"
-    subscriber: Subscriber | None = None
+    # The standard's name, and the one under which weaver's client sends it.
+    subscriber: Subscriber | None = Field(None, validation_alias=AliasChoices("subscriber", "subscribers"))
 
     def request(self, own: convert.OwnRows) -> schemas.JobRequest:
         """Return the job that the inputs say, its line resolved with the caller's own rows.
@@ -72,19 +83,32 @@ class Execution(BaseModel):
                 yield Fault(f"/inputs/{name}", "by_reference", "must be given by value; the service follows no links")
 
 
+def _split(texts: Any) -> Any:
+    return [part for text in texts for part in text.split(",")] if isinstance(texts, list) else texts
+
+
+_COMMAS = BeforeValidator(_split)  # clients repeat a parameter, or write its values with commas
+
+
 class JobsQuery(BaseModel):
-    """Filters of the list of jobs, as the standard names them."""
+    """Filters of the list of jobs, as the standard names them; `f` is how pygeoapi's clients ask for a format."""
 
     model_config = ConfigDict(extra="forbid")
 
-    type: list[Literal["process"]] = []
-    processID: list[Annotated[str, Field(max_length=100)]] = []  # noqa: N815 - the standard's name
-    status: list[JobStatus] = []
+    type: Annotated[list[Literal["process"]], _COMMAS] = []
+    processID: Annotated[list[Annotated[str, Field(max_length=100)]], _COMMAS] = []  # noqa: N815 - the standard's name
+    status: Annotated[list[JobStatus], _COMMAS] = []
     datetime: Annotated[str | None, Field(max_length=100)] = None
     minDuration: Annotated[int | None, Field(ge=0)] = None  # noqa: N815
     maxDuration: Annotated[int | None, Field(ge=0)] = None  # noqa: N815
-    limit: Annotated[int, Field(ge=1, le=500)] = 50
+    limit: Annotated[int, Field(ge=1)] = 50
     cursor: Annotated[str | None, Field(max_length=200)] = None
+    f: Literal["json"] = "json"
+
+    @property
+    def rows(self) -> int:
+        """Return how many jobs a page shows: no more than the service allows, which the standard calls no error."""
+        return min(self.limit, _LARGEST_PAGE)
 
     def filters(self) -> JobFilters | None:
         """Return the filters, None where they match no job of this service.

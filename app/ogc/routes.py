@@ -1,18 +1,20 @@
 """The routes of OGC API - Processes."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 from urllib.parse import urlencode
 from uuid import UUID
 
 from anyio import to_thread
-from fastapi import APIRouter, Body, Query, Request, Response
+from fastapi import APIRouter, Body, Depends, Query, Request, Response
 from sqlalchemy.orm import Session
 
 from app import convert, schemas
 from app.export import formats
 from app.http import paging
 from app.http.beside_loop import beside_loop, mark_large
-from app.http.prefix import LinkedJSON
+from app.http.forwarded import own_address
+from app.http.prefix import AddressedJSON
 from app.http.problems import invalid_document, query_fault
 from app.http.strict_routes import StrictJsonRoute
 from app.jobs import job_records
@@ -34,34 +36,39 @@ from app.tables import ENDED, Job
 router = APIRouter(prefix=BASE, include_in_schema=False, route_class=StrictJsonRoute)
 
 
+async def _known_process(process_id: str) -> None:
+    if process_id != PROCESS:
+        raise refusals.missing("no-such-process", f"There is no process {process_id[:100]}.")
+
+
+@router.get("")
 @router.get("/")
-def landing() -> LinkedJSON:
+def landing() -> AddressedJSON:
     """Return the landing page."""
-    return LinkedJSON(descriptions.landing())
+    return AddressedJSON(descriptions.landing())
 
 
 @router.get("/conformance")
-def conformance() -> LinkedJSON:
+def conformance() -> AddressedJSON:
     """Return the conformance classes."""
-    return LinkedJSON(descriptions.conformance())
+    return AddressedJSON(descriptions.conformance())
 
 
 @router.get("/processes")
-def list_processes() -> LinkedJSON:
+def list_processes() -> AddressedJSON:
     """Return the list of processes, which is one."""
     links = [link("self", f"{BASE}/processes", "Processes")]
-    return LinkedJSON({"processes": [descriptions.summary()], "links": links})
+    return AddressedJSON({"processes": [descriptions.summary()], "links": links})
 
 
-@router.get("/processes/{process_id}")
-def describe_process(process_id: str) -> LinkedJSON:
-    """Return the description of a process."""
-    _require_process(process_id)
-    return LinkedJSON(descriptions.description())
+@router.get("/processes/{process_id}", dependencies=[Depends(_known_process)])
+def describe_process() -> AddressedJSON:
+    """Return the description of the process."""
+    return AddressedJSON(descriptions.description())
 
 
-@router.post("/processes/{process_id}/execution")
-async def execute(request: Request, process_id: str, execution: Annotated[Execution, Body()]) -> Response:
+@router.post("/processes/{process_id}/execution", dependencies=[Depends(_known_process)])
+async def execute(request: Request, execution: Annotated[Execution, Body()]) -> Response:
     """Execute the process: 200 with its results if a short one ends in time, else 201 with the address of its job.
 
     `Prefer: respond-async` answers at once.
@@ -71,7 +78,6 @@ async def execute(request: Request, process_id: str, execution: Annotated[Execut
     ProblemError
         404 for another process, 422 with every fault of the inputs, or if a subscriber's address is refused.
     """
-    _require_process(process_id)
     caller, shared = request.state.caller, request.app.state
     document = await beside_loop(request, lambda: _request_of(request, execution))
     mark_large(request)  # its rows of the owner may be
@@ -89,15 +95,16 @@ async def execute(request: Request, process_id: str, execution: Annotated[Execut
         job = await to_thread.run_sync(_find, request, job.id)
         if job.status in ENDED:
             refusals.require_success(job)
-            return _answered(request, job, raw=execution.response == "raw")
+            monitor = f"<{own_address(request.scope)}{BASE}/jobs/{job.id}>; rel=monitor"
+            return _answered(request, job, {"Link": monitor}, raw=execution.response == "raw")
     applied = {"Preference-Applied": "respond-async"} if preferred else {}
-    return LinkedJSON(documents.status_info(job), 201, {"Location": f"{BASE}/jobs/{job.id}", **applied})
+    return AddressedJSON(documents.status_info(job), 201, {"Location": f"{BASE}/jobs/{job.id}", **applied})
 
 
 @router.get("/jobs")
 def list_jobs(
     settings: SettingsOf, caller: CallerOf, readers: Readers, query: Annotated[JobsQuery, Query()]
-) -> LinkedJSON:
+) -> AddressedJSON:
     """Return one page of the jobs, newest first.
 
     Raises
@@ -113,23 +120,23 @@ def list_jobs(
     found: list[Job] = []
     if filters is not None:
         with readers() as session:
-            found = job_records.page(session, caller.owner, filters, after, query.limit + 1)
-    shown = [documents.status_info(job) for job in found[: query.limit]]
+            found = job_records.page(session, caller.owner, filters, after, query.rows + 1)
+    shown = [documents.status_info(job) for job in found[: query.rows]]
     links = [link("self", f"{BASE}/jobs", "Jobs")]
-    if len(found) > query.limit:
-        last = found[query.limit - 1]
+    if len(found) > query.rows:
+        last = found[query.rows - 1]
         kept = query.model_dump(mode="json", exclude_defaults=True) | {
-            "limit": query.limit,
+            "limit": query.rows,
             "cursor": paging.encode(key, (last.created_at, last.id)),
         }
         links.append(link("next", f"{BASE}/jobs?{urlencode(kept, doseq=True)}", "Older jobs"))
-    return LinkedJSON({"jobs": shown, "links": links})
+    return AddressedJSON({"jobs": shown, "links": links})
 
 
 @router.get("/jobs/{job_id}")
-def job_status(request: Request, job_id: str) -> LinkedJSON:
+def job_status(request: Request, job_id: str) -> AddressedJSON:
     """Return the status of a job."""
-    return LinkedJSON(documents.status_info(_find(request, job_id)))
+    return AddressedJSON(documents.status_info(_find(request, job_id)))
 
 
 @router.get("/jobs/{job_id}/results")
@@ -143,11 +150,11 @@ def job_results(request: Request, job_id: str) -> Response:
     """
     job = _find(request, job_id)
     refusals.require_success(job)
-    return _answered(request, job, raw=False)
+    return _answered(request, job, {}, raw=False)
 
 
 @router.delete("/jobs/{job_id}")
-def dismiss(request: Request, job_id: str, writers: Writers) -> LinkedJSON:
+def dismiss(request: Request, job_id: str, writers: Writers) -> AddressedJSON:
     """Cancel a job, or remove what an ended one has left."""
     found = _find(request, job_id)
     with writers.begin() as session:
@@ -155,12 +162,9 @@ def dismiss(request: Request, job_id: str, writers: Writers) -> LinkedJSON:
         session.flush()
         job = found if outcome is CancelOutcome.REMOVED else _of(session, request.state.caller, found.id)
         info = documents.status_info(job)
-    return LinkedJSON({**info, "status": "dismissed", "message": "The job is dismissed.", "links": info["links"][:1]})
-
-
-def _require_process(process_id: str) -> None:
-    if process_id != PROCESS:
-        raise refusals.missing("no-such-process", f"There is no process {process_id[:100]}.")
+    return AddressedJSON(
+        {**info, "status": "dismissed", "message": "The job is dismissed.", "links": info["links"][:1]}
+    )
 
 
 def _request_of(request: Request, execution: Execution) -> schemas.JobRequest:
@@ -187,8 +191,8 @@ def _of(session: Session, caller: Caller, job_id: str | UUID) -> Job:
     return job
 
 
-def _answered(request: Request, job: Job, *, raw: bool) -> Response:
+def _answered(request: Request, job: Job, headers: Mapping[str, str], *, raw: bool) -> Response:
     def pieces(session: Session) -> Any:
         return formats.in_blocks(documents.results(session, job, raw=raw))
 
-    return streamed(request.app.state.readers, pieces, formats.MEDIA_TYPES["json"], {})
+    return streamed(request.app.state.readers, pieces, formats.MEDIA_TYPES["json"], headers)

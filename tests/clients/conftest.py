@@ -22,6 +22,6 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
 @pytest.fixture
 def work(tmp_path: Path, served: httpx.Client) -> Path:
     """Give a folder with the document and with a request to submit."""
-    (tmp_path / "openapi.json").write_bytes(served.get("/openapi.json").raise_for_status().content)
+    (tmp_path / "openapi.json").write_bytes(served.get("/openapi.json", timeout=60.0).raise_for_status().content)
     (tmp_path / "request.json").write_text(json.dumps(short_request()))
     return tmp_path

@@ -1,4 +1,4 @@
-"""Generators make clients of the served document; each submits a line, polls, and reads typed results."""
+"""Generated clients of the served document, and of OGC API - Processes: each submits a line, polls, reads results."""
 
 import json
 import shutil
@@ -28,6 +28,11 @@ def test_openapi_python_client(served: httpx.Client, work: Path) -> None:
     assert "Unable to parse" not in run(generator, "generate", "--path", "openapi.json", *options, folder=work)
     program = PROGRAMS / "openapi_python_client.py"
     held(served, run(tool("bin/python"), program, str(served.base_url), folder=work, PYTHONPATH=str(work)))
+
+
+def test_client_of_ogc_api_processes(served: httpx.Client, work: Path) -> None:
+    program = PROGRAMS / "ogc_processes.py"
+    held(served, run(tool("bin/python"), program, str(served.base_url.join("/ogc")), folder=work))
 
 
 def test_openapi_ts(served: httpx.Client, work: Path) -> None:

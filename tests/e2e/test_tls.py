@@ -87,6 +87,9 @@ def test_keys_jobs_streams_and_batches_pass(proxied: httpx.Client, settings: Set
     proxied.headers["Authorization"] = f"Bearer {key}"
     wait_until(lambda: proxied.get("/v1/jobs").status_code == 200, what="the key")
 
+    landing = proxied.get("/ogc/").json()
+    assert {link["href"].startswith(str(proxied.base_url)) for link in landing["links"]} == {True}
+
     accepted = proxied.post("/v1/jobs", json=short_request())
     assert accepted.status_code == 202, accepted.text
     address = accepted.headers["Location"]

@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
+from app.http.forwarded import own_address
 from app.http.problems import ProblemError, ProblemKind
 from app.http.strict_routes import KnownParametersRoute
 from app.jobs import job_records
@@ -46,8 +47,7 @@ def job_page(request: Request, job_id: UUID, caller: CallerOf, readers: Readers,
         seen = motions(session, job, found) if found is not None else []
     if found is None or found.here["failure"]:
         return page(request, "job_without_result.html", job=job, found=found)
-    service = str(request.base_url).rstrip("/")
-    repeat = recipes(job, service, with_key=caller.key_id is not None)
+    repeat = recipes(job, own_address(request.scope), with_key=caller.key_id is not None)
     shown = parts(job, found, units_of(request), seen)
     return page(request, "result.html", job=job, found=found, recipes=repeat, **shown)
 

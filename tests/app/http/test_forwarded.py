@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from app.http.forwarded import is_encrypted
+from app.http.forwarded import is_encrypted, own_address
 from app.runtime.settings import Settings
 from tests.app import service
 
@@ -50,6 +50,20 @@ def test_careful_headers_follow_any_proxy(tmp_path: Path) -> None:
         assert "strict-transport-security" not in client.get("/health/live").headers
     assert is_encrypted({"scheme": "https", "headers": []})
     assert not is_encrypted({"scheme": "http", "headers": [(b"x-forwarded-proto", b"http")]})
+
+
+def test_the_own_address_is_the_one_that_the_client_used() -> None:
+    host = (b"host", b"grid.example:8443")
+    scope = {"type": "http", "scheme": "http", "server": ("127.0.0.1", 8000), "path": "/gal/v1/jobs", "headers": [host]}
+    assert own_address(scope) == "http://grid.example:8443"
+    behind = {
+        **scope,
+        "root_path": "/gal/",
+        "query_string": b"a=b",
+        "headers": [host, (b"x-forwarded-proto", b"https")],
+    }
+    assert own_address(behind) == "https://grid.example:8443/gal"
+    assert own_address({**scope, "headers": []}) == "http://127.0.0.1:8000"
 
 
 def test_what_is_no_address_is_refused(tmp_path: Path) -> None:

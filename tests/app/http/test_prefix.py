@@ -102,6 +102,17 @@ def test_every_link_of_jobs_and_batches_leads_through_the_proxy(proxied: httpx.C
     assert proxied.get(f"{job}/results", headers={"Accept-Encoding": "gzip"}).json()["limit_cycles"]
 
 
+def test_every_link_of_ogc_api_processes_is_a_whole_address_of_the_proxy(proxied: httpx.Client) -> None:
+    prefer, execution = {"Prefer": "respond-async"}, f"{PREFIX}/ogc/processes/galloping/execution"
+    posted = proxied.post(execution, json={"inputs": short_request()}, headers=prefer)
+    pages = [proxied.get(f"{PREFIX}/ogc{path}").json() for path in ("", "/processes", "/processes/galloping", "/jobs")]
+    found = [posted.headers["Location"], *(link for page in (posted.json(), *pages) for link in addresses(page))]
+    assert len(found) > 15
+    for address in found:
+        assert address.startswith(str(proxied.base_url.join(f"{PREFIX}/"))), address
+        assert proxied.get(address).status_code in {200, 405}, address  # a link to what takes a POST
+
+
 def test_a_problem_names_its_page_behind_the_proxy(proxied: httpx.Client) -> None:
     problem = proxied.get(f"{PREFIX}/v1/nothing").json()
     assert problem["instance"] == f"{PREFIX}/v1/nothing"

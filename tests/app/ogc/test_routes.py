@@ -10,6 +10,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from owslib.ogcapi.processes import Processes
 
+from app.ogc import requests
 from app.routes.own_documentation import KNOWN_LINE
 from app.runtime.settings import Settings
 from tests.app import service
@@ -79,7 +80,9 @@ def working(own_client: httpx.Client, own_settings: Settings) -> Iterator[httpx.
 
 
 def test_the_landing_page_leads_to_everything(shared_client: httpx.Client) -> None:
-    links = held(LANDING, shared_client.get("/ogc/").json())["links"]
+    landing = held(LANDING, shared_client.get("/ogc/").json())
+    assert shared_client.get("/ogc").json() == landing
+    links = landing["links"]
     assert {"self", "service-desc", "conformance", "http://www.opengis.net/def/rel/ogc/1.0/processes"} <= {
         link["rel"] for link in links
     }
@@ -107,6 +110,8 @@ def test_the_process_is_listed_and_described_with_schemas(shared_client: httpx.C
     missing = shared_client.get("/ogc/processes/other")
     assert missing.status_code == 404
     assert missing.json()["type"].endswith("/1.0/no-such-process")
+    unknown = shared_client.post("/ogc/processes/other/execution", json={})
+    assert (unknown.status_code, unknown.json()["type"]) == (404, missing.json()["type"])
 
 
 def test_an_execution_is_asynchronous_where_the_client_prefers_it(
@@ -115,6 +120,7 @@ def test_an_execution_is_asynchronous_where_the_client_prefers_it(
     posted = own_client.post(EXECUTION, json={"inputs": short_request()}, headers=ASYNC)
     assert (posted.status_code, posted.headers["Preference-Applied"]) == (201, "respond-async")
     job = posted.headers["Location"]
+    assert job == str(own_client.base_url.join(f"/ogc/jobs/{posted.json()['jobID']}"))
     assert held(STATUS_INFO, posted.json())["status"] == "accepted"
     early = own_client.get(f"{job}/results")
     assert (early.status_code, early.json()["type"][-17:]) == (404, "/result-not-ready")
@@ -142,6 +148,9 @@ def test_a_short_execution_answers_with_its_results(working: httpx.Client) -> No
     raw = working.post(EXECUTION, json=asked)
     assert raw.status_code == 200, raw.text
     assert raw.json()["limit_cycles"]
+    (monitor,) = raw.links.values()
+    assert monitor["rel"] == "monitor"
+    assert held(STATUS_INFO, working.get(monitor["url"]).json())["status"] == "successful"
     document = working.post(EXECUTION, json={**asked, "response": "document", "mode": "auto"})
     assert document.json()["result"]["value"]["limit_cycles"] == raw.json()["limit_cycles"]
 
@@ -173,6 +182,8 @@ def test_the_list_of_jobs_is_filtered_and_paged(own_client: httpx.Client, own_se
     assert [job["jobID"] for job in jobs("status=successful&status=failed")] == [first]
     assert len(jobs("type=process&processID=galloping")) == 3
     assert jobs("processID=other") == []
+    assert [job["jobID"] for job in jobs("status=successful,failed&processID=other,galloping&f=json")] == [first]
+    assert len(jobs("limit=10000")) == 3
     assert len(jobs("datetime=2000-01-01T00:00:00Z/..")) == 3
     assert jobs("datetime=../2000-01-01T00:00:00Z") == []
     assert [job["jobID"] for job in jobs("minDuration=0")] == [first]
@@ -183,12 +194,33 @@ def test_the_list_of_jobs_is_filtered_and_paged(own_client: httpx.Client, own_se
     assert own_client.get("/ogc/jobs?datetime=soon").status_code == 400
 
 
+def test_a_page_of_jobs_has_no_more_than_the_service_allows(
+    own_client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(requests, "_LARGEST_PAGE", 1)
+    for _ in range(2):
+        service.submit(own_client)
+    page = own_client.get("/ogc/jobs?limit=1000").json()
+    following = next(link["href"] for link in page["links"] if link["rel"] == "next")
+    older = own_client.get(following).json()
+    assert [len(found["jobs"]) for found in (page, older)] == [1, 1]
+    assert page["jobs"][0]["jobID"] != older["jobs"][0]["jobID"]
+
+
+@pytest.mark.parametrize("member", ["subscriber", "subscribers"])
+def test_a_subscriber_to_failures_alone_is_heard_under_both_names(own_client: httpx.Client, member: str) -> None:
+    asked = {"inputs": short_request(), member: {"failedUri": "https://127.0.0.1/hook"}}
+    refused = own_client.post(EXECUTION, json=asked, headers=ASYNC)
+    assert [fault["pointer"] for fault in refused.json()["errors"]] == ["/subscriber/failedUri"]
+
+
 def test_owslib_finds_and_runs_the_process(working: httpx.Client) -> None:
     service_of = Processes(str(working.base_url.join("/ogc/")))
     assert [process["id"] for process in service_of.processes()] == ["galloping"]
     assert "line" in service_of.process("galloping")["inputs"]
     done = service_of.execute("galloping", short_request(), response="document")
     assert done["result"]["value"]["limit_cycles"]
-    begun = service_of.execute("galloping", short_request(), async_=True)
-    address = begun if isinstance(begun, str) else f"/ogc/jobs/{begun['jobID']}"
-    wait_until(lambda: working.get(address).json()["status"] == "successful", what="the job")
+    service_of.execute("galloping", short_request(), async_=True)
+    job = service_of.response_headers["Location"]
+    wait_until(lambda: working.get(job).json()["status"] == "successful", what="the job")
+    assert working.get(f"{job}/results").json()["result"]["value"]["limit_cycles"]
