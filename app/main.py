@@ -56,7 +56,7 @@ from app.routes import (
 from app.runtime import telemetry
 from app.runtime.settings import Settings, get_settings
 from app.runtime.signing import make_signing_key
-from app.security.gate import Gate
+from app.security.gate import Gate, known_callers
 from app.security.quotas import Meter
 from app.security.strangers import Strangers
 from app.storage.database import make_engine, session_factory
@@ -119,7 +119,8 @@ def create_app(settings: Settings | None = None) -> Service:
     _equip(app, settings, database)
     app.state.meter = meter = Meter(settings)
     app.state.strangers = strangers = Strangers(settings, app.state.readers, meter)
-    app.add_middleware(Gate, settings, app.state.readers, app.state.writers, meter, strangers)
+    app.state.callers = callers = known_callers(app.state.readers, app.state.writers, settings.key_cache_seconds)
+    app.add_middleware(Gate, settings, app.state.readers, callers, meter, strangers)
     of_batches = dict.fromkeys((*batch_intake.ADDRESSES, views.BATCH_FILES), settings.max_batch_bytes)
     limits = {"": settings.max_body_bytes, **of_batches}
     slowest = settings.silent_body_seconds, settings.least_body_bytes_per_second

@@ -13,6 +13,7 @@ from app.batches import batch_records
 from app.jobs import idempotency, leases
 from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.runtime.settings import Settings
+from app.security import sessions as sessions_of_browsers
 from app.storage import counters, steady_clock
 
 _logger = logging.getLogger(__name__)
@@ -59,6 +60,7 @@ def sweep(sessions: sessionmaker[Session], settings: Settings) -> int:
         batch_records.discard_abandoned(session)
         counters.fold(session)
         idempotency.forget_expired(session)
+        sessions_of_browsers.forget_expired(session)
     return sum(_send_waiting(sessions, settings, chunks) for chunks in (False, True))
 
 

@@ -54,6 +54,10 @@ class ExpiringCache(Generic[Key, Value]):
             self._forget(key, entry)
         return value
 
+    def forget(self, key: Key) -> None:
+        """Let the next request load the value of a key anew."""
+        self._entries.pop(key, None)
+
     def _forget(self, key: Key, entry: _Entry[Value]) -> None:
         if self._entries.get(key) is entry:
             del self._entries[key]

@@ -19,6 +19,7 @@ from app.security import keys, sessions
 from app.security.caller import LOCAL, Caller, Scope
 from app.security.origins import Headers, is_from_this_machine, is_of_another_site, is_told_of_another_site
 from app.security.quotas import Meter, Quota, Standing
+from app.security.sessions import Shown
 from app.security.strangers import Strangers
 from app.security.tokens import IssuerUnavailable, NotAccepted, is_token, tokens_of
 from app.security.under_way import while_admitted
@@ -44,7 +45,7 @@ class Gate:
         app: types.ASGIApp,
         settings: Settings,
         readers: sessionmaker[Session],
-        writers: sessionmaker[Session],
+        callers: ExpiringCache[Shown, Caller | None],
         meter: Meter,
         strangers: Strangers,
     ) -> None:
@@ -53,7 +54,7 @@ class Gate:
         self._settings = settings
         self._meter = meter
         self._strangers = strangers
-        self._callers = ExpiringCache(partial(_look_up, readers, writers), settings.key_cache_seconds)
+        self._callers = callers
         self._tokens = tokens_of(settings)
         self._bearers = ExpiringCache(self._tokens.caller, settings.key_cache_seconds) if self._tokens else None
         self._unguarded: ExpiringCache[str, bool] = ExpiringCache(
@@ -114,12 +115,12 @@ class Gate:
         token = _bearer(headers)
         if self._bearers is not None and token is not None and is_token(token):
             return await self._caller_of_token(self._bearers, scope, token)
-        digest = self._digest(scope, headers)
-        if digest is None:
+        shown = self._shown(scope, headers)
+        if shown is None:
             return await self._local(scope, headers)
-        if counted and not self._callers.holds(digest):
-            _within(await self._strangers.try_key(scope, digest))
-        caller = await self._callers.get(digest)
+        if counted and not self._callers.holds(shown):
+            _within(await self._strangers.try_key(scope, shown.digest))
+        caller = await self._callers.get(shown)
         if caller is None:
             detail = "The key is unknown, revoked or expired."
             raise _refused(ProblemKind.UNAUTHENTICATED, detail, error="invalid_token")
@@ -146,16 +147,16 @@ class Gate:
             detail = "The issuer of tokens does not give its keys, so the token cannot be checked."
             raise ProblemError(ProblemKind.UNAVAILABLE, detail, headers={"Retry-After": "5"}) from error
 
-    def _digest(self, scope: types.Scope, headers: Headers) -> str | None:
-        """Return the digest of the key that a request shows, itself or by its session."""
+    def _shown(self, scope: types.Scope, headers: Headers) -> Shown | None:
+        """Return the key that a request shows, itself or by its session."""
         text = _bearer(headers)
         if text is not None:
-            return keys.digest_of(text)
+            return Shown(keys.digest_of(text))
         path = path_of(scope)
         if is_told_of_another_site(scope, headers):
             return None
         if b"cookie" in headers and (scope["method"] in {"GET", "HEAD"} or path.startswith(f"{_PAGES}/")):
-            return sessions.digest_of(self._settings, headers[b"cookie"].decode("latin-1"))
+            return sessions.shown_by(self._settings, headers[b"cookie"].decode("latin-1"))
         return None
 
 
@@ -213,12 +214,21 @@ class _Answering:
         await self._send(message)
 
 
-def _look_up(readers: sessionmaker[Session], writers: sessionmaker[Session], digest: str) -> Caller | None:
+def known_callers(
+    readers: sessionmaker[Session], writers: sessionmaker[Session], seconds: float
+) -> ExpiringCache[Shown, Caller | None]:
+    """Return the callers of keys and sessions, looked up every so many seconds; None for what admits nobody."""
+    return ExpiringCache(partial(_look_up, readers, writers), seconds)
+
+
+def _look_up(readers: sessionmaker[Session], writers: sessionmaker[Session], shown: Shown) -> Caller | None:
     with readers() as session:
-        caller, use_to_record = keys.look_up(session, digest)
+        caller, use_to_record = keys.look_up(session, shown.digest)
+        if shown.session is not None and sessions.is_ended(session, shown.session):
+            return None
     if use_to_record:
         with suppress(SQLAlchemyError), writers.begin() as session:  # callers may read even if the database is full
-            keys.record_use(session, digest)
+            keys.record_use(session, shown.digest)
     return caller
 
 

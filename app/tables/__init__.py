@@ -1,6 +1,6 @@
 """The SQL tables: jobs, batches, results, keys, audit, workers, clock and more. One schema for both databases."""
 
-from app.tables.access import ApiKey, AuditAction, AuditEvent
+from app.tables.access import ApiKey, AuditAction, AuditEvent, EndedSession
 from app.tables.base import ENDED, Base, FailureKind, JobEventKind, JobStatus, UtcDateTime
 from app.tables.batches import Batch, BatchItem
 from app.tables.counter_increments import CounterIncrement
@@ -23,6 +23,7 @@ __all__ = [
     "CounterIncrement",
     "DeliveryEvent",
     "DeliveryState",
+    "EndedSession",
     "FailureKind",
     "IdempotencyKey",
     "Job",

@@ -4,7 +4,7 @@ from datetime import datetime
 from enum import StrEnum
 from uuid import UUID
 
-from sqlalchemy import Enum, String, Text
+from sqlalchemy import Enum, Index, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.tables.base import Base
@@ -17,6 +17,7 @@ class AuditAction(StrEnum):
     KEY_REVOKED = "key_revoked"
     KEY_REFUSED = "key_refused"
     SIGNED_IN = "signed_in"
+    SIGNED_OUT = "signed_out"
     JOB_SUBMITTED = "job_submitted"
     JOB_CANCELLED = "job_cancelled"
     JOB_RELABELLED = "job_relabelled"
@@ -48,6 +49,16 @@ class ApiKey(Base):
     prefix: Mapped[str] = mapped_column(String(32))
     digest: Mapped[str] = mapped_column(String(64), unique=True)
     scopes: Mapped[list[str]]
+
+
+class EndedSession(Base):
+    """A session of a browser that was ended before its cookie expires, which it has done by then on every clock."""
+
+    __tablename__ = "ended_sessions"
+    __table_args__ = (Index(None, "expires_at"),)
+
+    id: Mapped[UUID] = mapped_column(primary_key=True)
+    expires_at: Mapped[datetime]
 
 
 class AuditEvent(Base):

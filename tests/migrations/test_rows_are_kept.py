@@ -5,6 +5,7 @@ The first revision is left out: it knows no batches, and the way down to it remo
 
 from collections.abc import Iterator
 from typing import Any
+from uuid import uuid4
 
 import pytest
 from alembic import command
@@ -21,6 +22,7 @@ from app.owned import records
 from app.reference import conductors
 from app.runtime.settings import Settings
 from app.security import keys
+from app.security import sessions as browser_sessions
 from app.security.caller import LOCAL, Scope
 from app.storage import counters
 from app.storage.database import make_engine
@@ -52,6 +54,7 @@ def fill(sessions: sessionmaker[Session], settings: Settings) -> None:
         tagged = create_job(session, LOCAL, {"line": {}}, name="n", asset_id="a", tags={"b": "c"})
         webhooks.register(session, LOCAL.owner, Subscription("https://a.example/hook"), job_id=tagged.id)
         keys.create(session, "acme", tuple(Scope), "SCADA", None)
+        browser_sessions.end(session, uuid4())
         idempotency.keep(session, [Kept(new_key("acme", "k"), "f", Answer(202, {"a": "b"}, "{}"))])
         workers.report(session, settings, "here")
         records.put_conductors(session, LOCAL.owner, conductors.named("Drake"))

@@ -1,6 +1,7 @@
 """Sign in with a key, and out again. The cookie is for this service only, and scripts cannot read it."""
 
 from contextlib import suppress
+from uuid import UUID
 
 from anyio import to_thread
 from fastapi import APIRouter, Request, Response
@@ -13,7 +14,9 @@ from app.http.strict_routes import KnownParametersRoute
 from app.pages.forms import Fields, local_path
 from app.pages.frame import address, moved, page
 from app.pages.wording import words
+from app.routes.dependencies import CallerOf
 from app.security import audit, keys, sessions
+from app.security.caller import Caller
 from app.tables import AuditAction
 
 router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
@@ -56,11 +59,22 @@ async def sign_in(request: Request, fields: Fields) -> Response:
 
 
 @router.post("/pages/sign-out")
-async def sign_out(request: Request, fields: Fields) -> Response:
-    """End the session of this browser."""
+async def sign_out(request: Request, fields: Fields, caller: CallerOf) -> Response:
+    """End the session, in this browser and for every copy of its cookie."""
+    state = request.app.state
+    shown = sessions.shown_by(state.settings, request.headers.get("cookie", ""))
+    if shown is not None and shown.session is not None:
+        await to_thread.run_sync(_end, state, caller, shown.session)
+        state.callers.forget(shown)  # other processes look within `key_cache_seconds`
     answer = moved(request, "/pages/sign-in")
     answer.delete_cookie(sessions.COOKIE, path=address(request)("/"), httponly=True, samesite="lax")
     return answer
+
+
+def _end(state: State, caller: Caller, number: UUID) -> None:
+    with state.writers.begin() as session:
+        sessions.end(session, number)
+        audit.record(session, caller, AuditAction.SIGNED_OUT, caller.key_id)
 
 
 def _begin(state: State, digest: str) -> bool:

@@ -8,7 +8,7 @@ from app.security import keys, sessions
 from app.security.caller import Scope
 from app.storage.database import make_engine, session_factory
 from tests.app import service
-from tests.app.pages.reading import BROWSER, read, send
+from tests.app.pages.reading import BROWSER, Page, read, send
 
 SIGN_IN = "/pages/sign-in"
 
@@ -103,3 +103,41 @@ def test_signing_out_ends_the_session(own_client: httpx.Client, make_key: Callab
     assert send(own_client, "/pages/sign-out", {}).headers["location"] == SIGN_IN
     assert sessions.COOKIE not in own_client.cookies
     assert own_client.get("/pages/jobs", headers=BROWSER).status_code == 303
+
+
+def test_a_copied_cookie_is_refused_after_the_sign_out(
+    own_settings: Settings, own_client: httpx.Client, make_key: Callable[..., str]
+) -> None:
+    key = make_key("north")
+    job = service.submit_as(own_client, {"Authorization": f"Bearer {key}"})
+    signed_in(own_client, key)
+    copied = {"Cookie": f"{sessions.COOKIE}={own_client.cookies[sessions.COOKIE]}", **BROWSER}
+    signed_in(own_client, key)  # another session of the same key
+    other = {"Cookie": f"{sessions.COOKIE}={own_client.cookies[sessions.COOKIE]}", **BROWSER}
+    own_client.cookies.clear()
+    assert own_client.get("/pages/jobs", headers=copied).status_code == 200
+    mark = Page(own_client.get("/", headers=copied)).fields["mark"]
+    assert own_client.post("/pages/sign-out", data={"mark": mark}, headers=copied).status_code == 303
+    refused = own_client.get("/pages/jobs", headers=copied)
+    assert (refused.status_code, refused.headers["location"]) == (303, f"{SIGN_IN}?back=/pages/jobs")
+    assert own_client.get(f"/v1/jobs/{job}", headers={**copied, "Accept": "*/*"}).status_code == 401
+    with service.running(own_settings) as another:  # a second process, or the same one after a restart
+        assert another.get("/pages/jobs", headers=copied).status_code == 303
+        assert another.get("/pages/jobs", headers=other).status_code == 200
+    assert own_client.get("/pages/jobs", headers=other).status_code == 200
+    assert own_client.get(f"/v1/jobs/{job}", headers={"Authorization": f"Bearer {key}"}).status_code == 200
+
+
+def test_a_key_that_is_replaced_ends_its_sessions(
+    own_settings: Settings, own_client: httpx.Client, make_key: Callable[..., str]
+) -> None:
+    old = make_key("north")
+    make_key("north")
+    signed_in(own_client, old)
+    engine = make_engine(own_settings)
+    with session_factory(engine).begin() as session:
+        keys.revoke(session, old)
+    engine.dispose()
+    with service.running(own_settings) as another:  # one that has not looked the key up before
+        headers = {"Cookie": f"{sessions.COOKIE}={own_client.cookies[sessions.COOKIE]}", **BROWSER}
+        assert another.get("/pages/jobs", headers=headers).status_code == 303
