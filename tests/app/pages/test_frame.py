@@ -1,11 +1,18 @@
+from typing import Any
+from uuid import UUID
+
 import anyio
 import httpx
 import pytest
+from fastapi.routing import APIRoute
 
 from app.main import create_app
 from app.pages.frame import POLICY
+from app.pages.views import routers
 from app.runtime.settings import Settings
+from tests.app import service
 from tests.app.pages.reading import BROWSER, Page, read
+from tests.documents import short_request
 
 
 def test_a_problem_is_a_page_for_people_and_a_document_for_programs(shared_client: httpx.Client) -> None:
@@ -22,6 +29,57 @@ def test_a_problem_is_a_page_for_people_and_a_document_for_programs(shared_clien
 def test_the_policy_allows_no_inline_script_or_style() -> None:
     assert "unsafe" not in POLICY
     assert "default-src 'none'" in POLICY
+
+
+PAGES = {
+    "default-src": "'none'",
+    "script-src": "'self'",
+    "style-src": "'self'",
+    "img-src": "'self' data: blob:",
+    "connect-src": "'self'",
+    "base-uri": "'none'",
+    "form-action": "'self'",
+    "frame-ancestors": "'none'",
+}
+FILES = {  # pictures, which have styles of their own, and documents that no browser shows as a page
+    "default-src": "'none'",
+    "style-src": "'unsafe-inline'",
+    "img-src": "data:",
+    "base-uri": "'none'",
+    "form-action": "'none'",
+    "frame-ancestors": "'none'",
+}
+
+
+def directives(answer: httpx.Response) -> dict[str, str]:
+    (policy,) = answer.headers.get_list("content-security-policy")
+    pairs = [part.strip().partition(" ") for part in policy.split(";")]
+    assert len({name for name, _, _ in pairs}) == len(pairs)  # browsers take the first of two alike
+    return {name: value for name, _, value in pairs}
+
+
+def test_every_page_has_the_policy_to_the_letter(
+    shared_client: httpx.Client, shared_settings: Settings, known_job: str
+) -> None:
+    body = {"lines": [short_request()["line"]], "analysis": short_request()["analysis"]}
+    batch = shared_client.post("/v1/batches", json=body).headers["location"]
+    service.work_off(shared_client, shared_settings, batch)
+    names = {"job_id": known_job, "batch_id": batch.rpartition("/")[2], "number": "1", "name": "c11-twin"}
+    paths = sorted({route.path.format(**names) for route in _read_by_browsers()})
+    assert len(paths) > 15 and "/pages/sign-in" in paths and f"/pages/jobs/{known_job}/what-if" in paths
+    for path in paths:
+        answer = shared_client.get(path, headers=BROWSER, params={"format": "csv"} if "results" in path else {})
+        assert answer.status_code in {200, 303}, (path, answer.text[:200])
+        shown = answer.headers.get("content-type", "").startswith("text/html")
+        assert directives(answer) == (PAGES if shown else FILES), path
+    missing = shared_client.get(f"/pages/jobs/{UUID(int=0)}", headers=BROWSER)
+    assert (missing.status_code, directives(missing)) == (404, PAGES)
+
+
+def _read_by_browsers() -> list[Any]:
+    """Return the routes of all pages that are read by a GET."""
+    found = [route for router in routers() for route in router.routes]
+    return [route for route in found if isinstance(route, APIRoute) and "GET" in route.methods]
 
 
 @pytest.mark.parametrize("path", ["/", "/pages/jobs", "/pages/lines/new"])

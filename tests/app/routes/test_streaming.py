@@ -1,19 +1,22 @@
-"""Clients that stop reading an answer, beside others."""
+"""Clients that stop reading an answer, beside others, and readers of results that turn out to be damaged."""
 
 import contextlib
+import json
 import socket
 from collections.abc import Iterator
 from uuid import UUID
 
 import httpx
 import pytest
-from sqlalchemy import insert, select
+from sqlalchemy import insert, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.runtime.settings import Settings
 from app.storage import database
-from app.tables import PointRow
+from app.tables import BatchItem, PointRow
 from tests.app import service
+from tests.app.lines import SHORT
+from tests.documents import short_request
 
 POINTS = 800
 CONNECTIONS = 3  # of the database
@@ -60,3 +63,58 @@ def _check(client: httpx.Client, address: str) -> None:
         assert client.get(f"{address}/results").content == whole
         rest = b"".join(iter(lambda: connections[-1].recv(1 << 20), b""))
     assert rest.endswith(b"\r\n0\r\n\r\n")
+
+
+CODINGS = ("identity", "gzip", "zstd")
+OF_JOB = ("", "/limit-cycles?format=json", "/limit-cycles?format=csv", "/limit-cycles?format=parquet")
+OF_BATCH = ("?format=ndjson", "?table=limit-cycles&format=ndjson", "?table=limit-cycles&format=csv")
+
+
+def test_results_that_are_damaged_further_on_never_look_whole(
+    settings: Settings, sessions: sessionmaker[Session]
+) -> None:
+    with service.running(settings) as client:
+        address = service.finished(client, settings)
+        enlarge(sessions, UUID(address.rpartition("/")[2]))
+        assert_cut(client, sessions, [f"{address}/results{what}" for what in OF_JOB])
+
+
+def test_a_batch_that_is_damaged_further_on_never_looks_whole(
+    settings: Settings, sessions: sessionmaker[Session]
+) -> None:
+    with service.running(settings) as client:
+        body = {"lines": [short_request()["line"]], "analysis": SHORT}
+        address = client.post("/v1/batches", json=body).headers["location"]
+        service.work_off(client, settings, address)
+        with sessions.begin() as session:
+            for table, number in ((BatchItem.__table__, "number"), (PointRow.__table__, "point")):
+                row = dict(session.execute(select(table)).mappings().one())
+                session.execute(insert(table), [{**row, number: line} for line in range(2, POINTS)])
+        assert_cut(client, sessions, [f"{address}/results{what}" for what in OF_BATCH])
+        assert client.get(f"{address}/results?format=csv").status_code == 200  # the summary stands in other columns
+
+
+def assert_cut(client: httpx.Client, sessions: sessionmaker[Session], addresses: list[str]) -> None:
+    """Damage one of the last results: answers are refused, or end in an error, for every format and encoding."""
+    asked = [(address, {"Accept-Encoding": coding}) for address in addresses for coding in CODINGS]
+    for address, headers in asked:
+        assert client.get(address, headers=headers).status_code == 200
+    with sessions.begin() as session:
+        row = session.scalars(select(PointRow).where(PointRow.point == POINTS - 10)).one()
+        packed = bytearray(row.tables or b"")
+        packed[len(packed) // 2] ^= 1
+        session.execute(update(PointRow).where(PointRow.point == POINTS - 10).values(tables=bytes(packed)))
+    assert {fate(client, address, headers) for address, headers in asked if "parquet" not in address} >= {"cut"}
+    assert {fate(client, address, headers) for address, headers in asked} <= {"cut", "refused"}
+
+
+def fate(client: httpx.Client, address: str, headers: dict[str, str]) -> str:
+    """Tell what a reader of a damaged result sees."""
+    with client.stream("GET", address, headers=headers) as answer:
+        if answer.status_code == 410:  # nothing was sent before the damage was found
+            assert json.loads(answer.read())["type"] == "/problems/damaged"
+            return "refused"
+        assert answer.status_code == 200
+        with pytest.raises(httpx.RemoteProtocolError, match="incomplete chunked read"):
+            answer.read()
+        return "cut"
