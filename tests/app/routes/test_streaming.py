@@ -87,8 +87,8 @@ def test_a_batch_that_is_damaged_further_on_never_looks_whole(
         address = client.post("/v1/batches", json=body).headers["location"]
         service.work_off(client, settings, address)
         with sessions.begin() as session:
-            for table, number in ((BatchItem.__table__, "number"), (PointRow.__table__, "point")):
-                row = dict(session.execute(select(table)).mappings().one())
+            for table, number in ((BatchItem, "number"), (PointRow, "point")):
+                row = dict(session.execute(select(table.__table__)).mappings().one())
                 session.execute(insert(table), [{**row, number: line} for line in range(2, POINTS)])
         assert_cut(client, sessions, [f"{address}/results{what}" for what in OF_BATCH])
         assert client.get(f"{address}/results?format=csv").status_code == 200  # the summary stands in other columns
