@@ -17,6 +17,7 @@ from app.pages.frame import address, moved, page, wants_page
 from app.pages.submitting import submit
 from app.pages.wording import words
 from app.routes.dependencies import CallerOf, Readers
+from app.runtime.version import SERVICE_VERSION
 
 router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
 
@@ -32,6 +33,9 @@ _LINKS = {
     "ice-shapes": "/v1/ice-shapes",
     "fields": "/v1/fields",
     "tables": "/v1/tables",
+    "version": "/v1/version",
+    "conformance": "/ogc/conformance",
+    "ogc-api-processes": "/ogc/",
 }
 
 
@@ -40,7 +44,8 @@ def start(request: Request, caller: CallerOf, readers: Readers) -> Response:
     """Return the start page to a browser, and to a program what the service is and where its parts are."""
     if not wants_page(request):
         links = [{"rel": rel, "href": address(request)(path)} for rel, path in _LINKS.items()]
-        document = {"service": "Galloping of iced conductors", "engine_version": ENGINE_VERSION, "links": links}
+        versions = {"version": SERVICE_VERSION, "engine_version": ENGINE_VERSION}
+        document = {"service": "Galloping of iced conductors", **versions, "links": links}
         return JSONResponse(document, headers={"Vary": "Accept"})
     with readers() as session:
         jobs = job_records.page(session, caller.owner, JobFilters(), None, _RECENT)

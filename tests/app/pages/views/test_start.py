@@ -6,6 +6,8 @@ from tests.app.pages.reading import BROWSER, read, send
 def test_a_program_finds_the_parts_of_the_service(shared_client: httpx.Client) -> None:
     document = shared_client.get("/").json()
     assert document["engine_version"]
+    assert document["version"] == shared_client.get("/v1/version").json()["service"]
+    assert {"version", "conformance"} <= {link["rel"] for link in document["links"]}
     for link in document["links"]:
         assert shared_client.get(link["href"]).status_code in {200, 405, 503}, link
     assert shared_client.get("/").headers["vary"] == "Accept"
