@@ -103,7 +103,7 @@ def jacobian(model: ReducedModel, orbits: Orbits) -> FloatArray:
     samples = np.moveaxis(gradient, 1, -1)
     linear = np.stack([omega**2 * model.mass, omega * model.damping, model.stiffness], axis=-1)
     parts = [linear, -((speed**2)[..., None]) * samples[:, :, :m], -((speed * omega)[..., None]) * samples[:, :, m:]]
-    flat = np.concatenate(parts, axis=-1).reshape(cycles * m * m, -1 if cycles else 0)
+    flat = np.concatenate(parts, axis=-1).reshape(cycles * m * m, 3 + 2 * samples.shape[-1])
     blocks = (flat @ _block_basis(size // 2, samples.shape[-1])).reshape(cycles, m, m, size, size)
     by_coefficients = blocks.swapaxes(2, 3).reshape(cycles, m * size, m * size)
     slope = orbits.coefficients @ fourier_basis.derivative.T

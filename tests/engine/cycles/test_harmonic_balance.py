@@ -20,6 +20,7 @@ from engine.cycles.harmonic_balance import (
     resized,
     states,
 )
+from engine.kernels import compiled
 from engine.models.reduced_model import ReducedModel, resultant, take
 from tests.builders import Oscillators, hand_made, hybrid, source_line
 from tests.engine.motions import MODELS, random_orbits
@@ -48,6 +49,17 @@ def test_jacobian_is_the_derivative_of_the_residual(name: str) -> None:
         second = shifted(column, 2.0 * step) - shifted(column, -2.0 * step)
         expected = (8.0 * first - second) / (12.0 * step)
         assert found[..., column] == pytest.approx(expected, rel=1e-6, abs=1e-9 * np.abs(found).max())
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_no_cycles_have_no_slopes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    model, none = MODELS[name](), np.zeros(0, dtype=np.intp)
+    orbits, shapes = Orbits(np.zeros((0, model.mass.shape[-1], 3)), np.zeros(0), np.zeros(0)), []
+    for compiled_ones in (compiled.AVAILABLE, False):
+        monkeypatch.setattr(compiled, "AVAILABLE", compiled_ones)
+        shapes.append([found.shape for found in linearized(model, none, orbits)])
+    n = 3 * model.mass.shape[-1]
+    assert shapes == [[(0, n), (0, n, n + 2)]] * 2
 
 
 @pytest.mark.parametrize("name", MODELS)
