@@ -13,6 +13,16 @@ from app.schemas.faults import BadInput, BodyTooLarge, Fault, json_pointer, pars
 _SPACE = re.compile(rb"[ \t\r\n]*")
 # A whole text in quotation marks, a bracket, or the mark with which an unfinished text begins.
 _MARK = re.compile(rb'"(?:[^"\\]++|\\.)*+"|[{}\[\]]|"', re.DOTALL)
+_DEEPEST_AT_ONCE = 8  # levels of brackets; a line has five
+
+
+def _nested(levels: int) -> bytes:
+    """Return the pattern of a whole object or list with so many levels of others in it."""
+    inner = rb'[^"{}\[\]]++|"(?:[^"\\]++|\\.)*+"' + (b"|" + _nested(levels - 1) if levels else b"")
+    return rb"[{\[](?:" + inner + rb")*+[}\]]"
+
+
+_WHOLE = re.compile(_nested(_DEEPEST_AT_ONCE), re.DOTALL)
 _PLAIN = re.compile(rb'[^\s,:\[\]{}"]*')
 _OPENING = b"{["
 _GATHERED_BYTES = 65_536
@@ -178,6 +188,9 @@ class _Text:
         first = self.peek()
         if first not in (b"{", b"[", b'"'):
             return self._plain(place)
+        whole = _WHOLE.match(self.buffer, self.at)
+        if whole is not None:  # most are not deep and have arrived; one search for each bracket and text costs more
+            return self._taken(whole.end() - self.at)
         scanned, depth = 0, 0
         while True:
             mark = _MARK.search(self.buffer, self.at + scanned)

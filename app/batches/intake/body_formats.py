@@ -20,6 +20,7 @@ from app.sheets.encodings import as_utf8
 _GZIP_WINDOW = 16 + zlib.MAX_WBITS
 _INFLATED_A_STEP = 1 << 18
 _IN_MEMORY_BYTES = 4_000_000
+_LENGTH_BYTES = 8
 _WRAPPER = '{"lines": [<the lines>], "analysis": {...}}, where analysis may be absent'
 _KNOWN = frozenset({"lines", "analysis", "defaults", "webhook_url"})
 
@@ -79,8 +80,8 @@ def gunzipped(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
 def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
     """Read a body `{"lines": [...], "analysis": {...}}` whose members may have any order.
 
-    The body is kept in a file and looked through twice, for its members and for its lines: parsed in one piece, it
-    would hold up the event loop.
+    Each line is cut out as it comes in, and kept in a file until the members are known, which may stand behind it:
+    parsed in one piece, the body would hold up the event loop.
 
     Raises
     ------
@@ -91,35 +92,41 @@ def read_json(pieces: Iterable[bytes], most_bytes: int) -> Incoming:
     """
     with ExitStack() as until_read:
         file = until_read.enter_context(tempfile.SpooledTemporaryFile(_IN_MEMORY_BYTES))
-        for piece in as_utf8(pieces):
-            if file.tell() + len(piece) > most_bytes:
-                raise BodyTooLarge(
-                    f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV."
-                )
-            file.write(piece)
-        _check_object(file)
-        cut = cut_features(_pieces_of(file), most_bytes, "lines")
-        for _ in cut.texts:
-            pass  # the members are complete behind the last line
+        cut = cut_features(_of_object(_bounded(as_utf8(pieces), most_bytes)), most_bytes, "lines")
+        for text in cut.texts:
+            file.write(len(text).to_bytes(_LENGTH_BYTES, "big") + text)
         document = {name: parse_json(text) for name, text in cut.members.items()}
         _check_members(document)
-        lines = map(_parsed, cut_features(_pieces_of(file), most_bytes, "lines").texts)
+        lines = map(_parsed, _texts_of(file))
         until_read.pop_all()  # the lines are read from the file
     analysis, url = document.get("analysis", {}), document.get("webhook_url")
     return Incoming(analysis, lines, url, file=file, defaults=document.get("defaults"))
 
 
-def _pieces_of(file: IO[bytes]) -> Iterator[bytes]:
-    file.seek(0)
-    return iter(partial(file.read, _INFLATED_A_STEP), b"")
+def _bounded(pieces: Iterable[bytes], most_bytes: int) -> Iterator[bytes]:
+    taken = 0
+    for piece in pieces:
+        taken += len(piece)
+        if taken > most_bytes:
+            raise BodyTooLarge(f"A JSON batch may have at most {most_bytes} bytes; send a larger one as NDJSON or CSV.")
+        yield piece
 
 
-def _check_object(file: IO[bytes]) -> None:
-    if next((piece for piece in map(bytes.lstrip, _pieces_of(file)) if piece), b"").startswith(b"{"):
-        return
+def _of_object(pieces: Iterator[bytes]) -> Iterator[bytes]:
+    """Yield the pieces of a text that is an object, or name the fault of another one, which is read whole for that."""
+    first = next((piece for piece in map(bytes.lstrip, pieces) if piece), b"")
+    if not first.startswith(b"{"):
+        bare = without_wrapper(parse_json(first + b"".join(pieces)), _WRAPPER)
+        raise BadInput([bare or Fault("", "not_an_object", "must be an object with lines and analysis")])
+    yield first
+    yield from pieces
+
+
+def _texts_of(file: IO[bytes]) -> Iterator[bytes]:
+    """Yield the texts of a file, each of which stands behind its length."""
     file.seek(0)
-    bare = without_wrapper(parse_json(file.read()), _WRAPPER)
-    raise BadInput([bare or Fault("", "not_an_object", "must be an object with lines and analysis")])
+    while length := file.read(_LENGTH_BYTES):
+        yield file.read(int.from_bytes(length, "big"))
 
 
 def _check_members(document: Mapping[str, Any]) -> None:

@@ -38,6 +38,15 @@ def test_any_document_is_cut_however_it_arrives(
     assert json.loads(cut.members["b"]) == behind and json.loads(cut.members["a{"]) == before
 
 
+@pytest.mark.parametrize("size", [1, 7, 100, 10_000])
+def test_deep_features_are_cut_like_flat_ones(size: int) -> None:
+    features = [json.loads("[" * depth + '{"a]": "[{"}, 1' + "]" * depth) for depth in range(1, 16)] * 3
+    body = json.dumps({"features": features, "b": features[-1]}).encode()
+    cut = cut_features(pieces(body, size), 10_000)
+    assert [json.loads(text) for text in cut.texts] == features
+    assert json.loads(cut.members["b"]) == features[-1]
+
+
 def test_a_document_without_features_is_whole() -> None:
     cut = cut_features([b' {"type": "Feature", "id": 1} '], 100)
     assert (cut.whole, cut.members, list(cut.texts)) == (True, {"type": b'"Feature"', "id": b"1"}, [])
