@@ -14,7 +14,7 @@ from engine.cycles.starts import explicit_starts
 from engine.each_wind import analyse_lines
 from engine.mechanics.cross_sections import FEWER_POINTS, PIECE_POINTS
 from engine.mechanics.finite_elements import FIELDS
-from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
+from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_eigenvalues, full_modes
 from engine.model_findings import ModelStack, findings_of
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
 from engine.models.discretization import (
@@ -45,7 +45,7 @@ from engine.spec import Analysis, DeviceEffect, Line, LoopCompetition, Model, St
 
 @dataclass(frozen=True, slots=True)
 class _Discretized:
-    """What every later step reads: the discretization, its shapes and, where asked for, its full modes.
+    """What every later step reads: the discretization, its shapes and, where their motions are asked for, full modes.
 
     winds: (lines, winds), at which the motions of each are searched [m/s]; scan: static states over the wind speed,
     where these follow it.
@@ -133,7 +133,7 @@ def _analyse_spans(lines: Sequence[Line], analysis: Analysis) -> Generator[Progr
         yield Progress(0.1 + 0.8 * number / len(parts), "critical wind speeds and limit cycles of the hybrid model")
         hybrid = [_analyse_hybrid(here, group, analysis) for group in loop_groups(analysis.loops, analysis)]
         found.append(list(hybrid) if Model.HYBRID in analysis.models else [])
-        if here.modes is not None and analysis.finite_element_loops:
+        if here.modes is not None:
             found[-1].append((yield from _analyse_finite_element(here, here.modes, hybrid, analysis)))
         frequencies = frequencies or _frequencies(here, hybrid, analysis)
         for state, rows in enumerate(_competitions(here, hybrid, analysis)):
@@ -151,7 +151,13 @@ def _frequencies(
     prepared: _Discretized, hybrid: Sequence[ModelFindings], analysis: Analysis
 ) -> list[NaturalFrequencies]:
     frequencies = [coupled_frequencies(part) for part in hybrid] if Model.HYBRID in analysis.models else []
-    return frequencies if prepared.modes is None else [*frequencies, full_frequencies(prepared.modes)]
+    if Model.FINITE_ELEMENT not in analysis.models:
+        return frequencies
+    loops, modes = _loops_of_modes(analysis), prepared.modes
+    if modes is not None:
+        return [*frequencies, full_frequencies(loops, modes.eigenvalues)]
+    eigenvalues = full_eigenvalues(prepared.discretization.matrices, prepared.shapes, loops)
+    return [*frequencies, full_frequencies(loops, eigenvalues)]
 
 
 def _in_each_wind(prepared: _Discretized, analysis: Analysis) -> list[_Discretized]:
@@ -190,7 +196,7 @@ def _discretized(lines: Sequence[Line], analysis: Analysis) -> _Discretized:
 
 
 def _modes(discretization: Discretization, analysis: Analysis) -> FullModes | None:
-    asked = Model.FINITE_ELEMENT in analysis.models
+    asked = Model.FINITE_ELEMENT in analysis.models and analysis.finite_element_loops
     return full_modes(discretization.matrices, _loops_of_modes(analysis)) if asked else None
 
 

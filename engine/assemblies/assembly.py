@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.finite_elements import FIELDS, Matrices
-from engine.mechanics.modes import solve_symmetric
+from engine.numerics.eigenproblems import solve_symmetric
 
 NEGLIGIBLE = 1e-12  # of the largest entry of a tie, below which it ties nothing
 

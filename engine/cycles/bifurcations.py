@@ -16,11 +16,11 @@ from engine.cycles.branches import ends_at_hopf_points
 from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, resized
 from engine.cycles.transitions import FACTORS, Kind, Transitions, branch_point_factors, product_of, transitions
-from engine.mechanics.modes import solve_symmetric
 from engine.models.critical_wind_speeds import Crossings, crossing_error
 from engine.models.reduced_model import ReducedModel
 from engine.numerics.branch_zeros import LocatedZeros, locate_zeros, project_onto_branches
 from engine.numerics.continuation import BranchPoints, make_points
+from engine.numerics.eigenproblems import solve_symmetric
 
 MORE_HARMONICS = 4  # added for locating a bifurcation to those that the branch was followed with
 STEP_FACTOR = 4  # on the number of steps of the Floquet integration

@@ -3,15 +3,20 @@
 Theory section 4. All problems are symmetric generalized eigenproblems, solved on stacks of lines.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.arrays import BoolArray, FloatArray, IntArray, merge_axes, take_rows
 from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, U, V, W
+from engine.numerics.eigenproblems import eigenvalues_alone, largest_sines, solve_symmetric, standard_form
 
 DIRECTIONS = (V, W, THETA)
 TORSIONAL = 2  # of the three directions
+FURTHER = (
+    2  # modes of each direction beyond the largest number of loops, in which modes of all freedoms are approximated
+)
+LARGEST_SINE = 0.1  # between a mode and its approximation, beyond which this one tells nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +26,13 @@ class DirectionalShapes:
     loops: the numbers of loops, in the order of the second axis. nodal: (lines, loops, 4, nodes), rows f_u, f_v, f_w,
     f_theta; f_v, f_w and f_theta have (2/L) int f^2 ds = 1 and the sign of sin(k pi s/L).
     angular_frequency: (lines, loops, 3) of the three eigenproblems [rad/s], NaN where the stiffness is negative.
+    lowest: (lines, 3, modes, freedoms), the lowest modes of each eigenproblem, whatever their loops.
     """
 
     loops: tuple[int, ...]
     nodal: FloatArray
     angular_frequency: FloatArray
+    lowest: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +62,13 @@ def directional_shapes(system: Matrices, arc_length: FloatArray, loops: tuple[in
     -------
     DirectionalShapes
     """
-    nodes = system.stiffness.shape[-1] // FIELDS
+    lines, freedoms, _ = system.stiffness.shape
+    nodes = freedoms // FIELDS
     shapes = DirectionalShapes(
         loops,
-        nodal=np.zeros((system.stiffness.shape[0], len(loops), FIELDS, nodes)),
-        angular_frequency=np.empty((system.stiffness.shape[0], len(loops), 3)),
+        nodal=np.zeros((lines, len(loops), FIELDS, nodes)),
+        angular_frequency=np.empty((lines, len(loops), 3)),
+        lowest=np.zeros((lines, 3, min(max(loops) + FURTHER, nodes - 2), freedoms)),
     )
     for direction in range(3):
         _solve_direction(shapes, direction, system, arc_length)
@@ -76,7 +85,8 @@ def turned_shapes(still: DirectionalShapes, system: Matrices, arc_length: FloatA
     system, arc_length : Matrices, (lines,)
         As for `directional_shapes`, at the new twist.
     """
-    shapes = replace(still, nodal=still.nodal.copy(), angular_frequency=still.angular_frequency.copy())
+    own = (still.nodal.copy(), still.angular_frequency.copy(), still.lowest.copy())
+    shapes = DirectionalShapes(still.loops, *own)
     _solve_direction(shapes, TORSIONAL, system, arc_length)
     return shapes
 
@@ -85,10 +95,12 @@ def _solve_direction(shapes: DirectionalShapes, direction: int, system: Matrices
     """Solve the eigenproblem of a direction, in place."""
     fields, nodes = ((U, V), (W,), (THETA,))[direction], shapes.nodal.shape[-1]
     freedoms = _freedoms(fields, nodes)
-    vectors, values = _labelled(system, freedoms, (fields[-1],), shapes.loops)
+    vectors, values = _labelled(system, freedoms, (fields[-1],), shapes.loops, shapes.lowest.shape[2])
+    labels = len(shapes.loops)
     whole = np.zeros((*vectors.shape[:2], FIELDS * nodes))
     whole[..., freedoms] = vectors
-    shape = whole.reshape(*vectors.shape[:2], nodes, FIELDS).swapaxes(-1, -2)[:, :, list(fields)]
+    shapes.lowest[:, direction] = whole[:, labels:]
+    shape = whole[:, :labels].reshape(-1, labels, nodes, FIELDS).swapaxes(-1, -2)[:, :, list(fields)]
     shapes.nodal[:, :, list(fields)] = _normalized(shape, system, arc_length)
     shapes.angular_frequency[:, :, direction] = np.sqrt(np.where(values > 0.0, values, np.nan))
 
@@ -128,6 +140,63 @@ def full_modes(system: Matrices, loops: tuple[int, ...]) -> FullModes:
     return FullModes(loops, whole.reshape(*shape, -1), values.reshape(shape))
 
 
+def full_eigenvalues(system: Matrices, shapes: DirectionalShapes, loops: tuple[int, ...]) -> FloatArray:
+    """Compute the eigenvalues of the modes that `full_modes` labels, without their vectors, which take twice as long.
+
+    All eigenvalues are solved for. Which label each of the lowest has, its approximation by the directional modes tells
+    (Rayleigh and Ritz). Where the error of these could change a label, `full_modes` decides.
+
+    Parameters
+    ----------
+    system : Matrices
+    shapes : DirectionalShapes
+        Of the same lines.
+    loops : tuple of int
+        Distinct, from 1.
+
+    Returns
+    -------
+    (lines, 3, loops)
+        [rad^2/s^2].
+    """
+    freedoms = np.flatnonzero(~_always_fixed(system.stiffness.shape[-1]))
+    stiffness, mass = _on_freedoms(system, freedoms)
+    values = eigenvalues_alone(stiffness, mass)
+    basis = merge_axes(shapes.lowest, -3, -2)[..., freedoms]
+    across = basis.swapaxes(-1, -2)
+    approximate, vectors = solve_symmetric(basis @ stiffness @ across, basis @ mass @ across)
+    overlap = _momenta_of_sines(mass, freedoms, DIRECTIONS, loops) @ across @ vectors
+    chosen, clear = _clearly_assigned(overlap**2, largest_sines(approximate, values))
+    found = np.take_along_axis(values, chosen, axis=-1).reshape(-1, len(DIRECTIONS), len(loops))
+    doubtful = np.flatnonzero(~clear)
+    if doubtful.size:
+        found[doubtful] = full_modes(take_rows(system, doubtful), loops).eigenvalues
+    return found
+
+
+def _clearly_assigned(score: FloatArray, error: FloatArray) -> tuple[IntArray, BoolArray]:
+    """Assign modes as `assign` does, and tell of which lines no score within its error leads to another assignment.
+
+    score: (lines, labels, modes), squared overlaps with the lowest modes; those of a label with all modes sum up to 1;
+    error: (lines, modes).
+    """
+    known = error < LARGEST_SINE
+    score, error = np.where(known[:, None], score, 0.0), np.where(known, error, 0.0)
+    elsewhere = 1.0 - score.sum(axis=-1, keepdims=True)
+    score, error = np.append(score, elsewhere, axis=-1), np.append(error, error.sum(axis=-1, keepdims=True), axis=-1)
+    chosen = assign(score)
+    row = np.arange(len(score))
+    own = np.take_along_axis(score, chosen[..., None], axis=-1)[..., 0]
+    clear, rival = (chosen < known.shape[1]).all(axis=-1), score + error[:, None]
+    for label in np.argsort(-own, axis=-1).T:  # the order of assignment
+        mode = chosen[row, label]
+        least = own[row, label] - error[row, mode]
+        rival[row, label, mode] = -np.inf
+        clear &= least > np.maximum(rival[row, label].max(axis=-1), rival[row, :, mode].max(axis=-1))
+        rival[row, label, :] = rival[row, :, mode] = -np.inf
+    return chosen, clear
+
+
 def at_points(system: Matrices, nodal: FloatArray) -> FloatArray:
     """Interpolate nodal values (lines, ..., nodes) to the quadrature points: (lines, ..., elements, points)."""
     elements = system.weight.shape[1]
@@ -137,19 +206,6 @@ def at_points(system: Matrices, nodal: FloatArray) -> FloatArray:
     flat = by_element.reshape(lines, -1, elements, 3)
     values = np.einsum("lrea,lepa->lrep", flat, system.interpolation, optimize=True)
     return np.asarray(values.reshape(*nodal.shape[:-1], elements, system.weight.shape[2]))
-
-
-def solve_symmetric(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Solve K x = lambda M x on stacks: eigenvalues (..., n) ascending and vectors (..., n, n) with X^T M X = 1."""
-    inverse, standard = _standard(stiffness, mass)
-    values, vectors = np.linalg.eigh(standard)
-    return values, inverse.swapaxes(-1, -2) @ vectors
-
-
-def _standard(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return L^-1 with M = L L^T, and L^-1 K L^-T, of which numpy reads the lower triangle: (..., n, n) each."""
-    inverse = np.linalg.inv(np.linalg.cholesky(mass))
-    return inverse, inverse @ stiffness @ inverse.swapaxes(-1, -2)
 
 
 def _always_fixed(freedoms: int) -> BoolArray:
@@ -164,25 +220,38 @@ def _freedoms(fields: tuple[int, ...], nodes: int) -> IntArray:
 
 
 def _labelled(
-    system: Matrices, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...]
+    system: Matrices, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...], lowest: int = 0
 ) -> tuple[FloatArray, FloatArray]:
     """Solve the eigenproblem on some freedoms and pick one mode for each direction and number of loops.
 
-    Returns vectors (lines, labels, freedoms) and eigenvalues (lines, labels), labels direction-major.
+    Returns vectors (lines, labels + lowest, freedoms), of labels direction-major and then of the lowest modes, and
+    eigenvalues (lines, labels).
     """
-    stiffness = system.stiffness[:, freedoms[:, None], freedoms]
-    mass = system.mass[:, freedoms[:, None], freedoms]
-    _decouple(stiffness, mass, system.fixed[:, freedoms])
-    inverse, standard = _standard(stiffness, mass)
+    stiffness, mass = _on_freedoms(system, freedoms)
+    inverse, standard = standard_form(stiffness, mass)
     values, vectors = np.linalg.eigh(standard)
-    targets = _sines(freedoms, system.stiffness.shape[-1] // FIELDS, directions, loops)
-    reach = targets @ mass
-    norm = np.sqrt(np.einsum("lij,ij->li", reach, targets))
-    overlap = (reach / norm[..., None]) @ inverse.swapaxes(-1, -2) @ vectors
+    overlap = _momenta_of_sines(mass, freedoms, directions, loops) @ inverse.swapaxes(-1, -2) @ vectors
     chosen = assign(overlap**2)
     sign = np.sign(np.take_along_axis(overlap, chosen[..., None], axis=-1))
-    selected = np.take_along_axis(vectors.swapaxes(-1, -2), chosen[..., None], axis=1)
-    return (selected * sign) @ inverse, np.take_along_axis(values, chosen, axis=-1)
+    modes = vectors.swapaxes(-1, -2)
+    selected = sign * np.take_along_axis(modes, chosen[..., None], axis=1)
+    return np.append(selected, modes[:, :lowest], axis=1) @ inverse, np.take_along_axis(values, chosen, axis=-1)
+
+
+def _on_freedoms(system: Matrices, freedoms: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return stiffness and mass on some freedoms (lines, freedoms, freedoms), those that are held decoupled."""
+    stiffness, mass = (matrix[:, freedoms[:, None], freedoms] for matrix in (system.stiffness, system.mass))
+    _decouple(stiffness, mass, system.fixed[:, freedoms])
+    return stiffness, mass
+
+
+def _momenta_of_sines(
+    mass: FloatArray, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...]
+) -> FloatArray:
+    """Return M x of the sines of each label, x^T M x = 1: (lines, labels, freedoms)."""
+    sines = _sines(freedoms, int(freedoms.max()) // FIELDS + 1, directions, loops)
+    momenta = sines @ mass
+    return np.asarray(momenta / np.sqrt(np.einsum("lij,ij->li", momenta, sines))[..., None])
 
 
 def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: BoolArray) -> None:

@@ -160,7 +160,7 @@ def states_in_wind(discretization: Discretization, winds: IntArray) -> Discretiz
 def shapes_in_wind(states: Discretization, still: DirectionalShapes) -> DirectionalShapes:
     """Return the shapes about the states of `states_in_wind`, given those of the same lines in still air."""
     line = np.resize(np.arange(still.nodal.shape[0]), len(states.lines))
-    repeated = DirectionalShapes(still.loops, still.nodal[line], still.angular_frequency[line])
+    repeated = DirectionalShapes(still.loops, still.nodal[line], still.angular_frequency[line], still.lowest[line])
     return turned_shapes(repeated, states.matrices, states.profile.arc_length)
 
 

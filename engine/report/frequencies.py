@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.mechanics.modes import FullModes, assign, solve_symmetric
+from engine.mechanics.modes import assign
+from engine.numerics.eigenproblems import solve_symmetric
 from engine.outcome import Outcome
 from engine.report.cells import lists_by_line, numbers
 from engine.report.findings import ModelFindings
@@ -38,11 +39,11 @@ def coupled_frequencies(hybrid: ModelFindings) -> NaturalFrequencies:
     return NaturalFrequencies(Model.HYBRID, hybrid.line, hybrid.loops, squared)
 
 
-def full_frequencies(modes: FullModes) -> NaturalFrequencies:
-    """Return the frequencies of the full modes of every line."""
-    count = modes.eigenvalues.shape[0]
-    loops = np.broadcast_to(np.tile(modes.loops, 3), (count, 3 * len(modes.loops)))
-    return NaturalFrequencies(Model.FINITE_ELEMENT, np.arange(count), loops, modes.eigenvalues.reshape(count, -1))
+def full_frequencies(loops: tuple[int, ...], eigenvalues: FloatArray) -> NaturalFrequencies:
+    """Return the frequencies of the full modes of every line, given their eigenvalues (lines, 3, loops)."""
+    count = eigenvalues.shape[0]
+    each = np.broadcast_to(np.tile(loops, 3), (count, 3 * len(loops)))
+    return NaturalFrequencies(Model.FINITE_ELEMENT, np.arange(count), each, eigenvalues.reshape(count, -1))
 
 
 def frequency_rows(table: NaturalFrequencies, loops: tuple[int, ...]) -> list[list[FrequencyRow]]:

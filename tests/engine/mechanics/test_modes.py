@@ -7,29 +7,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
+from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, U, V, W
 from engine.mechanics.modes import (
+    DirectionalShapes,
     assign,
     at_points,
     directional_shapes,
+    full_eigenvalues,
     full_modes,
     longitudinal_share,
-    solve_symmetric,
 )
+from engine.models.discretization import discretize
 from engine.spec import Line, Span, Support, Supports
 from tests.builders import discretized, random_line, source_line
 
 LOOPS = (1, 2, 3)
-
-
-def test_symmetric_problem_is_solved_with_vectors_orthonormal_in_the_mass() -> None:
-    rng = np.random.default_rng(0)
-    a, b = rng.normal(size=(2, 4, 6, 6))
-    stiffness, mass = a + a.swapaxes(-1, -2), b @ b.swapaxes(-1, -2) + np.eye(6)
-    values, vectors = solve_symmetric(stiffness, mass)
-    assert stiffness @ vectors == pytest.approx(mass @ vectors * values[:, None], abs=1e-10)
-    assert vectors.swapaxes(-1, -2) @ mass @ vectors == pytest.approx(np.broadcast_to(np.eye(6), (4, 6, 6)), abs=1e-11)
-    assert (np.diff(values, axis=-1) >= 0.0).all()
 
 
 @settings(max_examples=10)
@@ -121,6 +113,30 @@ def test_longitudinal_mode_is_never_taken() -> None:
     shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, LOOPS)
     along, up = shapes.nodal[0, :, U], shapes.nodal[0, :, V]
     assert (np.abs(along).max(axis=-1) < 0.3 * np.abs(up).max(axis=-1)).all()
+
+
+@settings(max_examples=10)
+@given(st.integers(0, 10**6))
+def test_eigenvalues_alone_are_those_of_the_full_modes(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    system, shapes = with_shapes(*(random_line(generator) for _ in range(4)))
+    for loops in ((1, 2), (2, 5)):
+        expected = full_modes(system, loops).eigenvalues
+        assert full_eigenvalues(system, shapes, loops) == pytest.approx(expected, rel=1e-9)
+
+
+def test_labels_of_eigenvalues_are_right_where_the_lowest_modes_do_not_tell_them() -> None:
+    """Torsional modes of a single conductor lie above many others, and a sag turns the vertical ones round."""
+    soft = replace(source_line(1), supports=Supports(longitudinal_stiffness=600.0))
+    system, shapes = with_shapes(source_line(1), soft, *(deep(sag, dead_end=True) for sag in (2.0, 2.5, 3.0, 4.0)))
+    expected = full_modes(system, LOOPS).eigenvalues
+    assert full_eigenvalues(system, shapes, LOOPS) == pytest.approx(expected, rel=1e-9)
+
+
+def with_shapes(*lines: Line) -> tuple[Matrices, DirectionalShapes]:
+    """Return the matrices of lines side by side, and their shapes of one to three loops."""
+    made = discretize(lines)
+    return made.matrices, directional_shapes(made.matrices, made.profile.arc_length, LOOPS)
 
 
 def test_assignment_takes_the_surest_label_first() -> None:
