@@ -81,7 +81,6 @@ WITHOUT_A_TEST_FILE = {
     "engine.report.bifurcations": "tests/app/routes/test_further_tables.py holds its rows.",
     "engine.cycles.branch_set": "tests/engine/cycles/test_branches.py and test_refinement.py follow branches with it.",
     "engine.numerics.branch_zeros": "tests/engine/numerics/test_continuation.py finds zeros on circles with it.",
-    "engine.report.cells": "Two helpers that every table uses; tests/engine/test_analysis.py compares their rows.",
     "engine.report.findings": "tests/engine/test_outcome.py and tests/engine/report/test_limit_cycles.py use it.",
     "engine.report.frequencies": "tests/validation/test_table_2.py holds its rows.",
     "engine.result": "It declares dataclasses; tests/app/convert/test_run.py holds their columns.",

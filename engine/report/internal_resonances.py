@@ -4,7 +4,6 @@ The source: "an internal resonance occurs when the ratio of at least two of the 
 of two positive integers" (paper section 5.1).
 """
 
-from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 from math import gcd, sqrt
@@ -55,7 +54,7 @@ def _pairs(row: FrequencyRow) -> Iterator[InternalResonanceRow]:
 
 def nearest_ratio(ratio: float) -> tuple[int, int]:
     """Return the p and q up to `LARGEST_INTEGER` whose ratio p/q differs least from a positive number, relatively."""
-    return _RATIOS[bisect_left(_LIMITS, ratio)]
+    return _RATIOS[sum(ratio > limit for limit in _LIMITS)]
 
 
 def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArray) -> FloatArray:

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain, repeat
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -73,7 +72,7 @@ def limit_cycle_rows(
     for line, motion in chain(_equilibria(seen, analysis.loops), _cycles(seen), _quasi_periodic_motions(seen)):
         table[line].append(motion)
     for motions in table:
-        motions.sort(key=attrgetter("row.loops", "row.wind_speed_m_per_s"))  # equilibria stay first
+        motions.sort(key=lambda motion: (motion.row.loops, motion.row.wind_speed_m_per_s))  # equilibria stay first
     return table
 
 
