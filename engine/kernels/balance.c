@@ -11,68 +11,87 @@
 
 void release_system(System *w)
 {
-    free(w->place), free(w->active), free(w->waves), free(w->folded), free(w->spectra), free(w->order), free(w->known);
-    free(w->matrix), free(w->rows), free(w->sizes), free(w->solution), free(w->slope), free(w->x), free(w->values);
-    free(w->loads), free(w->state), free(w->scratch);
+    for (int kind = 0; kind < KINDS; kind++)
+        free(w->kinds[kind].waves), free(w->kinds[kind].order), free(w->kinds[kind].known);
+    free(w->kind), free(w->first), free(w->kept), free(w->active), free(w->folded), free(w->spectra), free(w->matrix);
+    free(w->rows), free(w->sizes), free(w->solution), free(w->slope), free(w->x), free(w->values), free(w->loads);
+    free(w->state), free(w->scratch);
 }
 
-static void fill_waves(System *w)
+/* Allocate and fill the harmonics of one kind, read from so many of the samples; return 0 if memory is short. */
+static int prepare_orders(Orders *kind, int step, int lowest, int harmonics, int samples, int read)
+{
+    const int doubled = (2 * harmonics - lowest + step) / step;
+    *kind = (Orders){.step = step, .lowest = lowest, .count = (harmonics - lowest + step) / step, .samples = read};
+    kind->kept = (doubled + LANES - 1) / LANES * LANES;
+    kind->waves = calloc(((size_t)read / 2 + 1) * 2 * (size_t)kind->kept, sizeof *kind->waves);
+    kind->order = calloc((size_t)kind->count / LANES + 1, sizeof *kind->order);
+    kind->known = calloc((size_t)kind->count / LANES + 1, sizeof *kind->known);
+    if (!(kind->waves && kind->order && kind->known))
+        return 0;
+    for (int s = 0; 2 * s <= read; s++)
+        for (int n = 0; n < doubled; n++) {
+            const double angle = 2.0 * M_PI * s / samples * (step * n + lowest);
+            kind->waves[s * 2 * kind->kept + n] = cos(angle) / read;
+            kind->waves[(s * 2 + 1) * kind->kept + n] = sin(angle) / read;
+        }
+    for (int n = !lowest; n < kind->count; n++)
+        ((double *)kind->order)[n - !lowest] = step * n + lowest, ((double *)kind->known)[n - !lowest] = 1.0;
+    return 1;
+}
+
+static void fill_values(System *w)
 {
     for (int s = 0; s < w->samples; s++) {
-        const double tau = 2.0 * M_PI * s / w->samples;
-        double *waves = w->waves + s * 2 * w->waves_kept, *values = (double *)w->values + s;
-        for (int k = 0; k <= 2 * w->harmonics && 2 * s <= w->samples; k++) {
-            waves[k] = cos(k * tau) / w->samples;
-            waves[w->waves_kept + k] = sin(k * tau) / w->samples;
-        }
+        double *values = (double *)w->values + s;
         values[0] = 1.0;
         for (int k = 1; k <= w->harmonics; k++) {
-            values[(2 * k - 1) * w->groups * LANES] = cos(k * tau);
-            values[2 * k * w->groups * LANES] = sin(k * tau);
+            values[(2 * k - 1) * w->value_groups * LANES] = cos(2.0 * M_PI * s / w->samples * k);
+            values[2 * k * w->value_groups * LANES] = sin(2.0 * M_PI * s / w->samples * k);
         }
     }
-    for (int k = 0; k < w->harmonics; k++)
-        ((double *)w->order)[k] = k + 1, ((double *)w->known)[k] = 1.0;
 }
 
 int prepare_system(System *w, const Model *model, int harmonics, int besides)
 {
     *w = (System){.m = model->m, .stretches = model->stretches, .harmonics = harmonics, .size = 2 * harmonics + 1};
     w->samples = model->samples > 4 * harmonics + 2 ? model->samples : 4 * harmonics + 2;
-    w->groups = (w->samples + LANES - 1) / LANES;
-    w->waves_kept = (2 * harmonics + LANES) / LANES * LANES;
-    w->orders = harmonics + w->waves_kept;
-    w->balances = w->m * w->size;
-    w->unknowns = w->balances + besides;
-    w->stride = w->unknowns + 2 + LANES;
-    const size_t m = (size_t)w->m, n = (size_t)w->unknowns, rows = (size_t)row_count(w), width = 2 * (size_t)w->orders;
-    const size_t half = (size_t)w->samples / 2 + 1;
-    w->place = calloc(n, sizeof *w->place);
+    w->value_groups = (w->samples + LANES - 1) / LANES;
+    w->coefficients = w->m * w->size;
+    w->besides = besides;
+    w->orders = harmonics + (2 * harmonics + LANES) / LANES * LANES;
+    const size_t m = (size_t)w->m, n = (size_t)(w->coefficients + besides), half = (size_t)w->samples / 2 + 1;
+    const size_t rows = (size_t)row_count(w);
+    int ready = 1;
+    for (int kind = 0; kind < KINDS; kind++) {
+        const int whole = kind == EVERY;
+        ready &= prepare_orders(&w->kinds[kind], 2 - whole, kind == ODD, harmonics, w->samples, w->samples / (2 - whole));
+    }
+    w->kind = calloc(m, sizeof *w->kind);
+    w->first = calloc(m, sizeof *w->first);
+    w->kept = calloc(n, sizeof *w->kept);
     w->active = calloc(2 * m, sizeof *w->active);
-    w->waves = calloc(half * 2 * (size_t)w->waves_kept, sizeof *w->waves);
     w->folded = calloc(2 * half, sizeof *w->folded);
-    w->spectra = calloc(rows * width + LANES, sizeof *w->spectra);
-    w->order = calloc((size_t)harmonics / LANES + 1, sizeof *w->order);
-    w->known = calloc((size_t)harmonics / LANES + 1, sizeof *w->known);
-    w->matrix = calloc(n * (size_t)w->stride, sizeof *w->matrix);
+    w->spectra = calloc(rows * 2 * (size_t)w->orders + LANES, sizeof *w->spectra);
+    w->matrix = calloc(n * (n + 2 + LANES), sizeof *w->matrix);
     w->rows = calloc(n, sizeof *w->rows);
     w->sizes = calloc(n + LANES, sizeof *w->sizes);
-    w->solution = calloc(2 * n, sizeof *w->solution);
-    w->slope = calloc(m * (size_t)w->size, sizeof *w->slope);
-    w->x = calloc(n, sizeof *w->x);
-    w->values = calloc((size_t)(w->size * w->groups), sizeof *w->values);
-    w->loads = calloc(rows * (size_t)w->groups, sizeof *w->loads);
+    w->solution = calloc(2 * n + LANES, sizeof *w->solution);
+    w->slope = calloc((size_t)w->coefficients, sizeof *w->slope);
+    w->x = calloc((size_t)w->coefficients + 2, sizeof *w->x);
+    w->values = calloc((size_t)(w->size * w->value_groups), sizeof *w->values);
+    w->loads = calloc(rows * (size_t)w->value_groups, sizeof *w->loads);
     w->state = calloc(5 * m + 2 * m * m, sizeof *w->state);
     w->scratch = calloc(load_scratch(model), sizeof *w->scratch);
-    if (!(w->place && w->active && w->waves && w->folded && w->spectra && w->order && w->known
-          && w->matrix && w->rows && w->sizes && w->solution && w->slope && w->x && w->values
-          && w->loads && w->state && w->scratch))
+    if (!(ready && w->kind && w->first && w->kept && w->active && w->folded && w->spectra && w->matrix && w->rows
+          && w->sizes && w->solution && w->slope && w->x && w->values && w->loads && w->state && w->scratch))
         return 0;
-    fill_waves(w);
+    fill_values(w);
     return 1;
 }
 
-void arrange_system(System *w, const Model *model)
+/* Note on which components of (q, q'/U) the load depends. */
+static void find_active(System *w, const Model *model)
 {
     const int m = w->m;
     memset(w->active, 0, 2 * (size_t)m * sizeof *w->active);
@@ -83,14 +102,39 @@ void arrange_system(System *w, const Model *model)
             w->active[v] |= model->forms[(ptrdiff_t)row * 2 * m + v] != 0.0;
     for (int j = 0; j < m; j++)
         w->active[j] |= w->stretches;
+}
+
+static const Orders *orders_of(const System *w, int j) { return &w->kinds[w->kind[j]]; }
+
+/* Return the number of coefficients with these orders. */
+static int terms_of(const Orders *kind) { return 2 * kind->count - !kind->lowest; }
+
+/* Return where the term-th coefficient with these orders stands among mean, cos 1, sin 1, .... */
+static int place_of(const Orders *kind, int term)
+{
+    const int c = term + kind->lowest, order = kind->step * ((c + 1) / 2 - kind->lowest) + kind->lowest;
+    return c ? 2 * order - c % 2 : 0;
+}
+
+void arrange_system(System *w, const Model *model, int alternates)
+{
+    find_active(w, model);
+    w->alternates = alternates;
     int next = 0;
     for (int active = 0; active < 2; active++)
-        for (int j = 0; j < m; j++)
-            if ((w->active[j] || w->active[m + j]) == active)
-                for (int c = 0; c < w->size; c++)
-                    w->place[j * w->size + c] = next++;
-    for (; next < w->unknowns; next++)
-        w->place[next] = next;
+        for (int j = 0; j < w->m; j++)
+            if ((w->active[j] || w->active[w->m + j]) == active) {
+                w->kind[j] = !alternates ? EVERY : model->parity[j] < 0 ? ODD : EVEN;
+                w->first[j] = next;
+                for (int term = 0; term < terms_of(orders_of(w, j)); term++)
+                    w->kept[next++] = j * w->size + place_of(orders_of(w, j), term);
+            }
+    w->balances = next;
+    w->unknowns = next + w->besides;
+    for (int i = 0; i < w->besides; i++)
+        w->kept[next + i] = w->coefficients + i;
+    w->stride = w->unknowns + 2 + LANES;
+    w->groups = (w->kinds[alternates ? ODD : EVERY].samples + LANES - 1) / LANES;
     memset(w->spectra, 0, (size_t)row_count(w) * 2 * (size_t)w->orders * sizeof *w->spectra);
 }
 
@@ -106,11 +150,18 @@ static void differentiate(System *w, const double *coefficients)
     }
 }
 
-WITHIN Lanes series(const System *w, const double *coefficients, int group)
+/* Sum the harmonics of a coordinate at a group of samples. */
+WITHIN Lanes series(const System *w, int j, const double *coefficients, int group)
 {
+    const Orders *kind = orders_of(w, j);
+    const Lanes *values = w->values + group;
     Lanes sum = {0};
-    for (int c = 0; c < w->size; c++)
-        sum += coefficients[c] * w->values[c * w->groups + group];
+    if (!kind->lowest)
+        sum += coefficients[j * w->size] * values[0];
+    for (int k = kind->lowest ? 1 : kind->step; k <= w->harmonics; k += kind->step) {
+        sum += coefficients[j * w->size + 2 * k - 1] * values[(2 * k - 1) * w->value_groups];
+        sum += coefficients[j * w->size + 2 * k] * values[2 * k * w->value_groups];
+    }
     return sum;
 }
 
@@ -122,8 +173,8 @@ WIDE static void sample(System *w, const Model *model, const double *coefficient
     Lanes *gradient = restoring + m;
     for (int group = 0; group < w->groups; group++) {
         for (int j = 0; j < m; j++) {
-            state[j] = series(w, coefficients + j * w->size, group);
-            motion[j] = series(w, w->slope + j * w->size, group);
+            state[j] = series(w, j, coefficients, group);
+            motion[j] = series(w, j, w->slope, group);
             state[m + j] = rate * motion[j];
         }
         load_at(model, speed, state, force, gradient, restoring, w->scratch);
@@ -140,61 +191,74 @@ WIDE static void sample(System *w, const Model *model, const double *coefficient
     }
 }
 
-/* Transform one row of the load for k up to `last`: cos k tau needs only the sums of the samples at tau and -tau, sin k tau
- * only the differences. */
-WITHIN void fold_and_sum(System *w, int harmonics, int half, int row, int last)
+/* Transform one row of the load for its first orders: cos k tau needs only the sums of the samples at tau and -tau, sin k tau
+ * only the differences. Half a period later a row of odd orders has the other sign, so -tau is half a period less tau. */
+WITHIN void fold_and_sum(System *w, int samples, int kept, const Orders *kind, int row, int count)
 {
     const double *load = (const double *)(w->loads + row * w->groups);
-    const int kept = (2 * harmonics + LANES) / LANES * LANES;
+    const double sign = kind->step == 2 && kind->lowest ? -1.0 : 1.0;
+    const int half = samples / 2;
     double *sums = w->folded, *differences = w->folded + half + 1;
-    double *even = w->spectra + row * 2 * w->orders + harmonics, *odd = even + w->orders;
-    sums[0] = load[0], sums[half] = load[half];
-    for (int s = 1; s < half; s++) {
-        sums[s] = load[s] + load[2 * half - s];
-        differences[s] = load[s] - load[2 * half - s];
+    double *even = w->spectra + row * 2 * w->orders + w->harmonics, *odd = even + w->orders;
+    sums[0] = load[0], differences[0] = 0.0;
+    for (int s = 1; 2 * s < samples; s++) {
+        sums[s] = load[s] + sign * load[samples - s];
+        differences[s] = load[s] - sign * load[samples - s];
     }
-    for (int k = 0; k <= last; k += LANES) {
-        const double *waves = w->waves + k;
+    if (samples % 2 == 0)
+        sums[half] = differences[half] = load[half];
+    for (int n = 0; n < count; n += LANES) {
+        const double *waves = kind->waves + n;
         Lanes by_cosine = {0}, by_sine = {0};
         for (int s = 0; s <= half; s++, waves += 2 * kept) {
             by_cosine += sums[s] * *(const Lanes *)waves;
             by_sine += differences[s] * *(const Lanes *)(waves + kept);
         }
-        *(Lanes *)(even + k) = by_cosine;
-        *(Lanes *)(odd + k) = by_sine;
+        *(Lanes *)(even + n) = by_cosine;
+        *(Lanes *)(odd + n) = by_sine;
     }
-    for (int k = 1; k <= harmonics; k++) {
-        even[-k] = even[k];
-        odd[-k] = -odd[k];
+    for (int n = 1; n < kind->count + kind->lowest; n++) {
+        even[-n] = even[n - kind->lowest];
+        odd[-n] = -odd[n - kind->lowest];
     }
 }
 
-WIDE static void transform(System *w, int row, int last)
+/* Transform a row whose orders are of this kind, up to so many. */
+WIDE static void transform(System *w, const Orders *kind, int row, int highest)
 {
-    if (w->harmonics == 5 && w->samples == 22) /* the default: the compiler unrolls loops of known length */
-        fold_and_sum(w, 5, 11, row, last);
+    const int count = (highest - kind->lowest + kind->step) / kind->step;
+    if (kind->samples == 22 && kind->kept == 12) /* the default: the compiler unrolls loops of known length */
+        fold_and_sum(w, 22, 12, kind, row, count);
+    else if (kind->samples == 11 && kind->kept == 8) /* and half of it */
+        fold_and_sum(w, 11, 8, kind, row, count);
     else
-        fold_and_sum(w, w->harmonics, w->samples / 2, row, last);
+        fold_and_sum(w, kind->samples, kind->kept, kind, row, count);
+}
+
+/* Return the orders of the load's gradient on coordinate i by coordinate j. */
+static const Orders *orders_between(const System *w, int i, int j)
+{
+    return !w->alternates ? &w->kinds[EVERY] : w->kind[i] == w->kind[j] ? &w->kinds[EVEN] : &w->kinds[ODD];
 }
 
 /* Transform every row of the load that can be nonzero. */
 static void transform_all(System *w)
 {
     for (int i = 0; i < w->m; i++) {
-        transform(w, force_row(i), w->harmonics);
-        transform(w, rate_row(w, i), w->harmonics);
+        transform(w, orders_of(w, i), force_row(i), w->harmonics);
+        transform(w, orders_of(w, i), rate_row(w, i), w->harmonics);
         if (w->stretches)
-            transform(w, restoring_row(w, i), w->harmonics);
+            transform(w, orders_of(w, i), restoring_row(w, i), w->harmonics);
         for (int v = 0; v < 2 * w->m; v++)
             if (w->active[v])
-                transform(w, gradient_row(w, i, v), 2 * w->harmonics);
+                transform(w, orders_between(w, i, v % w->m), gradient_row(w, i, v), 2 * w->harmonics);
     }
 }
 
 /* Return the first entry of the block of equation i and coordinate j. */
 static double *block_of(const System *w, int i, int j)
 {
-    return w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride + w->place[j * w->size];
+    return w->matrix + (ptrdiff_t)w->first[i] * w->stride + w->first[j];
 }
 
 WITHIN Lanes at(const double *first) { return *(const Lanes *)first; }
@@ -210,58 +274,69 @@ WITHIN void subtract_pairs(double *entries, Lanes x, Lanes y)
 
 /* Subtract U^2 P diag(df/dq) V + U w P diag(df/d(q'/U)) V D from the block of equation i and coordinate j, with V the
  * basis at the samples, P its projection and D its derivative: with E and O the even and the odd spectrum,
- * cos a cos b gives E(b - a) + E(a + b), cos a sin b gives O(a + b) + O(b - a), and so on. */
+ * cos a cos b gives E(b - a) + E(a + b), cos a sin b gives O(a + b) + O(b - a), and so on. The orders a and b are those of
+ * i and j; below, `from` and `to` are where b - a and a + b stand in a spectrum. */
 WIDE static void subtract_load_block(System *w, int i, int j, double speed, double omega)
 {
+    const Orders *of_a = orders_of(w, i), *of_b = orders_of(w, j), *between = orders_between(w, i, j);
     const double *even = spectrum(w, gradient_row(w, i, j)), *odd = even + w->orders;
     const double *rate_even = spectrum(w, gradient_row(w, i, w->m + j)), *rate_odd = rate_even + w->orders;
-    double *block = block_of(w, i, j);
-    for (int a = 0; a <= w->harmonics; a++) {
+    const int less = (of_b->lowest - of_a->lowest - between->lowest) / 2;
+    const int more = (of_a->lowest + of_b->lowest - between->lowest) / 2;
+    const int mean = !of_b->lowest, waves = of_b->count - mean;
+    for (int n = 0; n < of_a->count; n++) {
+        const int a = of_a->step * n + of_a->lowest;
         const double weight = a ? 1.0 : 0.5, f = weight * speed * speed, g = weight * speed * omega;
-        double *cosine = block + (a ? 2 * a - 1 : 0) * w->stride, *sine = cosine + w->stride;
-        cosine[0] -= 2.0 * f * even[a];
-        if (a)
-            sine[0] -= 2.0 * f * odd[a];
-        for (int b = 1; b <= w->harmonics; b += LANES) {
-            const Lanes by_q = f * w->known[b / LANES], by_rate = g * w->order[b / LANES];
-            const Lanes e = at(even + b - a), e_sum = at(even + a + b), o = at(odd + b - a), o_sum = at(odd + a + b);
-            const Lanes r = at(rate_even + b - a), r_sum = at(rate_even + a + b);
-            const Lanes t = at(rate_odd + b - a), t_sum = at(rate_odd + a + b);
-            subtract_pairs(cosine + 2 * b - 1, by_q * (e + e_sum) - by_rate * (t_sum + t),
+        double *cosine = block_of(w, i, j) + (a ? 2 * n - !of_a->lowest : 0) * w->stride, *sine = cosine + w->stride;
+        if (mean)
+            cosine[0] -= 2.0 * f * even[n];
+        if (mean && a)
+            sine[0] -= 2.0 * f * odd[n];
+        for (int p = 0; p < waves; p += LANES) {
+            const Lanes by_q = f * of_b->known[p / LANES], by_rate = g * of_b->order[p / LANES];
+            const int from = p + mean - n + less, to = p + mean + n + more;
+            const Lanes e = at(even + from), e_sum = at(even + to), o = at(odd + from), o_sum = at(odd + to);
+            const Lanes r = at(rate_even + from), r_sum = at(rate_even + to);
+            const Lanes t = at(rate_odd + from), t_sum = at(rate_odd + to);
+            subtract_pairs(cosine + mean + 2 * p, by_q * (e + e_sum) - by_rate * (t_sum + t),
                            by_q * (o_sum + o) + by_rate * (r + r_sum));
             if (a)
-                subtract_pairs(sine + 2 * b - 1, by_q * (o_sum - o) - by_rate * (r - r_sum),
+                subtract_pairs(sine + mean + 2 * p, by_q * (o_sum - o) - by_rate * (r - r_sum),
                                by_q * (e - e_sum) + by_rate * (t_sum - t));
         }
     }
 }
 
-/* Add K - a^2 w^2 M and a w C to the block of equation i and coordinate j. */
+/* Add K - a^2 w^2 M and a w C to the block of equation i and coordinate j, whose orders are equal. */
 static void add_linear_block(System *w, const Model *model, int i, int j, double omega)
 {
     const int at = i * w->m + j;
-    double *block = block_of(w, i, j);
-    block[0] += model->stiffness[at];
-    for (int a = 1; a <= w->harmonics; a++) {
+    const Orders *kind = orders_of(w, i);
+    double *entry = block_of(w, i, j);
+    if (!kind->lowest) {
+        *entry += model->stiffness[at];
+        entry += w->stride + 1;
+    }
+    for (int n = !kind->lowest; n < kind->count; n++, entry += 2 * (w->stride + 1)) {
+        const int a = kind->step * n + kind->lowest;
         const double elastic = model->stiffness[at] - a * a * omega * omega * model->mass[at];
         const double viscous = a * omega * model->damping[at];
-        double *cosine = block + (2 * a - 1) * w->stride + 2 * a - 1, *sine = cosine + w->stride;
-        cosine[0] += elastic;
-        cosine[1] += viscous;
-        sine[0] -= viscous;
-        sine[1] += elastic;
+        entry[0] += elastic;
+        entry[1] += viscous;
+        entry[w->stride] -= viscous;
+        entry[w->stride + 1] += elastic;
     }
 }
 
-/* Add the linear terms of coordinate j to the residual of equation i and to its slope by w. */
+/* Add the linear terms of coordinate j to the residual of equation i, of equal orders, and to its slope by w. */
 static void add_motion(System *w, const Model *model, int i, int j, const double *x)
 {
-    const int at = i * w->m + j;
-    const double mass = model->mass[at], damping = model->damping[at], omega = x[w->balances];
-    double *row = w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride;
-    for (int c = 0; c < w->size; c++, row += w->stride) {
-        const double a = x[j * w->size + c], slope = w->slope[j * w->size + c];
-        const double bend = -((c + 1) / 2) * ((c + 1) / 2) * a;
+    const int at = i * w->m + j, terms = terms_of(orders_of(w, i));
+    const double mass = model->mass[at], damping = model->damping[at], omega = x[w->coefficients];
+    double *row = w->matrix + (ptrdiff_t)w->first[i] * w->stride;
+    for (int term = 0; term < terms; term++, row += w->stride) {
+        const int here = w->kept[w->first[j] + term], order = (here - j * w->size + 1) / 2;
+        const double a = x[here], slope = w->slope[here], bend = -order * order * a;
         row[w->balances] += 2.0 * omega * mass * bend + damping * slope;
         row[w->unknowns] += omega * (omega * mass * bend + damping * slope) + model->stiffness[at] * a;
     }
@@ -271,11 +346,12 @@ static void add_motion(System *w, const Model *model, int i, int j, const double
  * g(q), d(U^2 P (f - g/U^2))/dU = 2 U P f - w P df/d(w/U). */
 static void subtract_load(System *w, int i, double omega, double speed)
 {
+    const Orders *kind = orders_of(w, i);
     const double *forces = spectrum(w, force_row(i)), *by_rate = spectrum(w, rate_row(w, i));
     const double *restoring = spectrum(w, restoring_row(w, i));
-    double *row = w->matrix + (ptrdiff_t)w->place[i * w->size] * w->stride;
-    for (int c = 0; c < w->size; c++, row += w->stride) {
-        const int at = (c + 1) / 2 + (c % 2 == 0 && c ? w->orders : 0);
+    double *row = w->matrix + (ptrdiff_t)w->first[i] * w->stride;
+    for (int term = 0; term < terms_of(kind); term++, row += w->stride) {
+        const int c = term + kind->lowest, at = (c + 1) / 2 - kind->lowest + (c % 2 == 0 && c ? w->orders : 0);
         const double weight = c ? 2.0 : 1.0;
         row[w->balances] -= weight * speed * by_rate[at];
         if (w->unknowns > w->balances + 1)
@@ -287,7 +363,7 @@ static void subtract_load(System *w, int i, double omega, double speed)
 void assemble_system(System *w, const Model *model, const double *x, double speed)
 {
     const int m = w->m;
-    const double omega = x[w->balances];
+    const double omega = x[w->coefficients];
     memset(w->matrix, 0, (size_t)w->unknowns * (size_t)w->stride * sizeof *w->matrix);
     differentiate(w, x);
     sample(w, model, x, omega / speed, speed);
@@ -295,8 +371,10 @@ void assemble_system(System *w, const Model *model, const double *x, double spee
     for (int i = 0; i < m; i++) {
         subtract_load(w, i, omega, speed);
         for (int j = 0; j < m; j++) {
-            add_motion(w, model, i, j, x);
-            add_linear_block(w, model, i, j, omega);
+            if (w->kind[i] == w->kind[j]) {
+                add_motion(w, model, i, j, x);
+                add_linear_block(w, model, i, j, omega);
+            }
             if (w->active[j] || w->active[m + j])
                 subtract_load_block(w, i, j, speed, omega);
         }

@@ -249,6 +249,6 @@ def integrated_block(
         load = unexpanded.load
         extra = contiguous(unexpanded.gain, unexpanded.linear, unexpanded.wind_speed, unexpanded.member)
         shape = load.fields.shape[-3], load.present.shape[-1]
-        none = (load.fields,) * 5  # of the model's structure only the number of members is read
+        none = (load.fields,) * 6  # of the model's structure only the number of members is read
         flows(size, contiguous(*equations, window), results, (*extra, *shape), (*none, *unexpanded_parts(load)))
     return end, square, np.sqrt(largest)

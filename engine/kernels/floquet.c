@@ -12,6 +12,7 @@ enum { FIRST, SECOND, EXPONENT, SQUARE, CUBE, FOURTH, HIGH, PRODUCT, MATRICES };
 
 typedef struct {
     int m, n, size;        /* n = 2 m; size = 2 H + 1 */
+    ptrdiff_t stretch;     /* steps of each lane */
     ptrdiff_t count;       /* n n */
     Lanes *matrices;       /* (MATRICES, n, n) */
     Lanes *blocks;         /* (2, n, m): rows of -M^-1 K(tau) / w^2 and -M^-1 C(tau) / w at the two Gauss points */
@@ -72,13 +73,13 @@ WIDE static void generate(Workspace *w, const Model *model, const Monodromies *w
                           ptrdiff_t step)
 {
     const int m = w->m, n = w->n;
-    const ptrdiff_t steps = wanted->steps[cycle], stretch = steps / LANES;
+    const ptrdiff_t steps = wanted->steps[cycle];
     const double omega = wanted->angular_frequency[cycle], speed = wanted->wind_speed[cycle];
     const double *coefficients = wanted->coefficients + cycle * m * w->size;
     const double *inverse = wanted->inverse_mass + wanted->member[cycle] * m * m;
     Lanes *block = w->blocks + point * m * n;
     for (int lane = 0; lane < LANES; lane++) {
-        const ptrdiff_t at = (wanted->first[cycle] + point * steps + lane * stretch + step) * w->size;
+        const ptrdiff_t at = (wanted->first[cycle] + point * steps + lane * w->stretch + step) * w->size;
         for (int j = 0; j < m; j++) {
             double q = 0.0, motion = 0.0;
             for (int c = 0; c < w->size; c++) {
@@ -157,14 +158,34 @@ static void collect(const Workspace *w, const Lanes *lanes, double *result)
     }
 }
 
+/* Turn the map over half a period into that over the whole one: the second half is the mirror image of the first. */
+static void mirror(const Workspace *w, const Model *model, double *matrix)
+{
+    const int n = w->n;
+    double *half = (double *)matrix_of(w, HIGH);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            half[i * n + j] = (model->parity[i % w->m] < 0 ? -1.0 : 1.0) * matrix[i * n + j];
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double sum = 0.0;
+            for (int k = 0; k < n; k++)
+                sum += half[i * n + k] * half[k * n + j];
+            matrix[i * n + j] = sum;
+        }
+}
+
 static void integrate(Workspace *w, const Model *model, const Monodromies *wanted, ptrdiff_t cycle)
 {
-    const ptrdiff_t stretch = wanted->steps[cycle] / LANES;
+    const ptrdiff_t steps = wanted->steps[cycle];
+    const double *coefficients = wanted->coefficients + cycle * w->m * w->size;
+    const int halves = steps % (2 * LANES) == 0 && alternates(model, wanted->harmonics, coefficients, 0.0, NULL);
+    w->stretch = steps / LANES / (1 + halves);
     Lanes *sofar = matrix_of(w, FIRST), *next = matrix_of(w, SECOND), *factor = matrix_of(w, PRODUCT);
-    for (ptrdiff_t step = 0; step < stretch; step++) {
+    for (ptrdiff_t step = 0; step < w->stretch; step++) {
         for (int point = 0; point < 2; point++)
             generate(w, model, wanted, cycle, point, step);
-        exponent(w, 2.0 * M_PI / (double)wanted->steps[cycle]);
+        exponent(w, 2.0 * M_PI / (double)steps);
         exponentiate(w, step ? factor : next);
         if (step)
             multiply(w->n, factor, sofar, next);
@@ -173,6 +194,8 @@ static void integrate(Workspace *w, const Model *model, const Monodromies *wante
         next = swapped;
     }
     collect(w, sofar, wanted->matrices + cycle * w->count);
+    if (halves)
+        mirror(w, model, wanted->matrices + cycle * w->count);
 }
 
 int integrate_monodromies(const Model *stack, const Monodromies *wanted)

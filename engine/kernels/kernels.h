@@ -44,9 +44,11 @@ typedef struct {
 /* One reduced model, M q'' + C q' + K q = U^2 f(q, q'/U) - g(q), laid out as engine.models.reduced_model.ReducedModel:
  * mass, damping, stiffness (m, m); f: forms (points, local, 2 m), table (points, m, monomials), slopes (points, m, local,
  * lower monomials); g, if it `stretches`: restoring (m, monomials of m variables) and restoring_slopes (m, m, lower
- * monomials). If there are `samples`, f is unexpanded, and a period of the harmonic balance has that many samples. */
+ * monomials). If there are `samples`, f is unexpanded, and a period of the harmonic balance has that many samples.
+ * parity (m): 1 for even and -1 for odd coordinates of a model that is its own mirror image, 0 for others. */
 typedef struct {
     int m, points, local, stretches, samples;
+    const ptrdiff_t *parity;
     const double *mass, *damping, *stiffness, *forms, *table, *slopes, *restoring, *restoring_slopes;
     Unexpanded unexpanded;
 } Model;
@@ -62,6 +64,11 @@ void unexpanded_at(const Unexpanded *load, int m, const Lanes *state, Lanes *for
 
 /* Return one member of a stack of models. */
 Model model_of(const Model *stack, ptrdiff_t member);
+
+/* Return whether coefficients (m, 2 H + 1) are those of a cycle that alternates: half a period later it is its own mirror
+ * image, so even coordinates have harmonics of even order only and odd ones of odd order. All others are at most a share of
+ * their scale, of the same shape; a share of 0 needs no scale. */
+int alternates(const Model *model, int harmonics, const double *coefficients, double share, const double *scale);
 
 /* Return the number of Lanes of scratch that load_at needs. */
 size_t load_scratch(const Model *model);

@@ -23,7 +23,8 @@ def model_parts(model: ReducedModel) -> tuple[AnyArray, ...]:
     """Return the arrays of a stack of models; those of stretching are empty where it is neglected."""
     load, stretching, none = model.load, model.stretching, np.empty(0)
     own = (none, none) if stretching is None else (stretching.table, stretching.slopes)
-    structure = (model.mass, model.damping, model.stiffness, *own)
+    parity = np.zeros(model.mass.shape[:-1], dtype=np.intp) if model.parity is None else model.parity
+    structure = (model.mass, model.damping, model.stiffness, *own, parity)
     if model.unexpanded is not None:
         return (*contiguous(*structure), *unexpanded_parts(model.unexpanded))
     return contiguous(*structure, load.forms, load.table, load.slopes)

@@ -2,6 +2,7 @@
  * resultant and resultant_gradient of engine/models/reduced_model.py, theory sections 5 and 12.1. */
 #include "monomials.h"
 
+#include <math.h>
 #include <string.h>
 
 Model model_of(const Model *stack, ptrdiff_t member)
@@ -9,6 +10,7 @@ Model model_of(const Model *stack, ptrdiff_t member)
     Model one = *stack;
     const ptrdiff_t m = one.m, points = one.points, local = one.local;
     const ptrdiff_t table = points * m * monomials_of(one.local), slopes = points * m * local * lower_of(one.local);
+    one.parity += member * m;
     one.mass += member * m * m;
     one.damping += member * m * m;
     one.stiffness += member * m * m;
@@ -24,6 +26,22 @@ Model model_of(const Model *stack, ptrdiff_t member)
         one.restoring_slopes += member * m * m * lower_of(one.m);
     }
     return one;
+}
+
+int alternates(const Model *model, int harmonics, const double *coefficients, double share, const double *scale)
+{
+    const int size = 2 * harmonics + 1;
+    int odd = 0;
+    for (int j = 0; j < model->m; j++) {
+        if (!model->parity[j])
+            return 0;
+        odd |= model->parity[j] < 0;
+        for (int c = 0; c < size; c++)
+            if ((c + 1) / 2 % 2 != (model->parity[j] < 0)
+                && !(fabs(coefficients[j * size + c]) <= (share ? share * scale[j * size + c] : 0.0)))
+                return 0;
+    }
+    return odd && harmonics && model->samples % 2 == 0;
 }
 
 size_t load_scratch(const Model *model)

@@ -111,27 +111,27 @@ static int read_reals(Buffers *held, PyObject *parts, Py_ssize_t first, int coun
     return 1;
 }
 
-/* Read an unexpanded load from the items of a tuple behind the first five: indices which, first, periodic and turning, then
+/* Read an unexpanded load from the items of a tuple behind the first six: indices which, first, periodic and turning, then
  * the reals in the order of `sizes`. */
 static int read_unexpanded(Buffers *held, PyObject *parts, const int *shape, Unexpanded *load, Py_ssize_t members)
 {
     const Py_ssize_t m = shape[0], points = shape[1], n = shape[2], sections = SIZE(members, points);
-    if (!has_items(parts, 22))
+    if (!has_items(parts, 23))
         return 0;
-    const Py_ssize_t curves = PyObject_Length(PyTuple_GET_ITEM(parts, 6)) - 1;
+    const Py_ssize_t curves = PyObject_Length(PyTuple_GET_ITEM(parts, 7)) - 1;
     const Py_ssize_t *which, *first, *periodic, *turning;
     if (PyErr_Occurred() || !bounded("curves", curves, 0, PY_SSIZE_T_MAX)
-        || !(which = items(held, PyTuple_GET_ITEM(parts, 5), sections, "lq", 0)) || !within(which, sections, curves)
-        || !(first = items(held, PyTuple_GET_ITEM(parts, 6), curves + 1, "lq", 0)) || !rising(first, curves + 1)
-        || !(periodic = items(held, PyTuple_GET_ITEM(parts, 7), curves, "lq", 0))
-        || !(turning = items(held, PyTuple_GET_ITEM(parts, 8), curves, "lq", 0)))
+        || !(which = items(held, PyTuple_GET_ITEM(parts, 6), sections, "lq", 0)) || !within(which, sections, curves)
+        || !(first = items(held, PyTuple_GET_ITEM(parts, 7), curves + 1, "lq", 0)) || !rising(first, curves + 1)
+        || !(periodic = items(held, PyTuple_GET_ITEM(parts, 8), curves, "lq", 0))
+        || !(turning = items(held, PyTuple_GET_ITEM(parts, 9), curves, "lq", 0)))
         return 0;
     const Py_ssize_t pieces = first[curves];
     const Py_ssize_t sizes[] = {SIZE(sections, 3, m), sections,         sections, members, SIZE(sections, n, 2),
                                 SIZE(members, n),     sections,         SIZE(members, m),  curves,
                                 curves,               pieces,           pieces,   SIZE(12, pieces)};
     const double *read[13];
-    if (!read_reals(held, parts, 9, 13, sizes, read))
+    if (!read_reals(held, parts, 10, 13, sizes, read))
         return 0;
     *load = (Unexpanded){points,  n,       read[0], read[1], read[2],  read[3],  read[4], read[5],  read[6],
                          read[7], read[8], read[9], read[10], read[11], read[12], which,   first,   periodic, turning};
@@ -139,27 +139,29 @@ static int read_unexpanded(Buffers *held, PyObject *parts, const int *shape, Une
 }
 
 /* Read a stack of models from a tuple: mass, damping, stiffness, restoring, restoring_slopes, the last two empty where
- * stretching is neglected, and the load: forms, table, slopes, or an unexpanded one if the shape has samples. */
+ * stretching is neglected, parity, and the load: forms, table, slopes, or an unexpanded one if the shape has samples. */
 static int read_model(Buffers *held, PyObject *parts, const int *shape, Model *model, Py_ssize_t members)
 {
     const Py_ssize_t m = shape[0], points = shape[1], local = shape[2], stretches = shape[3];
     if (!SOME(shape[0]) || !bounded("points", points, 0, INT_MAX) || !bounded("local", local, 0, MOST_VARIABLES)
-        || !bounded("samples", shape[4], 0, MOST_HARMONICS) || !has_items(parts, 8))
+        || !bounded("samples", shape[4], 0, MOST_HARMONICS) || !has_items(parts, 9))
         return 0;
     const Py_ssize_t square = SIZE(members, m, m);
     const Py_ssize_t sizes[] = {square, square, square, SIZE(members, stretches, m, monomials_of(shape[0])),
                                 SIZE(members, stretches, m, m, lower_of(shape[0]))};
     const double *own[5], *load[3] = {NULL, NULL, NULL};
-    if (!read_reals(held, parts, 0, 5, sizes, own))
+    const Py_ssize_t *parity;
+    if (!read_reals(held, parts, 0, 5, sizes, own)
+        || !(parity = items(held, PyTuple_GET_ITEM(parts, 5), SIZE(members, m), "lq", 0)))
         return 0;
     *model = (Model){.m = shape[0], .points = shape[1], .local = shape[2], .stretches = shape[3], .samples = shape[4],
                      .mass = own[0], .damping = own[1], .stiffness = own[2], .restoring = own[3],
-                     .restoring_slopes = own[4]};
+                     .restoring_slopes = own[4], .parity = parity};
     if (model->samples)
         return read_unexpanded(held, parts, shape, &model->unexpanded, members);
     const Py_ssize_t of_load[] = {SIZE(members, points, local, 2, m), SIZE(members, points, m, monomials_of(shape[2])),
                                   SIZE(members, points, m, local, lower_of(shape[2]))};
-    if (!read_reals(held, parts, 5, 3, of_load, load))
+    if (!read_reals(held, parts, 6, 3, of_load, load))
         return 0;
     model->forms = load[0], model->table = load[1], model->slopes = load[2];
     return 1;
@@ -339,7 +341,7 @@ static PyObject *reaches(PyObject *Py_UNUSED(self), PyObject *arguments)
 static int read_unexpanded_starts(Buffers *held, PyObject *extra, PyObject *parts, Flows *flows)
 {
     const Py_ssize_t starts = flows->starts, m = flows->m;
-    if (!has_items(extra, 6) || !has_items(parts, 22))
+    if (!has_items(extra, 6) || !has_items(parts, 23))
         return 0;
     const Py_ssize_t members = PyObject_Length(PyTuple_GET_ITEM(parts, 0));
     const Py_ssize_t points = PyLong_AsSsize_t(PyTuple_GET_ITEM(extra, 4));

@@ -22,6 +22,7 @@ from engine.models.aerodynamic_load import (
     take_load,
 )
 from engine.models.discretization import Discretization, fields_in_space
+from engine.models.mirror_image import with_parity
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals, take
 from engine.models.relief import DAMPING_RATIO, relief_displacement
 from engine.models.stretching import StretchingForce, stretching_of, take_stretching
@@ -92,7 +93,8 @@ def hybrid_model(
     moving = _with_relief(discretization, nodal, relief)
     stretching = _stretching(discretization, moving, analysis) if whole else None
     direction = np.arange(fields.shape[2]) % 3
-    return ReducedModel(mass, damping, stiffness, load, fields, direction, unstable, stretching, unexpanded)
+    model = ReducedModel(mass, damping, stiffness, load, fields, direction, unstable, stretching, unexpanded)
+    return with_parity(model, moving)
 
 
 def joint_model(
@@ -158,6 +160,7 @@ def three_coordinates(model: ReducedModel) -> ReducedModel:
         direction=model.direction[three],
         stretching=None,
         unexpanded=None,
+        parity=None,
     )
 
 

@@ -23,7 +23,8 @@ class ReducedModel:
     (m,), the direction of each coordinate (0 vertical, 1 horizontal, 2 torsional); statically_unstable: (...), True
     where the stiffness is not positive definite; damping has no meaning there; stretching: g, of the same leading axes,
     None where it is neglected; unexpanded: f as it stands, which then acts in the place of the load expanded in the
-    motion.
+    motion; parity: (..., m), where the span is its own mirror image 1 for coordinates with even shapes and -1 for those
+    with odd ones, 0 elsewhere, None where that was not looked at (`engine.models.mirror_image`).
     """
 
     mass: FloatArray
@@ -35,6 +36,7 @@ class ReducedModel:
     statically_unstable: BoolArray
     stretching: StretchingForce | None = None
     unexpanded: UnexpandedLoad | None = None
+    parity: IntArray | None = None
 
     @property
     def modal_masses(self) -> FloatArray:
@@ -69,6 +71,7 @@ def take(model: ReducedModel, index: Any) -> ReducedModel:
         statically_unstable=model.statically_unstable[index],
         stretching=take_stretching(model.stretching, index),
         unexpanded=take_unexpanded(model.unexpanded, index),
+        parity=None if model.parity is None else model.parity[index],
     )
 
 
