@@ -1,17 +1,17 @@
 """Models that are their own mirror image about mid-span, for which many cycles take half of the work.
 
-With equal ends, uniform ice and wind, and devices in pairs or none, the equations stay the same when the span is mirrored,
-which changes the sign of coordinates with odd shapes: F(P q) = P F(q), P = diag(parity). A cycle with
+With equal ends, uniform ice and wind, and devices in pairs or none, the equations stay the same when the span is
+mirrored, which changes the sign of coordinates with odd shapes: F(P q) = P F(q), P = diag(parity). A cycle with
 q(t + T/2) = P q(t) then has harmonics of even order only in its even coordinates and of odd order in the odd ones, and
-half a period holds all of it. So are the cycles of two loops, with the relief coordinate, that start at a Hopf point: the
-critical mode is odd. A solution of such a start by Newton's method stays so.
+half a period holds all of it. The cycles of two loops that start at a Hopf point do so: their critical mode is odd, and
+a solution of such a start by Newton's method stays so. The compiled kernels make use of it. Decision 74.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.arrays import BoolArray, FloatArray
 from engine.models.reduced_model import ReducedModel, force
 from engine.models.stretching import restoring_force
 
@@ -68,4 +68,4 @@ def _equal(one: FloatArray, other: FloatArray) -> BoolArray:
 def _states(m: int) -> FloatArray:
     """Return states (samples, 2 m) without any symmetry, all components between -1 and 1."""
     order = np.arange(1.0, SAMPLES * 2 * m + 1.0)
-    return np.cos(order**2).reshape(SAMPLES, 2 * m)
+    return np.asarray(np.cos(order**2).reshape(SAMPLES, 2 * m))
