@@ -34,14 +34,15 @@ def sanitized(path: Path) -> Any:
 
 
 def recorded(kernels: Any) -> list[Call]:
-    """Return the arguments with which the engine calls each kernel."""
-    calls: dict[tuple[str, tuple[Any, ...]], Call] = {}
+    """Return the arguments with which the engine calls each kernel, for cycles that alternate apart from others."""
+    calls: dict[tuple[bool, str, tuple[Any, ...]], Call] = {}
+    alternates = False
 
     def recording(name: str) -> Callable[..., Any]:
         real = getattr(kernels, name)
 
         def call(*arguments: Any) -> Any:
-            calls.setdefault((name, _shape(arguments)), (name, _copied(arguments)))
+            calls.setdefault((alternates, name, _shape(arguments)), (name, _copied(arguments)))
             return real(*arguments)
 
         return call
@@ -57,6 +58,8 @@ def recorded(kernels: Any) -> list[Call]:
     made: Any
     for made in motions.MODELS.values():
         _exercise(made(), motions)
+    alternates = True
+    _exercise_alternating(motions)
     return list(calls.values())
 
 
@@ -75,6 +78,22 @@ def _exercise(model: Any, motions: Any) -> None:
     floquet(model, member, orbits)
     starts = spread_starts(model, member[:1], np.array([4.0]), (0.1,), np.random.default_rng(SEED))
     integrate_until_settled(model, member[[0] * starts.shape[1]], np.full(starts.shape[1], 4.0), starts[0], 1)
+
+
+def _exercise_alternating(motions: Any) -> None:
+    from engine.cycles.floquet import monodromy  # noqa: PLC0415
+    from engine.cycles.harmonic_balance import Orbits, balance  # noqa: PLC0415
+    from engine.numerics.newton import NewtonOptions  # noqa: PLC0415
+    from tests.builders import hybrid  # noqa: PLC0415
+
+    model = hybrid(motions.relative_line(2), 2, motions.STRETCHING)
+    assert model.parity is not None
+    assert model.parity.all()
+    coefficients = np.zeros((2, 4, 7))
+    coefficients[:, :3, 1] = 0.1
+    orbits = Orbits(coefficients, np.full(2, 6.0), np.full(2, 4.0))
+    balance(model, np.zeros(2, dtype=np.intp), orbits, NewtonOptions(iterations=2))
+    monodromy(model, np.zeros(2, dtype=np.intp), orbits)
 
 
 def _shape(value: Any) -> Any:
