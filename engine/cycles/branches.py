@@ -247,6 +247,7 @@ def _followed(
     found, last = [start.select(start.branch[:0])], start.select(start.branch)
     ended, left_start = np.zeros((2, start.branch.size), dtype=np.bool_)
     slowest = SLOWEST * lowest_frequency(problem.model)[problem.member]
+    steepest = np.abs(problem.model.load.angle).max(axis=1, initial=0.0)
 
     def goes_on(new: BranchPoints) -> BoolArray:
         ended_at_equilibrium = _passed_equilibrium(problem, last.select(new.branch), new)
@@ -254,6 +255,7 @@ def _followed(
         found.append(new.select(~ended_at_equilibrium))
         last.overwrite(new)
         alive = ~ended_at_equilibrium & _stays_in_range(problem, new, limits, slowest)
+        alive &= _meets_the_wind(problem, new, steepest)
         distance, along = _from_start(problem, origin.select(new.branch), new)
         closed = left_start[new.branch] & along & (distance < CLOSED)
         left_start[new.branch] |= distance > LEFT
@@ -274,14 +276,27 @@ def _passed_equilibrium(problem: CycleProblem, before: BranchPoints, new: Branch
 
 
 def _stays_in_range(problem: CycleProblem, new: BranchPoints, limits: Limits, slowest: FloatArray) -> BoolArray:
-    """Return which branches stay within the limits of parameter, angle of attack and frequency."""
-    member = problem.member[new.branch]
-    orbits = problem.orbits(new.z, new.branch)
+    """Return which branches stay within the limits of parameter and frequency."""
     rising, value = new.tangent[:, -1] > 0.0, new.z[:, -1]
     lowest, highest = _limits_of(limits, new.branch)
     inside = (rising | (value > lowest)) & (~rising | (value < highest))
-    quick = orbits.angular_frequency > slowest[new.branch]
-    return np.asarray(inside & quick & (first_harmonic_angle(problem.model, member, orbits) < LARGEST_ANGLE))
+    return np.asarray(inside & (problem.orbits(new.z, new.branch).angular_frequency > slowest[new.branch]))
+
+
+def _meets_the_wind(problem: CycleProblem, new: BranchPoints, steepest: FloatArray) -> BoolArray:
+    """Return which branches stay within the limit of the angle of attack.
+
+    steepest: (members, 2 m), the largest coefficients of the angle along the span. The sum of what they make of each
+    coordinate bounds the angle, so few points need it from the whole span.
+    """
+    member, orbits = problem.member[new.branch], problem.orbits(new.z, new.branch)
+    amplitude = np.hypot(orbits.coefficients[..., 1], orbits.coefficients[..., 2])
+    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None]
+    bound = (steepest[member] * np.concatenate([amplitude, np.abs(rate) * amplitude], axis=-1)).sum(axis=-1)
+    within = bound < LARGEST_ANGLE
+    far = np.flatnonzero(~within)
+    within[far] = first_harmonic_angle(problem.model, member[far], select(orbits, far)) < LARGEST_ANGLE
+    return np.asarray(within)
 
 
 def _from_start(problem: CycleProblem, start: BranchPoints, new: BranchPoints) -> tuple[FloatArray, BoolArray]:
