@@ -51,7 +51,7 @@ class LinkedJSON(JSONResponse):
         """Send the answer under the prefix of its request."""
         place = self._place(scope)
         if place:
-            self.body = self.render(_linked(self._content, place))
+            self.body = self.render(linked(self._content, place))
             self.headers["content-length"] = str(len(self.body))
             if "location" in self.headers:
                 self.headers["location"] = place + self.headers["location"]
@@ -72,7 +72,7 @@ class AddressedJSON(LinkedJSON):
         return own_address(scope)
 
 
-def _linked(document: Any, prefix: str) -> Any:
+def linked(document: Any, prefix: str) -> Any:
     """Return a document whose own addresses begin with the prefix."""
     if not isinstance(document, dict):
         return document

@@ -1,12 +1,15 @@
 """What the service says of itself to clients of OGC API - Processes: landing page, conformance, the process."""
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
+
+from fastapi.responses import JSONResponse
 
 from app.answers.results import ResultDocument
 from app.convert import ENGINE_VERSION
+from app.http.prefix import linked
 from app.ogc.dialect import shared
-from app.ogc.links import BASE, PROCESS, link
+from app.ogc.links import BASE, INPUTS, PROCESS, link
 from app.openapi.line_forms import FORMS
 from app.schemas import JobRequest
 from app.schemas.field_table import inlined
@@ -20,7 +23,6 @@ _ABOUT = (
     "Tells whether an iced transmission-line span gallops, from which wind speed, and how far; with a study also how "
     "that changes with one or two fields of the line, with remedies what they change."
 )
-_INPUTS = ("line", "analysis", "study", "placement", "remedies")
 
 
 def landing() -> dict[str, Any]:
@@ -70,7 +72,7 @@ def description() -> dict[str, Any]:
     known = KnownLine.model_json_schema(by_alias=True)
     forms = [fields["line"], inlined(known, known["$defs"])]
     named = [{**form, "title": title} for form, (title, _, _) in zip(forms, FORMS, strict=True)]
-    schemas = {**{name: fields[name] for name in _INPUTS}, "line": {"anyOf": named}}
+    schemas = {**{name: fields[name] for name in INPUTS}, "line": {"anyOf": named}}
     inputs = {
         name: {
             "title": name.capitalize(),
@@ -79,9 +81,15 @@ def description() -> dict[str, Any]:
             "minOccurs": 1 if name == "line" else 0,
             "maxOccurs": 1,
         }
-        for name in _INPUTS
+        for name in INPUTS
     }
     result = ResultDocument.model_json_schema(by_alias=True)
     output = {**shared(inlined(result, result["$defs"])), "contentMediaType": "application/json"}
     about = {"title": "Result", "description": "Every table of the result", "schema": output}
     return {**summary(), "inputs": inputs, "outputs": {"result": about}}
+
+
+@lru_cache(maxsize=8)  # a service has few addresses; 300 kB are not to be written anew for each request
+def description_text(address: str) -> bytes:
+    """Return the description as JSON, with links to the service at an address."""
+    return bytes(JSONResponse(linked(description(), address)).body)

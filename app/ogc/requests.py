@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from datetime import datetime
+from itertools import islice
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -19,8 +20,8 @@ from app import convert, schemas
 from app.http.problems import query_fault
 from app.jobs.job_records import JobFilters
 from app.jobs.webhooks import Subscription
-from app.ogc.links import PROCESS
-from app.schemas.faults import BadInput, Fault, faults_of
+from app.ogc.links import INPUTS, PROCESS
+from app.schemas.faults import MOST_FAULTS, BadInput, Fault, faults_of, json_pointer
 from app.tables import DeliveryEvent, JobStatus
 
 _QUALIFIED = frozenset({"value", "mediaType", "encoding", "schema"})
@@ -66,7 +67,7 @@ class Execution(BaseModel):
         BadInput
             With every fault, with JSON pointers below `/inputs`.
         """
-        faults = list(self._links())
+        faults = list(islice(self._faults(), MOST_FAULTS + 1))
         if faults:
             raise BadInput(faults)
         document = {name: _bare(value) for name, value in self.inputs.items()}
@@ -77,10 +78,13 @@ class Execution(BaseModel):
         except BadInput as error:
             raise BadInput([Fault(f"/inputs{f.pointer}", f.code, f.detail) for f in error.faults]) from error
 
-    def _links(self) -> Iterator[Fault]:
+    def _faults(self) -> Iterator[Fault]:
         for name, value in self.inputs.items():
-            if isinstance(value, dict) and "href" in value:
-                yield Fault(f"/inputs/{name}", "by_reference", "must be given by value; the service follows no links")
+            pointer = json_pointer(("inputs", name))
+            if name not in INPUTS:
+                yield Fault(pointer, "unknown_field", "unknown field")
+            elif isinstance(value, dict) and "href" in value:
+                yield Fault(pointer, "by_reference", "must be given by value; the service follows no links")
 
 
 def _split(texts: Any) -> Any:

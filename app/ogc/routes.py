@@ -62,9 +62,9 @@ def list_processes() -> AddressedJSON:
 
 
 @router.get("/processes/{process_id}", dependencies=[Depends(_known_process)])
-def describe_process() -> AddressedJSON:
+def describe_process(request: Request) -> Response:
     """Return the description of the process."""
-    return AddressedJSON(descriptions.description())
+    return Response(descriptions.description_text(own_address(request.scope)), media_type=formats.MEDIA_TYPES["json"])
 
 
 @router.post("/processes/{process_id}/execution", dependencies=[Depends(_known_process)])

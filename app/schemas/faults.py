@@ -159,6 +159,8 @@ def faults_of(errors: Iterable[Mapping[str, Any]], *, skip: int = 0, root: str =
 
 
 def _fault(error: Mapping[str, Any], location: Sequence[int | str], root: str, *, suggests: bool) -> Fault:
+    if location[-1:] == ("[key]",) and location[-2:-1] == (error.get("input"),):
+        location = location[:-1]  # the name of a member is at fault: pydantic puts this word behind it
     tokens = [token for i, token in enumerate(location) if not _is_branch(location, i)]
     if error["type"] == "union_tag_not_found":
         tokens.append("type")

@@ -62,7 +62,7 @@ BAD_LINES = [
     ("devices.2.to_m", 20.0, "/line/devices/2/to_m"),
     ("devices.2.to_m", 200.0, "/line/devices/2/to_m"),
     ("supports.left.insulator_length_m", 0.0, "/line/supports/left/insulator_length_m"),
-    ("tags", {"a:b": "c"}, "/line/tags/a:b/[key]"),
+    ("tags", {"a:b": "c"}, "/line/tags/a:b"),
     ("tags", {"a": 3}, "/line/tags/a"),
     ("name", "a\x00b", "/line/name"),
 ]  # fmt: skip

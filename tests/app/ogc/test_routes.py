@@ -1,5 +1,6 @@
 """The routes as the standard and one of its clients use them."""
 
+import json
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -10,7 +11,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from owslib.ogcapi.processes import Processes
 
-from app.ogc import requests
+from app.ogc import descriptions, requests
 from app.routes.own_documentation import KNOWN_LINE
 from app.runtime.settings import Settings
 from tests.app import service
@@ -166,6 +167,11 @@ def test_faults_of_the_inputs_point_into_them(shared_client: httpx.Client) -> No
         "/inputs/line/span/length_m"
     ]
     assert pointers({"inputs": {"line": {"href": "https://grid.example/line.json"}}}) == ["/inputs/line"]
+    assert pointers({"inputs": {"line": line, "webhook_url": "https://grid.example/", "a/b": 1}}) == [
+        "/inputs/webhook_url",
+        "/inputs/a~1b",
+    ]
+    assert pointers({"inputs": {"line": line}, "outputs": {"rows": {}}}) == ["/outputs/rows"]
     assert pointers({}) == ["/inputs"]
 
 
@@ -224,3 +230,9 @@ def test_owslib_finds_and_runs_the_process(working: httpx.Client) -> None:
     job = service_of.response_headers["Location"]
     wait_until(lambda: working.get(job).json()["status"] == "successful", what="the job")
     assert working.get(f"{job}/results").json()["result"]["value"]["limit_cycles"]
+
+
+def test_the_description_links_to_the_address_under_which_it_is_read() -> None:
+    for place in ("https://a.example/gal", "http://b.example:8000"):
+        links = json.loads(descriptions.description_text(place))["links"]
+        assert {link["href"].removeprefix(f"{place}/ogc/processes/galloping") for link in links} == {"", "/execution"}

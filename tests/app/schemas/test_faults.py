@@ -74,6 +74,13 @@ def test_a_fault_says_what_was_found(path: str, value: Any, end: str) -> None:
     assert details(changed(path, value))[0].endswith(end)
 
 
+def test_a_name_that_is_at_fault_is_pointed_to_and_so_is_a_value_under_a_strange_one() -> None:
+    tags = {"region:north": "yes", "[key]": "a\nb"}
+    with pytest.raises(ValidationError) as caught:
+        schemas.Line.model_validate(changed("tags", tags))
+    assert {fault.pointer for fault in faults_of(caught.value.errors())} == {"/tags/region:north", "/tags/[key]"}
+
+
 def test_a_number_too_long_to_be_written_is_not_written() -> None:
     span = {**FULL_LINE["span"], "elements": 10**4999}
     assert details({**FULL_LINE, "span": span}) == [
