@@ -17,13 +17,13 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help="write docs/reliability.md anew")
     page, write = PAGE.read_text(), parser.parse_args().write
     for name, found in figures.read().items():
-        print(f"{name}\n{_table(found)}\n")
-        page = _with_section(page, name, _table(found))
+        print(f"{name}\n{table(found)}\n")
+        page = with_section(page, name, table(found))
     if write:
         PAGE.write_text(page)
 
 
-def _table(found: dict[str, Any]) -> str:
+def table(found: dict[str, Any]) -> str:
     """Return figures as a table in Markdown."""
     rows = [
         "| measured | figure |",
@@ -34,10 +34,12 @@ def _table(found: dict[str, Any]) -> str:
 
 
 def _text(value: Any) -> str:
-    return ", ".join(f"{count} {name}" for name, count in value.items()) if isinstance(value, dict) else f"{value:,}"
+    if isinstance(value, dict):
+        return ", ".join(f"{count} {name}" for name, count in value.items())
+    return value if isinstance(value, str) else f"{value:,}"
 
 
-def _with_section(page: str, name: str, text: str) -> str:
+def with_section(page: str, name: str, text: str) -> str:
     """Return a page with a text between the markers of a name.
 
     Raises
