@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray
-from engine.cycles.harmonic_balance import Orbits, balance, basis, half_peak_to_peak, linearized, resized, select
+from engine.cycles.harmonic_balance import Orbits, balance, basis, half_peak_to_peak, resized, select
 from engine.cycles.search import Cycles
 from engine.models.reduced_model import ReducedModel, diagonals, take
 from engine.models.stretching import restoring_force, take_stretching
@@ -73,9 +73,11 @@ def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArr
 
     Truncation and detuning refer to the amplitude of largest M_ii |q_i|^2.
     """
-    error = np.abs(linearized(model, member, orbits)[0]).max(axis=1)
+    _, m, size = orbits.coefficients.shape
     elastic = np.abs(model.stiffness[member] @ orbits.coefficients).max(axis=(1, 2))
-    with_one_more, _ = balance(model, member, resized(orbits, orbits.coefficients.shape[-1] // 2 + 1), ONE_STEP)
+    with_one_more, step = balance(model, member, resized(orbits, size // 2 + 1), ONE_STEP)
+    balances = step.residual[:, : m * (size + 2)].reshape(-1, m, size + 2)  # without the phase condition
+    error = np.abs(balances[..., :size]).max(axis=(1, 2))  # the harmonic more is not solved for yet
     every = half_peak_to_peak(orbits.coefficients)
     main = (every * np.sqrt(model.modal_masses)[member]).argmax(axis=-1)
     row = np.arange(member.size)

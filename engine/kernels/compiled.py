@@ -110,10 +110,12 @@ def _newton(
     x = np.array(start, order="C")
     step, iterations = np.full(x.shape[0], np.inf), np.zeros(x.shape[0], dtype=np.intp)
     harmonics = cycles[2].shape[-1] // model.mass.shape[-1] // 2
+    residual = np.full(cycles[2].shape, np.nan)  # without the conditions
     limits = (options.tolerance, options.largest_step, options.iterations)
     size = (x.shape[0], harmonics, tangent.size > 0)
-    newton(model_parts(model), model_shape(model), size, contiguous(*cycles), limits, (x, step, iterations, tangent))
-    return solution_from_steps(x, step, iterations, options)
+    results = (x, step, iterations, residual, tangent)
+    newton(model_parts(model), model_shape(model), size, contiguous(*cycles), limits, results)
+    return solution_from_steps(x, step, iterations, residual, options)
 
 
 def balance_slopes(

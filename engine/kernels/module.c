@@ -181,14 +181,15 @@ static PyObject *finished(Buffers *buffers, int enough_memory)
 static PyObject *newton(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *parts, *member, *speed, *reference, *anchor, *scale, *row, *target, *x, *step, *iterations, *tangent;
+    PyObject *parts, *member, *speed, *reference, *anchor, *scale, *row, *target, *x, *step, *iterations;
+    PyObject *residual, *tangent;
     int shape[5], harmonics, follows, done = 1;
     Py_ssize_t members, cycles;
     Options options;
-    if (!PyArg_ParseTuple(arguments, "O!(niiipi)(nip)(OOOOOOO)(ddi)(OOOO)", &PyTuple_Type, &parts, &members, shape,
+    if (!PyArg_ParseTuple(arguments, "O!(niiipi)(nip)(OOOOOOO)(ddi)(OOOOO)", &PyTuple_Type, &parts, &members, shape,
                           shape + 1, shape + 2, shape + 3, shape + 4, &cycles, &harmonics, &follows, &member, &speed, &reference, &anchor,
                           &scale, &row, &target, &options.tolerance, &options.largest_step, &options.iterations, &x,
-                          &step, &iterations, &tangent))
+                          &step, &iterations, &residual, &tangent))
         return NULL;
     const Py_ssize_t balances = SIZE(shape[0], 2 * (Py_ssize_t)harmonics + 1), unknowns = balances + 1 + follows;
     const Py_ssize_t all = SIZE(cycles, unknowns);
@@ -202,6 +203,7 @@ static PyObject *newton(PyObject *Py_UNUSED(self), PyObject *arguments)
         && (wanted.target = REALS(target, follows ? cycles : 0)) && (wanted.x = RESULT(x, all))
         && (wanted.step = RESULT(step, cycles))
         && (wanted.iterations = items(&buffers, iterations, cycles, "lq", PyBUF_WRITABLE))
+        && (wanted.residual = RESULT(residual, SIZE(cycles, balances)))
         && (wanted.tangent = RESULT(tangent, follows ? all : 0))) {
         Py_BEGIN_ALLOW_THREADS
         done = solve_balances(&model, &wanted, &options);

@@ -49,6 +49,14 @@ static int all_finite(int count, const double *x)
     return 1;
 }
 
+/* Copy the residual, from the order of elimination back to that of the coefficients; zero where they are none of the cycle's. */
+static void copy_residual(const System *w, double *residual)
+{
+    memset(residual, 0, (size_t)w->coefficients * sizeof *residual);
+    for (int r = 0; r < w->balances; r++)
+        residual[w->kept[r]] = w->matrix[(ptrdiff_t)r * w->stride + w->unknowns];
+}
+
 /* Compute a step of Newton's method; return 0 if the system is singular. */
 static int find_step(System *w, const Model *model, const Balances *wanted, ptrdiff_t cycle)
 {
@@ -56,6 +64,8 @@ static int find_step(System *w, const Model *model, const Balances *wanted, ptrd
     const double *x = wanted->x + cycle * n;
     assemble_system(w, model, x, wanted->follows ? x[n - 1] : wanted->wind_speed[cycle]);
     add_phase(w, x, wanted->reference + cycle * w->coefficients, wanted->anchor + cycle * n);
+    if (!wanted->iterations[cycle])
+        copy_residual(w, wanted->residual + cycle * w->coefficients);
     if (wanted->follows)
         add_condition(w, x, wanted->row + cycle * n, wanted->target[cycle]);
     for (int row = 0; row < w->unknowns; row++)
@@ -122,8 +132,8 @@ static void write_out(const System *w, double *residual, double *slopes)
         const double *row = w->matrix + (ptrdiff_t)r * w->stride;
         for (int v = 0; v < w->unknowns; v++)
             slopes[w->kept[r] * w->unknowns + w->kept[v]] = row[v];
-        residual[w->kept[r]] = row[w->unknowns];
     }
+    copy_residual(w, residual);
 }
 
 int linearize_balances(const Model *stack, const Linearizations *wanted)

@@ -30,13 +30,14 @@ class Solution:
     """Result of Newton's method for each member of a stack.
 
     x: (members, unknowns); outcome: (members,) of Outcome; step: (members,), scaled size of the last step;
-    iterations: (members,).
+    iterations: (members,); residual: (members, equations), that of the start, NaN where no step was taken.
     """
 
     x: FloatArray
     outcome: ObjectArray
     step: FloatArray
     iterations: IntArray
+    residual: FloatArray
 
     @property
     def converged(self) -> BoolArray:
@@ -67,11 +68,14 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOpti
     x = x.copy()
     step = np.full(x.shape[0], np.inf)
     iterations = np.zeros(x.shape[0], dtype=np.intp)
+    residual = np.full(x.shape, np.nan)
     active = np.flatnonzero(np.isfinite(x).all(axis=-1))
     for _ in range(options.iterations):
         if active.size == 0:
             break
-        change = _newton_steps(system, x, active)
+        here, change = _newton_steps(system, x, active)
+        starts = iterations[active] == 0
+        residual[active[starts]] = here[starts]
         size = np.sqrt(np.mean((change / scale[active]) ** 2, axis=-1))
         finite = np.isfinite(size)
         active, change, size = active[finite], change[finite], size[finite]
@@ -79,25 +83,29 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOpti
         step[active] = size
         iterations[active] += 1
         active = active[size > options.tolerance]
-    return solution_from_steps(x, step, iterations, options)
+    return solution_from_steps(x, step, iterations, residual, options)
 
 
-def solution_from_steps(x: FloatArray, step: FloatArray, iterations: IntArray, options: NewtonOptions) -> Solution:
+def solution_from_steps(
+    x: FloatArray, step: FloatArray, iterations: IntArray, residual: FloatArray, options: NewtonOptions
+) -> Solution:
     """Return the solution whose outcome follows from the size (members,) of the last steps."""
     outcome = filled(step.size, Outcome.NO_CONVERGENCE)
     outcome[step <= options.tolerance] = Outcome.CONVERGED
-    return Solution(x, outcome, step, iterations)
+    return Solution(x, outcome, step, iterations, residual)
 
 
-def _newton_steps(system: System, x: FloatArray, active: IntArray) -> FloatArray:
-    """Return the Newton steps of the active members, computed in blocks so that memory stays bounded."""
+def _newton_steps(system: System, x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return residuals and Newton steps of the active members, computed in blocks so that memory stays bounded."""
     size = max(1, BLOCK_NUMBERS // x.shape[1] ** 2)
     blocks = [active[first : first + size] for first in range(0, active.size, size)]
-    return np.concatenate([_newton_step(*system(x[block], block)) for block in blocks])
+    parts = [_newton_step(*system(x[block], block)) for block in blocks]
+    residuals, steps = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return residuals, steps
 
 
-def _newton_step(residual: FloatArray, jacobian: FloatArray) -> FloatArray:
-    return -solve_systems(jacobian, residual)
+def _newton_step(residual: FloatArray, jacobian: FloatArray) -> tuple[FloatArray, FloatArray]:
+    return residual, -solve_systems(jacobian, residual)
 
 
 def solve_systems(matrix: FloatArray, right: FloatArray) -> FloatArray:

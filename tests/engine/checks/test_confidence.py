@@ -7,11 +7,12 @@ import pytest
 
 from engine.arrays import FloatArray
 from engine.checks.confidence import DETUNING, LINEAR, confidence, stretching_shift
-from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, resized, select
+from engine.cycles.harmonic_balance import Orbits, balance, half_peak_to_peak, residual, resized, select
 from engine.cycles.search import Cycles, find_cycles
 from engine.cycles.starts import energy_starts
+from engine.kernels import compiled
 from engine.models.critical_wind_speeds import critical_wind_speeds
-from engine.models.reduced_model import ReducedModel
+from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.newton import NewtonOptions
 from engine.spec import Analysis, Check, Stretching
 from tests.builders import hybrid, source_line
@@ -95,6 +96,20 @@ def test_detuning_looks_back_over_the_shift_that_stretching_causes() -> None:
         changes.append(float(half_peak_to_peak(orbit.coefficients)[0, main] / before[0, main] - 1.0))
     assert confidence(model, cycles, Check.NONE).detuning[0] == pytest.approx(max(changes, key=abs), rel=1e-3)
     assert max(changes, key=abs) == changes[2]
+
+
+@pytest.mark.parametrize("available", [True, False])
+def test_residual_is_that_of_the_harmonics_solved_for(available: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The step with one more harmonic tells it; what is missing in that harmonic is truncation."""
+    model = hybrid(source_line(2), 1)
+    cycles = cycles_of(model, 2)
+    moved = replace(cycles, orbits=replace(cycles.orbits, coefficients=1.01 * cycles.orbits.coefficients))
+    expected = np.abs(residual(take(model, cycles.member), moved.orbits)).max(axis=(1, 2))
+    elastic = np.abs(model.stiffness[cycles.member] @ moved.orbits.coefficients).max(axis=(1, 2))
+    monkeypatch.setattr(compiled, "AVAILABLE", available and compiled.AVAILABLE)
+    measured = confidence(model, moved, Check.NONE).residual
+    assert measured == pytest.approx(expected / elastic, rel=1e-9)
+    assert (measured > 1e-5).all()
 
 
 def test_residual_is_that_of_rounding_and_direct_integration_agrees() -> None:

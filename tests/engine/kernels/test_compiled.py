@@ -68,6 +68,10 @@ def test_a_newton_step_is_that_of_the_numpy_form(name: str, harmonics: int, both
     assert found.coefficients == pytest.approx(expected.coefficients, rel=1e-9, abs=1e-9 * size)
     assert found.angular_frequency == pytest.approx(expected.angular_frequency, rel=1e-9)
     assert how.step == pytest.approx(expected_how.step, rel=1e-9)
+    drift = expected_how.residual[:, -1]  # the phase condition, which the kernel leaves out
+    assert drift.tolist() == [0.0] * COPIES
+    force = np.abs(expected_how.residual).max()
+    assert how.residual == pytest.approx(expected_how.residual[:, :-1], rel=1e-9, abs=1e-11 * force)
     assert how.iterations.tolist() == expected_how.iterations.tolist() == [1] * COPIES
 
 
@@ -159,6 +163,8 @@ def test_starts_that_are_no_numbers_are_left_alone() -> None:
     start.coefficients[0, 1, 2] = np.nan
     _, how = balance(model, np.zeros(2, dtype=np.intp), start)
     assert how.iterations[0] == 0
+    assert np.isnan(how.residual[0]).all()
+    assert np.isfinite(how.residual[1]).all()
     assert not how.converged[0]
     assert how.iterations[1] > 0
 

@@ -26,6 +26,7 @@ def test_every_member_of_a_stack_is_solved_on_its_own() -> None:
     assert found.converged.all()
     assert found.x == pytest.approx(np.stack([np.sqrt(targets), np.sqrt(targets) + 1.0], axis=-1), rel=1e-12)
     assert found.iterations[0] < found.iterations[2]
+    assert found.residual.tolist() == [[1.0 - target, -1.0] for target in targets]  # at the start
 
 
 def test_no_solution_is_an_outcome_and_leaves_the_others_alone() -> None:
