@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, lengths, merge_axes
-from engine.cycles.branch_set import BranchSet, CycleProblem, orbits_of, points_of
+from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
+from engine.cycles.branch_ends import Limits, from_start, limits_of, meets_the_wind, passed_equilibrium, stays_in_range
+from engine.cycles.branch_set import BranchSet, CycleProblem, points_of
 from engine.cycles.floquet import Floquet
 from engine.cycles.harmonic_balance import Orbits, first_harmonic_angle, select, total_size
 from engine.cycles.known_cycles import SLOWEST
@@ -29,7 +30,6 @@ from engine.progress import driven
 
 FIRST_STEP = 0.2  # from a cycle; the branch from a Hopf point is a parabola, so nothing keeps the first step short
 REFERENCE_ANGLE = 0.05  # rad; the amplitude with this angle of attack is the smallest scale of a branch
-LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 REACHED = 0.02  # relative distance in wind speed and frequency at which a branch ends in a Hopf point
 CLOSED = 0.7  # scaled distance from its start within which a branch that had left it farther than LEFT is closed
 LEFT = 1.0
@@ -38,9 +38,6 @@ LAST = slice(-1, None)
 CELLS = 8  # parts of a segment between two points that are searched for a given wind speed
 LOWEST_WIND = 0.25  # of the lowest requested wind speed: branches are not followed below it
 HIGHEST_WIND = 1.05  # of the highest wind speed: a branch may fold just above it and return
-
-Limits = tuple[float | FloatArray, float | FloatArray]
-"""Lowest and highest value of the parameter, of all branches or (branches,)."""
 
 
 def follow_from_hopf_points(
@@ -119,7 +116,7 @@ def reference_size(model: ReducedModel, member: IntArray, orbits: Orbits) -> Flo
 def follow_both_ways(problem: CycleProblem, start: FloatArray, limits: Limits) -> BranchSet:
     """Follow branches from points (k, n + 1), one per entry of the problem: k to higher parameters, then k to lower."""
     both, up = np.tile(np.arange(start.shape[0]), 2), np.repeat([1.0, -1.0], start.shape[0])
-    limits = _limits_of(limits, both)
+    limits = limits_of(limits, both)
     problem, start = problem.repeated(both), start[both]
     along = np.zeros_like(start)
     along[:, -1] = up * problem.scale(start, np.arange(both.size))[:, -1]
@@ -136,12 +133,6 @@ def wind_limits(problem: CycleProblem, winds: FloatArray) -> tuple[FloatArray, F
     """
     own = of_each_member(problem.model, winds)[problem.member]
     return LOWEST_WIND * own[:, 0], HIGHEST_WIND * own[:, -1]
-
-
-def _limits_of(limits: Limits, branch: IntArray) -> Limits:
-    """Return the limits of selected, possibly repeated branches (k,)."""
-    low, high = (bound[branch] if isinstance(bound, np.ndarray) else bound for bound in limits)
-    return low, high
 
 
 def ends_at_hopf_points(branch_sets: BranchSet, crossings: Crossings, hopf: IntArray) -> BoolArray:
@@ -213,7 +204,7 @@ def _followed_on(found: BranchSet, origin: BranchPoints, index: IntArray, limits
     here, first = (
         make_points(own, np.arange(index.size), part.z, part.tangent) for part in (last, origin.select(index))
     )
-    points, outcome, ended = _followed(own, here, first, _limits_of(limits, index))
+    points, outcome, ended = _followed(own, here, first, limits_of(limits, index))
     new = BranchPoints(index[points.branch], points.z, points.scale, points.tangent)
     every, judged = concatenated([found.points, new]), judged_points(found.problem, new)
     order = np.argsort(every.branch, kind="stable")
@@ -250,13 +241,13 @@ def _followed(
     steepest = np.abs(problem.model.load.angle).max(axis=1, initial=0.0)
 
     def goes_on(new: BranchPoints) -> BoolArray:
-        ended_at_equilibrium = _passed_equilibrium(problem, last.select(new.branch), new)
+        ended_at_equilibrium = passed_equilibrium(problem, last.select(new.branch), new)
         ended[new.branch] = ended_at_equilibrium
         found.append(new.select(~ended_at_equilibrium))
         last.overwrite(new)
-        alive = ~ended_at_equilibrium & _stays_in_range(problem, new, limits, slowest)
-        alive &= _meets_the_wind(problem, new, steepest)
-        distance, along = _from_start(problem, origin.select(new.branch), new)
+        alive = ~ended_at_equilibrium & stays_in_range(problem, new, limits, slowest)
+        alive &= meets_the_wind(problem, new, steepest)
+        distance, along = from_start(problem, origin.select(new.branch), new)
         closed = left_start[new.branch] & along & (distance < CLOSED)
         left_start[new.branch] |= distance > LEFT
         return np.asarray(alive & ~closed)
@@ -265,49 +256,3 @@ def _followed(
     steps = StepControl(first=np.where(moving, FIRST_STEP, StepControl().largest))
     outcome = driven(continue_branches(problem, start.z, start.tangent, steps), goes_on)
     return concatenated(found), outcome, ended
-
-
-def _passed_equilibrium(problem: CycleProblem, before: BranchPoints, new: BranchPoints) -> BoolArray:
-    """Return which branches passed through the equilibrium, where the first harmonic changes its sign."""
-    m = problem.model.mass.shape[-1]
-    weight = problem.model.modal_masses[problem.member[new.branch]]
-    first, second = (orbits_of(p.z, m).coefficients[..., 1:3] for p in (before, new))
-    return np.asarray(np.einsum("kmc,kmc,km->k", first, second, weight) < 0.0)
-
-
-def _stays_in_range(problem: CycleProblem, new: BranchPoints, limits: Limits, slowest: FloatArray) -> BoolArray:
-    """Return which branches stay within the limits of parameter and frequency."""
-    rising, value = new.tangent[:, -1] > 0.0, new.z[:, -1]
-    lowest, highest = _limits_of(limits, new.branch)
-    inside = (rising | (value > lowest)) & (~rising | (value < highest))
-    return np.asarray(inside & (problem.orbits(new.z, new.branch).angular_frequency > slowest[new.branch]))
-
-
-def _meets_the_wind(problem: CycleProblem, new: BranchPoints, steepest: FloatArray) -> BoolArray:
-    """Return which branches stay within the limit of the angle of attack.
-
-    steepest: (members, 2 m), the largest coefficients of the angle along the span. The sum of what they make of each
-    coordinate bounds the angle, so few points need it from the whole span.
-    """
-    member, orbits = problem.member[new.branch], problem.orbits(new.z, new.branch)
-    amplitude = np.hypot(orbits.coefficients[..., 1], orbits.coefficients[..., 2])
-    rate = (orbits.angular_frequency / orbits.wind_speed)[:, None]
-    bound = (steepest[member] * np.concatenate([amplitude, np.abs(rate) * amplitude], axis=-1)).sum(axis=-1)
-    within = bound < LARGEST_ANGLE
-    far = np.flatnonzero(~within)
-    within[far] = first_harmonic_angle(problem.model, member[far], select(orbits, far)) < LARGEST_ANGLE
-    return np.asarray(within)
-
-
-def _from_start(problem: CycleProblem, start: BranchPoints, new: BranchPoints) -> tuple[FloatArray, BoolArray]:
-    """Return the distance of points from the start of their branch, and whether they go on in its direction."""
-    scale = start.scale
-    first, second = (_phase_invariants(p.z / scale, problem.model.mass.shape[-1]) for p in (start, new))
-    along = np.einsum("ki,ki->k", (start.tangent / scale)[:, -2:], (new.tangent / scale)[:, -2:]) > 0.0
-    return lengths(first - second), along
-
-
-def _phase_invariants(z: FloatArray, m: int) -> FloatArray:
-    """Return the quantities of scaled points that do not depend on the phase: means, amplitudes, frequency, wind."""
-    c = orbits_of(z, m).coefficients
-    return np.concatenate([c[..., 0], merge_axes(np.hypot(c[..., 1::2], c[..., 2::2]), -2), z[:, -2:]], axis=-1)
