@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: audit sbom lowest constraints-lowest setup demo test test-processes test-clients test-pages page-pictures test-faults reliability check bench capacity validation
+.PHONY: audit sbom test-version test-versions lowest constraints-lowest setup demo test test-processes test-clients test-pages page-pictures test-faults reliability check bench capacity validation
 
 setup: $(VENV)/.ready
 
@@ -113,6 +113,24 @@ constraints-lowest: setup
 	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --requirement .venv-lowest/lowest.txt
 	$(BIN)/uv pip install --quiet --python .venv-lowest/bin/python --constraint .venv-lowest/lowest.txt $(LOWEST_TOOLS)
 	$(BIN)/uv pip freeze --python .venv-lowest/bin/python > constraints-lowest.txt
+
+# A few tests with one further version of Python, warnings as errors: kernels and solver, and of a wheel in an environment
+# of its own, beside files of the names of our packages, the service with a job, the client and the command line.
+# `make test-version PYTHON=python3.13 VENV=.venv-python3.13`; `make test-versions` does so for each that the machine has.
+VERSION_TOOLS := hypothesis packaging pytest pytest-timeout pytest-xdist setuptools
+ANY_VERSION := tests/engine/kernels/test_compiled.py tests/engine/cycles/test_harmonic_balance.py tests/engine/test_arrays.py \
+	tests/e2e/test_wheel.py
+
+$(VENV)/.version: pyproject.toml setup.py constraints.txt $(wildcard engine/kernels/*.[ch])
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[all]' $(VERSION_TOOLS)
+	touch $@
+
+test-version: $(VENV)/.version
+	PYTHONPATH=$(CURDIR) $(BIN)/python -m pytest -n 2 --dist loadfile $(ANY_VERSION)
+
+test-versions:
+	.ci/versions
 
 capacity: setup
 	$(BIN)/python -m benchmarks.capacity
