@@ -4,6 +4,7 @@ import gc
 import os
 import signal
 from functools import cache
+from pathlib import Path
 from uuid import UUID
 
 from celery import Celery
@@ -87,8 +88,18 @@ def freeze(**_: object) -> None:
     gc.freeze()
 
 
+def _mute_celery() -> None:
+    """Drop what Celery prints about signals, on standard output, which reads as if it were said to whoever serves.
+
+    Logs go to standard error.
+    """
+    with Path(os.devnull).open("wb") as nothing:
+        os.dup2(nothing.fileno(), 1)
+
+
 def _run_pool() -> None:
     end_with_parent()
+    _mute_celery()
     settings = get_settings()
     logs.configure(settings)
     telemetry.configure(settings, "worker")

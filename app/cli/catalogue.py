@@ -1,13 +1,12 @@
 """Commands that print what there is: `galloping conductors`, `ice-shapes` and `fields`."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
-import sys
 from collections.abc import Mapping
 from typing import Annotated, Any
 
 import typer
 
-from app.cli.console import print_table, write
+from app.cli.console import for_people, print_table, write
 from app.cli.options import AsJson
 
 _CONDUCTOR_COLUMNS = (
@@ -34,7 +33,7 @@ def conductors(
     from app.reference import conductors as catalogue
 
     rows = [row.listed() for row in catalogue.search(search)]
-    if as_json or not sys.stdout.isatty():
+    if not for_people(as_json):
         write({"conductors": rows}, None)
     else:
         print_table(_CONDUCTOR_COLUMNS, rows)
@@ -45,7 +44,7 @@ def ice_shapes(as_json: AsJson = False) -> None:
     from app.reference.ice_shapes import ICE_SHAPES
 
     rows = [shape.listed() for shape in ICE_SHAPES]
-    if as_json or not sys.stdout.isatty():
+    if not for_people(as_json):
         write({"ice_shapes": rows}, None)
     else:
         print_table(_SHAPE_COLUMNS, rows)
@@ -63,7 +62,7 @@ def fields(
 
     words = search.casefold().split()
     rows = [row for row in field_table.all_fields() if all(word in _searched(row) for word in words)]
-    if as_json or not sys.stdout.isatty():
+    if not for_people(as_json):
         write({"fields": rows}, None)
     else:
         print_table(_FIELD_COLUMNS, [_field(row) for row in rows])

@@ -1,14 +1,13 @@
 """The command that fits coefficients to a measured table: `galloping fit`."""
 # ruff: noqa: PLC0415 - a command imports what it needs, so that --help and example answer at once
 
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from app.cli.console import print_table, refuse, try_output, write
+from app.cli.console import for_people, print_table, refuse, try_output, write
 from app.cli.inputs import read_bytes, read_json
 from app.cli.options import AsJson, OutputFile
 
@@ -47,7 +46,7 @@ def fit(
         refuse(faults_of(error.errors(include_url=False)))
     except BadInput as error:
         refuse(error.faults)
-    if output is not None or as_json or not sys.stdout.isatty():
+    if output is not None or not for_people(as_json):
         write(found, output)
     else:
         _show(found)

@@ -10,7 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from app.cli.configuration import configured
-from app.cli.console import quietly
+from app.cli.console import placed, quietly
+from app.cli.options import OutputFolder
 
 _PANEL = "For every command"
 
@@ -66,16 +67,27 @@ _Config = Annotated[
 
 
 def with_common_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that takes --config and --quiet, too; what these say is done before it begins."""
+    """Return a command that takes --config and --quiet, too; what these say is done before it begins.
+
+    One that writes files of results takes --output-dir as well.
+    """
+    signature = inspect.signature(command)
+    added: list[tuple[str, Any, Any]] = [("quiet", False, Quiet), ("config", None, _Config)]
+    if any(_is_placed(parameter) for parameter in signature.parameters.values()):
+        added.append(("output_dir", None, OutputFolder))  # after the configuration file, which may name it
 
     @functools.wraps(command)
-    def run(*, quiet: bool, config: Path | None, **given: Any) -> None:
-        command(**given)
+    def run(**given: Any) -> None:
+        command(**{name: value for name, value in given.items() if name in signature.parameters})
 
-    signature = inspect.signature(command)
     common = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
-        for name, default, annotation in (("quiet", False, Quiet), ("config", None, _Config))
+        for name, default, annotation in added
     ]
     run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), *common])  # type: ignore[attr-defined]
     return run
+
+
+def _is_placed(parameter: inspect.Parameter) -> bool:
+    options = getattr(parameter.annotation, "__metadata__", ())
+    return any(getattr(option, "callback", None) is placed for option in options)

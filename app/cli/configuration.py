@@ -16,10 +16,13 @@ _KNOWN: Mapping[str, type] = {
     "data_dir": str,
     "host": str,
     "port": int,
+    "output_dir": str,
     "theme": str,
+    "units": str,
     "quiet": bool,
 }
-_PATHS = ("key_file", "data_dir")
+_PATHS = ("key_file", "data_dir", "output_dir")
+_CHOICES = {"theme": ("light", "dark"), "units": ("si", "feet")}
 _KINDS = {str: "text", int: "a whole number", bool: "true or false"}
 
 
@@ -59,3 +62,5 @@ def _faults(document: Mapping[str, object]) -> Iterator[str]:
             yield f"{name}: is not known; may be {', '.join(_KNOWN)}"
         elif type(value) is not _KNOWN[name]:
             yield f"{name}: must be {_KINDS[_KNOWN[name]]}, got {value!r}"
+        elif value not in _CHOICES.get(name, (value,)):
+            yield f"{name}: must be {' or '.join(_CHOICES[name])}, got {value!r}"

@@ -19,7 +19,14 @@ BAD_INPUT = 2
 FAILED = 1
 INTERRUPTED = 130  # as shells count a program that Ctrl-C ended
 _FILE_WIDTH = 250
+_FOLDER = f"{__name__}.output_dir"
+_STANDARD_OUTPUT = Path("-")
 _quiet = ContextVar("quiet", default=False)
+
+
+def for_people(as_json: bool) -> bool:
+    """Tell whether a result is for people: standard output is a terminal, and JSON is not asked for."""
+    return sys.stdout.isatty() and not as_json
 
 
 def print_table(columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:
@@ -67,6 +74,24 @@ def _print(content: bytes) -> None:
         sys.stdout.buffer.flush()
     except OSError as error:
         end(f"the result cannot be written: {error.strerror or error}", BAD_INPUT)
+
+
+def remember_folder(context: typer.Context, folder: Path | None) -> Path | None:
+    """Remember the folder from which relative paths of files for results start."""
+    context.meta[_FOLDER] = folder
+    return folder
+
+
+def placed(context: typer.Context, path: Path | None) -> Path | None:
+    """Return the place of a file or folder for results; make the folder that it starts from, or end."""
+    folder: Path | None = context.meta.get(_FOLDER)
+    if path is None or folder is None or path == _STANDARD_OUTPUT or path.is_absolute() or context.resilient_parsing:
+        return path
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        end(f"{folder} cannot be made: {error.strerror or error}", BAD_INPUT)
+    return folder / path
 
 
 def try_output(path: Path | None) -> None:

@@ -82,7 +82,10 @@ def _service(output: Path) -> Iterator[str]:
     log = output / "service.log"
     # Drop variables of the shell that would point the demo at another database or broker.
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GALLOPING_")}
-    with log.open("w") as sink, subprocess.Popen(command, stdout=sink, stderr=sink, env=environment) as process:
+    with (
+        log.open("w", encoding="utf-8") as sink,
+        subprocess.Popen(command, stdout=sink, stderr=sink, env=environment) as process,
+    ):
         try:
             address = f"http://127.0.0.1:{port}"
             _wait_until_ready(address, process, log)
@@ -98,7 +101,7 @@ def _wait_until_ready(address: str, process: subprocess.Popen[bytes], log: Path)
             if httpx.get(f"{address}/health/ready", timeout=5.0).is_success:
                 return
         time.sleep(0.1)
-    raise client.ServiceError(f"the service did not start; {log} ends with:\n{log.read_text()[-2000:]}")
+    raise client.ServiceError(f"the service did not start; {log} ends with:\n{log.read_text(encoding='utf-8')[-2000:]}")
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:

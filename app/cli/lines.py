@@ -3,7 +3,6 @@
 
 import json
 import os
-import sys
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from app.cli.console import BAD_INPUT, FAILED, end, progress_bar, refuse, try_folder, try_output, write
+from app.cli.console import BAD_INPUT, FAILED, end, for_people, progress_bar, refuse, try_folder, try_output, write
 from app.cli.inputs import read_request
 from app.cli.options import (
     AnalysisFile,
@@ -24,8 +23,10 @@ from app.cli.options import (
     PlotsDirectory,
     ReportFile,
     StudyFile,
+    UnitsName,
 )
 from app.cli.report import print_distances, print_report
+from app.pages.measures import BY_NAME, Units
 from app.reference.source_lines import EXAMPLE_NAMES
 from app.reference.source_studies import STUDY_NAMES
 
@@ -44,6 +45,7 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     plots: PlotsDirectory = None,
     report: ReportFile = None,
     as_json: AsJson = False,
+    units: UnitsName = "si",
 ) -> None:
     """Analyse a line in this process, without service or database.
 
@@ -58,10 +60,10 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
         end("a report is for a line, not for a study", BAD_INPUT)
     request, points = _points(document)
     result = result_document(request, points)
-    if output is not None or as_json or not sys.stdout.isatty():
+    if output is not None or not for_people(as_json):
         write(result, output)
-    if not as_json and sys.stdout.isatty():
-        print_report(result)
+    if for_people(as_json):
+        print_report(result, BY_NAME[units])
     if csv is not None:
         _write_tables(result, csv)
     if plots is not None:
@@ -69,11 +71,15 @@ def analyse(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
 
         draw_all(result, {point.point: point.orbits for point in points}, Wanted(plots))
     if report is not None:
-        _write_report(request, points[0], report)
+        _write_report(request, points[0], report, BY_NAME[units])
 
 
 def clearance(
-    line: LineFile, analysis: AnalysisFile = None, output: OutputFile = None, as_json: AsJson = False
+    line: LineFile,
+    analysis: AnalysisFile = None,
+    output: OutputFile = None,
+    as_json: AsJson = False,
+    units: UnitsName = "si",
 ) -> None:
     """Print how near the motions of a line come to the phases and wires that it lists, without service or database.
 
@@ -90,10 +96,10 @@ def clearance(
     if isinstance(asked, dict):  # samples have no distances
         document = {**document, "analysis": {"uncertainty": {"samples": 0}, **asked}}
     result = computed(document)
-    if output is not None or as_json or not sys.stdout.isatty():
+    if output is not None or not for_people(as_json):
         write({name: result[name] for name in ("verdict", "clearances", "warnings", "failures")}, output)
-    if not as_json and sys.stdout.isatty():
-        print_distances(result)
+    if for_people(as_json):
+        print_distances(result, BY_NAME[units])
 
 
 def computed(document: Any) -> Any:
@@ -141,16 +147,15 @@ def _write_tables(result: Mapping[str, Any], directory: Path) -> None:
         typer.echo(f"{directory} cannot be written: {error.strerror or error}", err=True)
 
 
-def _write_report(request: Mapping[str, Any], point: "PointResult", path: Path) -> None:
+def _write_report(request: Mapping[str, Any], point: "PointResult", path: Path, units: Units) -> None:
     from app.pages import reports
-    from app.pages.measures import SI
 
     material = reports.computed_material(request, point, datetime.now(UTC))
     try:
         if path.suffix.lower() in {".html", ".htm"}:
-            path.write_text(reports.report_html_alone(material, SI), encoding="utf-8")
+            path.write_text(reports.report_html_alone(material, units), encoding="utf-8")
         else:
-            path.write_bytes(reports.report_pdf(material, SI))
+            path.write_bytes(reports.report_pdf(material, units))
     except (OSError, reports.NotPrintable) as error:
         typer.echo(f"{path} cannot be written: {error}", err=True)
 

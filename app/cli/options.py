@@ -1,9 +1,22 @@
 """Options and arguments that several commands share."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
+
+from app.cli.console import placed, remember_folder
+
+OutputFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--output-dir",
+        metavar="DIR",
+        callback=remember_folder,
+        is_eager=True,  # before the options whose paths start from it
+        help="Folder from which relative paths of files for results start.",
+    ),
+]
 
 LineFile = Annotated[
     Path,
@@ -22,16 +35,29 @@ AnalysisFile = Annotated[
 StudyFile = Annotated[Path | None, typer.Option("--study", metavar="STUDY.json", help="Fields of the line to vary.")]
 PlacementFile = Annotated[Path | None, typer.Option("--placement", metavar="PLACEMENT.json", help="Devices to place.")]
 OutputFile = Annotated[
-    Path | None, typer.Option("--output", metavar="RESULT.json", help="File for the result; standard output if absent.")
+    Path | None,
+    typer.Option(
+        "--output", metavar="RESULT.json", callback=placed, help="File for the result; standard output if absent."
+    ),
 ]
 CsvDirectory = Annotated[
-    Path | None, typer.Option("--csv", metavar="DIR", help="Write every table with rows there as a CSV file.")
+    Path | None,
+    typer.Option("--csv", metavar="DIR", callback=placed, help="Write every table with rows there as a CSV file."),
 ]
 PlotsDirectory = Annotated[
-    Path | None, typer.Option("--plots", metavar="DIR", help="Draw every picture that the result has rows for there.")
+    Path | None,
+    typer.Option(
+        "--plots", metavar="DIR", callback=placed, help="Draw every picture that the result has rows for there."
+    ),
 ]
 ReportFile = Annotated[
-    Path | None, typer.Option("--report", metavar="REPORT.pdf", help="Write a report of the result, as PDF or .html.")
+    Path | None,
+    typer.Option(
+        "--report", metavar="REPORT.pdf", callback=placed, help="Write a report of the result, as PDF or .html."
+    ),
+]
+UnitsName = Annotated[
+    Literal["si", "feet"], typer.Option("--units", help="Units of what people read; JSON and CSV are in SI.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON also on a terminal.")]
 DataDirectory = Annotated[

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from app.cli.console import BAD_INPUT, FAILED, end, notice
+from app.cli.console import BAD_INPUT, FAILED, end, notice, placed
 from app.cli.inputs import read_json
 
 if TYPE_CHECKING:
@@ -44,7 +44,11 @@ def plot(  # noqa: PLR0913, PLR0917 - the options of a command are its arguments
     ] = None,
     output: Annotated[
         Path,
-        typer.Option(metavar="DIR|FILE", help="Directory for NAME.FORMAT, or the file of one picture; - for stdout."),
+        typer.Option(
+            metavar="DIR|FILE",
+            callback=placed,
+            help="Directory for NAME.FORMAT, or the file of one picture; - for stdout.",
+        ),
     ] = Path(),
     form: Annotated[Literal["svg", "png", "pdf"] | None, typer.Option("--format", help="Format of the files.")] = None,
     theme: Annotated[Literal["light", "dark"], typer.Option(help="Colours on white, or on black.")] = "light",

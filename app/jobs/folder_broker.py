@@ -21,12 +21,12 @@ class Channel(filesystem.Channel):
         folder = Path(self.control_folder)
         folder.mkdir(exist_ok=True)
         bound = filesystem.exchange_queue_t(routing_key or "", pattern or "", queue or "")
-        with (folder / f"{exchange}.lock").open("w") as held:
+        with (folder / f"{exchange}.lock").open("w", encoding="utf-8") as held:
             filesystem.lock(held, filesystem.LOCK_EX)  # type: ignore[attr-defined]  # each platform has its own
             known = self.get_table(exchange)
             if bound not in known:
                 draft = folder / f"{exchange}.draft"
-                draft.write_text(dumps([bound, *known]))
+                draft.write_text(dumps([bound, *known]), encoding="utf-8")
                 draft.replace(folder / f"{exchange}.exchange")
 
     def _put(self, queue: str, payload: Any, **kwargs: Any) -> None:  # type: ignore[override]  # bases disagree
@@ -34,7 +34,7 @@ class Channel(filesystem.Channel):
         name = f"{monotonic_ns():020d}_{uuid4()}.{queue}.msg"  # the channel reads in the order of names
         draft = folder / f"{name}.draft"
         try:
-            draft.write_text(dumps(payload))
+            draft.write_text(dumps(payload), encoding="utf-8")
             draft.replace(folder / name)
         except OSError:
             draft.unlink(missing_ok=True)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import floor, log10
 
-_IN_TEXT = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?) (m/s|m|N|kg)(?![\w/])")
+_IN_TEXT = re.compile(r"(?<![\w.])(?:(-?\d+(?:\.\d+)?) to )?(-?\d+(?:\.\d+)?) (m/s|m|N|kg)(?![\w/])")
 _DIGITS = 3
 _NO_NUMBER = "\N{EN DASH}"
 _FROM_TEN_THOUSAND = 4  # below a power of ten of this size numbers are written out
@@ -53,10 +53,14 @@ class Units:
         return _IN_TEXT.sub(self._quantity, text)
 
     def _quantity(self, found: re.Match[str]) -> str:
-        number, si = found.groups()
-        digits = max(len(number.replace(".", "").lstrip("-0")), 1)
-        shown = plain(self.value(float(number), si), digits) if si in self.instead else number
+        *numbers, si = found.groups()
+        shown = " to ".join(self._like(number, si) for number in numbers if number)
         return f"{shown}\N{NO-BREAK SPACE}{self.unit(si).name}"
+
+    def _like(self, number: str, si: str) -> str:
+        """Return a number of a sentence in the unit that is shown, with as many digits."""
+        digits = max(len(number.replace(".", "").lstrip("-0")), 1)
+        return plain(self.value(float(number), si), digits) if si in self.instead else number
 
     def number(self, number: object, si: str | None = None, digits: int = _DIGITS) -> str:
         """Return a number without its unit."""

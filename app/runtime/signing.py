@@ -55,7 +55,7 @@ def _keep_secret(path: Path) -> None:
     """Write a random secret; linking a finished file is atomic, so several processes agree on one secret."""
     draft = path.with_name(f"{path.name}.{os.getpid()}.{secrets.token_hex(4)}")
     descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(descriptor, "w") as file:
+    with os.fdopen(descriptor, "w", encoding="utf-8") as file:
         file.write(secrets.token_urlsafe(32))
     try:
         path.hardlink_to(draft)

@@ -33,7 +33,7 @@ def refused(*arguments: str, text: str | None = None) -> str:
     return ended.stderr
 
 
-def on_a_terminal(*arguments: str) -> str:
+def on_a_terminal(*arguments: str, code: int = 0) -> str:
     """Return what a command prints on a terminal of its own, a hundred characters wide."""
     ours, theirs = pty.openpty()
     environment = {**os.environ, "COLUMNS": "100", "TERM": "dumb"}
@@ -41,7 +41,7 @@ def on_a_terminal(*arguments: str) -> str:
     with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=subprocess.PIPE, env=environment) as running:
         os.close(theirs)
         printed = b"".join(printed_pieces(ours))
-        assert running.wait(60.0) == 0, running.stderr.read() if running.stderr else ""
+        assert running.wait(60.0) == code, running.stderr.read() if running.stderr else ""
     os.close(ours)
     return printed.decode().replace("\r\n", "\n")
 

@@ -156,21 +156,34 @@ def test_client_needs_httpx_and_pydantic_only(installed: Path, folder: Path) -> 
     )
 
 
-def test_client_and_command_line_need_no_module_that_windows_lacks(installed: Path, folder: Path) -> None:
-    (folder / "line.json").write_text(json.dumps(example("c11-single")))
+def test_client_and_command_line_need_nothing_that_windows_lacks(installed: Path, folder: Path) -> None:
+    """Windows has not these modules and names, and opens text in another encoding than UTF-8 where none is named."""
+    (folder / "line.json").write_text(json.dumps({**example("c11-single"), "name": "Łódź 110 kV"}), encoding="utf-8")
     script = """
-import sys
-lacking = dict.fromkeys(("fcntl", "grp", "pwd", "resource", "termios", "uvloop"))
-sys.modules.update(lacking)  # an import of one of these fails
+import os, signal, sys
+lacking = ("fcntl", "grp", "pty", "pwd", "readline", "resource", "syslog", "termios", "tty", "uvloop")
+sys.modules.update(dict.fromkeys(lacking))  # an import of one of these fails
+for name in ("SIGALRM", "SIGHUP", "SIGKILL", "SIGQUIT", "SIGUSR1", "pthread_sigmask"):
+    delattr(signal, name)
+for name in ("fork", "geteuid", "getpgid", "getuid", "killpg", "mkfifo", "setsid", "statvfs"):
+    delattr(os, name)
 from galloping import Client
 from galloping.__main__ import main
 Client("http://127.0.0.1:1").close()
-sys.argv = ["galloping", "analyse", "line.json", "--json"]
+sys.argv = ["galloping", *sys.argv[1:]]
 main()
 """
-    ended = _run([str(installed), "-P", "-c", script], folder)
-    assert ended.returncode == 0, ended.stderr
-    assert json.loads(ended.stdout)["verdict"][0]["gallops"] == "yes"
+    python = [str(installed), "-P", "-X", "warn_default_encoding", "-W", "error::EncodingWarning", "-c", script]
+    analysed = _run([*python, "analyse", "line.json", "--output", "result.json", "--csv", "tables"], folder)
+    assert analysed.returncode == 0, analysed.stderr
+    result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    assert (result["verdict"][0]["gallops"], result["input"]["line"]["name"]) == ("yes", "Łódź 110 kV")
+    assert (folder / "tables" / "verdict.csv").is_file()
+    for words in (["--help"], ["serve", "--help"], ["resolve", "line.json"], ["conductors", "--search", "Drake"]):
+        ended = _run([*python, *words], folder)
+        assert (ended.returncode, bool(ended.stdout)) == (0, True), ended.stderr
+    refused = _run([*python, "submit", "line.json", "--url", "http://127.0.0.1:1"], folder)
+    assert (refused.returncode, "does not answer" in refused.stderr) == (1, True), refused.stderr
 
 
 def _with_requirements(names: set[str]) -> set[str]:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from app.cli.common import with_common_options
-from app.cli.console import print_table, write
+from app.cli.console import for_people, print_table, write
 from app.cli.inputs import read_settings, using_database
 from app.cli.options import AsJson, DataDirectory
 
@@ -38,10 +38,10 @@ def show(
     since = datetime.now(UTC) - timedelta(days=days) if days else None
     with using_database(read_settings(data_dir)) as sessions, sessions() as session:
         events = [_event(event, "seconds") for event in record.latest(session, owner, since, limit)]
-    if json:
-        write({"events": events}, None)
-    else:
+    if for_people(json):
         print_table(_COLUMNS, events)
+    else:
+        write({"events": events}, None)
 
 
 @commands.command()

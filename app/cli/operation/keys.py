@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from app.cli.common import with_common_options
-from app.cli.console import BAD_INPUT, end, notice, print_table, write
+from app.cli.console import BAD_INPUT, end, for_people, notice, print_table, write
 from app.cli.inputs import make_missing_database, read_settings, using_database
 from app.cli.options import AsJson, DataDirectory
 from app.security.caller import LOCAL, OWNER_PATTERN, Scope
@@ -74,10 +74,10 @@ def list_keys(
 
     with using_database(read_settings(data_dir)) as sessions, sessions() as session:
         documents = [_document(key) for key in keys.listed(session, owner)]
-    if json:
-        write({"keys": documents}, None)
-    else:
+    if for_people(json):
         print_table(_COLUMNS, documents)
+    else:
+        write({"keys": documents}, None)
 
 
 @commands.command()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.console import FAILED, print_table, write
+from app.cli.console import FAILED, for_people, print_table, write
 from app.cli.inputs import ending_on_faults, read_settings, require_database, using_database
 from app.cli.options import AsJson, DataDirectory
 
@@ -24,12 +24,12 @@ def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
     require_database(settings)
     with ending_on_faults():
         found = service.read_status(settings)
-    if json:
+    if for_people(json):
+        _show(found)
+    else:
         from dataclasses import asdict
 
         write({**asdict(found), "faults": found.faults()}, None)
-    else:
-        _show(found)
     raise typer.Exit(FAILED if found.faults() else 0)
 
 
@@ -56,7 +56,7 @@ def prune(
     kept = retention.Retention(timedelta(days=days), timedelta(days=audit_days))
     with using_database(read_settings(data_dir)) as sessions:
         counts = asdict((retention.due if dry_run else retention.prune)(sessions, kept))
-    if json:
+    if not for_people(json):
         write({"dry_run": dry_run, **counts}, None)
         return
     summary = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in counts.items())

@@ -10,8 +10,9 @@ from urllib.parse import urlencode
 
 import typer
 
-from app.cli.console import BAD_INPUT, end, print_table, write, write_bytes
+from app.cli.console import BAD_INPUT, end, for_people, print_table, write, write_bytes
 from app.cli.report import print_report
+from app.pages.measures import SI, Units
 
 if TYPE_CHECKING:
     from app.answers.batches import BatchDocument
@@ -48,25 +49,25 @@ def print_results(
     table: str | None,
     form: Form | None,
     output: Path | None,
-    *,
-    as_json: bool = False,
+    units: Units | None = SI,
 ) -> None:
     """Print the results of a job, or a table of a job or batch, or write them to a file.
 
-    On a terminal they are tables for people, elsewhere and with `as_json` JSON, with a format bytes of that format.
+    On a terminal they are tables for people in these units, elsewhere and without units JSON, with a format bytes of
+    that format.
     """
     from app.answers.batches import BatchDocument
 
     wanted = form or _form_of(output)
-    for_people = output is None and wanted is None and not as_json and sys.stdout.isatty()
+    shown = units if output is None and wanted is None and for_people(as_json=units is None) else None
     if table is None and isinstance(work, BatchDocument):
         table = "summary"
     if table is None and wanted in {None, "json"}:
         result = json.loads(service.download(work, "results"))
-        print_report(result) if for_people else write(result, output)
+        print_report(result, shown) if shown else write(result, output)
     elif table is None:
         end(f"--format {wanted} is of one table: name it with --table, such as limit-cycles", BAD_INPUT)
-    elif for_people:
+    elif shown:
         _print_rows(_rows(service, work, table), _OF_A_LINE if table == "summary" else None)
     else:
         _write_table(_table(service, work, table, wanted or "json"), wanted or "json", output)

@@ -10,6 +10,7 @@ from app.cli.inputs import read_json
 from app.cli.options import AnalysisFile, AsJson, DefaultsFile, OutputFile
 from app.cli.remote.answers import FormOption, TableOption, print_results
 from app.cli.remote.calls import DEFAULT_URL, KeyFile, ServiceUrl, service_at, waited_for
+from app.pages.measures import SI
 
 if TYPE_CHECKING:
     from app.answers.batches import BatchDocument
@@ -54,7 +55,7 @@ def batch(  # noqa: PLR0913, PLR0917 - the options of a command are its argument
             write(sent.model_dump(mode="json"), output)
             return
         ended = waited_for(service, sent, url)
-        print_results(service, ended, table, form, output, as_json=as_json)
+        print_results(service, ended, table, form, output, None if as_json else SI)
     _conclude(ended)
 
 

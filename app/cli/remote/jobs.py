@@ -1,6 +1,5 @@
 """`galloping jobs`: list, show, wait for, read and cancel the jobs and batches of a service."""
 
-import sys
 from collections.abc import Mapping
 from itertools import islice
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -9,10 +8,11 @@ from uuid import UUID
 import typer
 
 from app.cli.common import with_common_options
-from app.cli.console import FAILED, end, print_table, try_output, write
-from app.cli.options import AsJson, OutputFile
+from app.cli.console import FAILED, end, for_people, print_table, try_output, write
+from app.cli.options import AsJson, OutputFile, UnitsName
 from app.cli.remote.answers import FormOption, TableOption, print_results
 from app.cli.remote.calls import DEFAULT_URL, ENDED, KeyFile, ServiceUrl, found, going_on, service_at, waited_for
+from app.pages.measures import BY_NAME
 
 if TYPE_CHECKING:
     from app.answers.batches import BatchDocument
@@ -44,7 +44,7 @@ def list_jobs(  # noqa: PLR0913, PLR0917 - the options of a command are its argu
     given: dict[str, Any] = {name: value for name, value in filters.items() if value}
     with service_at(url, key_file) as service:
         jobs = [job.model_dump(mode="json") for job in islice(service.jobs(**given), limit)]
-    if as_json or not sys.stdout.isatty():
+    if not for_people(as_json):
         write({"jobs": jobs}, None)
     else:
         print_table(_COLUMNS, [_in_short(job) for job in jobs])
@@ -66,6 +66,7 @@ def results(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
     form: FormOption = None,
     output: OutputFile = None,
     as_json: AsJson = False,
+    units: UnitsName = "si",
     url: ServiceUrl = DEFAULT_URL,
     key_file: KeyFile = None,
 ) -> None:
@@ -75,7 +76,7 @@ def results(  # noqa: PLR0913, PLR0917 - the options of a command are its argume
         work = found(service, identity)
         if work.status not in ENDED:
             end(f"it is {work.status}, {work.progress:.0%} done\n{going_on(work, url)}", FAILED)
-        print_results(service, work, table, form, output, as_json=as_json)
+        print_results(service, work, table, form, output, None if as_json else BY_NAME[units])
 
 
 @commands.command()
@@ -107,7 +108,7 @@ def cancel(identity: Identity, url: ServiceUrl = DEFAULT_URL, key_file: KeyFile 
 
 def _print_status(work: "JobDocument | BatchDocument", as_json: bool) -> None:
     document = work.model_dump(mode="json")
-    if as_json or not sys.stdout.isatty():
+    if not for_people(as_json):
         write(document, None)
         return
     for name, value in document.items():

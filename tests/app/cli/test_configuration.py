@@ -7,7 +7,7 @@ import httpx
 import pytest
 
 from app.runtime.settings import Settings
-from tests.app.command_line import refused, run
+from tests.app.command_line import on_a_terminal, refused, run
 
 
 def written(file: Path, text: str) -> Path:
@@ -47,6 +47,7 @@ def test_the_usual_file_and_its_paths(tmp_path: Path, own_client: httpx.Client, 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
+        ('units = "miles"', "units: must be si or feet, got 'miles'"),
         ('adress = "x"', "adress: is not known; may be url, key_file"),
         ('port = "8000"', "port: must be a whole number, got '8000'"),
         ("quiet = 1", "quiet: must be true or false, got 1"),
@@ -58,6 +59,25 @@ def test_what_is_wrong_is_named_with_its_rule(tmp_path: Path, text: str, told: s
     ended = run("conductors", "--config", str(file))
     assert (ended.returncode, ended.stdout) == (2, "")
     assert f"{file}: {told}" in ended.stderr
+
+
+def test_units_and_folder_of_results(tmp_path: Path) -> None:
+    line = written(tmp_path / "line.json", run("example", "c11-single").stdout)
+    analysis = written(tmp_path / "a.json", '{"models": ["hybrid"], "loops": [1], "wind_speeds_m_per_s": [4.0]}')
+    file = written(tmp_path / "file.toml", 'units = "feet"\noutput_dir = "made/for it"\n')
+    asked = ("analyse", str(line), "--analysis", str(analysis), "--config", str(file))
+    shown = on_a_terminal(*asked, "--output", "result.json", "--csv", "tables")
+    assert "from mph" in shown and "peak to peak [ft, rad]" in shown
+    onset = json.loads((tmp_path / "made" / "for it" / "result.json").read_text())["verdict"][0]["onset_m_per_s"]
+    assert f"{onset / 0.44704:.2f}" in shown
+    assert "wind_speed_m_per_s" in (tmp_path / "made" / "for it" / "tables" / "limit_cycles.csv").read_text()
+    aside = tmp_path / "aside.json"
+    assert "from m/s" in on_a_terminal(*asked, "--units", "si", "--output", str(aside))
+    assert aside.is_file()
+    here = tmp_path / "here"
+    ended = run(*asked, "--output-dir", str(here), "--output", "result.json")
+    assert (ended.returncode, ended.stdout) == (0, "") and (here / "result.json").is_file()
+    assert "cannot be made" in run(*asked, "--output-dir", str(aside), "--output", "result.json").stderr
 
 
 def test_a_named_file_must_exist(tmp_path: Path) -> None:

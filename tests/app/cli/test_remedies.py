@@ -1,10 +1,10 @@
-"""`galloping remedies` prints a table for people, and JSON where it is asked for."""
+"""`galloping remedies` prints a table on a terminal, and JSON elsewhere."""
 
 import json
 from pathlib import Path
 
 from app.reference.source_lines import example
-from tests.app.command_line import galloping, refused
+from tests.app.command_line import galloping, on_a_terminal, refused
 
 
 def test_the_table_and_the_result(tmp_path: Path) -> None:
@@ -14,15 +14,18 @@ def test_the_table_and_the_result(tmp_path: Path) -> None:
     remedy = {"type": "detuning_pendulum", "positions_m": [31.47, 94.41], "mass_kg": 15.0, "arm_m": 0.3}
     tried.write_text(json.dumps({"tried": [remedy]}))
     output = tmp_path / "result.json"
-    ended = galloping("remedies", str(line), "--remedies", str(tried), "--output", str(output))
-    assert ended.returncode == 0, ended.stderr
-    table = ended.stdout.partition("-  The line as it is.")[0].splitlines()
+    asked = ("remedies", str(line), "--remedies", str(tried))
+    shown = on_a_terminal(*asked, "--output", str(output))
+    table = shown.partition("-  The line as it is.")[0].splitlines()
     assert any("detuning pendulum" in row for row in table)
     assert max(map(len, map(str.rstrip, table))) <= 80
     assert not any("margin" in row for row in table)  # the line has no phases
-    assert "Better: the onset rises from 2.25 to" in ended.stdout
+    assert "Better: the onset rises from 2.25 to" in shown
     result = json.loads(output.read_text())
     assert [row["rank"] for row in result["remedies"]] == [None, 1]
+    assert json.loads(galloping(*asked).stdout)["remedies"] == result["remedies"]
+    feet = on_a_terminal(*asked, "--units", "feet")
+    assert "Better: the onset rises from 5.03 to" in feet and " mph, " in feet
     assert result["input"]["remedies"]["tried"][0]["positions_m"] == [31.47, 94.41]
 
 

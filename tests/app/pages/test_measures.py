@@ -53,3 +53,11 @@ def test_quantities_within_a_sentence_are_in_the_units_of_the_reader_with_as_man
     assert in_feet.endswith("; 45 mm, 3.1 m2, C11 m.")
     assert SI.sentence(said).replace("\N{NO-BREAK SPACE}", " ") == said
     assert "12\N{NO-BREAK SPACE}m/s" in SI.sentence(said)
+
+
+def test_both_ends_of_a_range_are_in_the_units_of_the_reader() -> None:
+    said = "the onset rises from 2.25 to 3.10 m/s, the motion falls from 1.2 to 0.8 m peak to peak"
+    assert FEET.sentence(said).replace("\N{NO-BREAK SPACE}", " ") == (
+        "the onset rises from 5.03 to 6.93 mph, the motion falls from 3.9 to 3 ft peak to peak"
+    )
+    assert SI.sentence(said).replace("\N{NO-BREAK SPACE}", " ") == said

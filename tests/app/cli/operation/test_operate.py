@@ -8,7 +8,7 @@ import pytest
 
 from app.runtime.settings import Settings
 from tests.app import service
-from tests.app.command_line import galloping, refused, run
+from tests.app.command_line import galloping, on_a_terminal, refused, run
 from tests.documents import short_request
 
 
@@ -27,18 +27,18 @@ def test_a_key_is_made_used_listed_and_revoked(
     request.write_text(json.dumps(short_request()))
     sent = galloping("submit", str(request), "--url", str(own_client.base_url))
     assert sent.returncode == 0, sent.stderr
-    (listed,) = json.loads(galloping("keys", "list", "--json", *place).stdout)["keys"]
+    (listed,) = json.loads(galloping("keys", "list", *place).stdout)["keys"]
     assert (listed["owner"], listed["name"], listed["state"]) == ("acme", "SCADA", "good")
     assert listed["scopes"] == ["cancel", "read", "submit"]
     assert listed["used_at"] is not None and listed["expires_at"] is not None
     assert key not in json.dumps(listed)
     assert galloping("keys", "revoke", listed["prefix"], *place).returncode == 0
-    assert "revoked" in galloping("keys", "list", *place).stdout
+    assert "revoked" in on_a_terminal("keys", "list", *place)
     assert galloping("keys", "create", "--owner", "b", "--scope", "read", *place).returncode == 0
     (narrow,) = json.loads(galloping("keys", "list", "--owner", "b", "--json", *place).stdout)["keys"]
     assert (narrow["owner"], narrow["scopes"], narrow["expires_at"]) == ("b", ["read"], None)
     assert "--scope" in refused("keys", "create", "--owner", "b", "--scope", "all", *place)
-    events = json.loads(galloping("audit", "--json", *place).stdout)["events"]
+    events = json.loads(galloping("audit", *place).stdout)["events"]
     assert [event["action"] for event in events] == [
         "key_created",
         "key_revoked",
@@ -111,10 +111,11 @@ def test_prune_counts_before_it_removes(own_settings: Settings, own_client: http
 def test_status_shows_the_service_and_its_exit_code_what_is_wrong(own_settings: Settings) -> None:
     place = ("--data-dir", str(own_settings.data_dir))
     assert galloping("migrate", *place).returncode == 0
-    shown = galloping("status", *place)
-    assert shown.returncode == 1
-    assert "No worker is running." in shown.stdout
-    assert "oldest waiting" in shown.stdout
-    found = json.loads(galloping("status", "--json", *place).stdout)
+    shown = on_a_terminal("status", *place, code=1)
+    assert "No worker is running." in shown
+    assert "oldest waiting" in shown
+    piped = galloping("status", *place)
+    found = json.loads(piped.stdout)
+    assert piped.returncode == 1
     assert (found["database"], found["broker"], found["queues"]) == ("ok", "ok", {"jobs": 0, "chunks": 0})
     assert found["faults"] == ["No worker is running."]

@@ -17,7 +17,7 @@ import pytest
 from app.runtime.processes import environment
 from app.runtime.settings import Settings
 from tests.app.command_line import printed_pieces, refused
-from tests.processes import Process, kill_group
+from tests.processes import Process, group, kill_group
 from tests.servers import free_port, wait_until
 
 
@@ -55,9 +55,12 @@ def test_a_terminal_reads_the_address_and_no_flood(tmp_path: Path, verbose: bool
         with httpx.Client(base_url=address) as client:
             wait_until(lambda: client.get("/health/live").status_code == 200, what="an answer")
             assert [client.get(path).status_code for path in ("/nothing", "/docs", "/v1/fields")] == [404, 200, 200]
-        process.send_signal(signal.SIGINT)
+            wait_until(lambda: client.get("/health/ready").status_code == 200, 60.0, "a worker")
+            wait_until(lambda: len(group(process)) >= 5, 60.0, "the process of the pool")
+        os.killpg(process.pid, signal.SIGINT)  # Ctrl-C reaches every process of the terminal
         assert process.wait(30.0) == 0
     text = "".join(printed)
+    assert "Hitting Ctrl+C" not in text and "Warm shutdown" not in text
     if verbose:
         assert '"event": "request"' in text and "Ctrl-C ends it" not in text
     else:
