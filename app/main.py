@@ -23,6 +23,7 @@ from app.interactive import Previews, Workshop
 from app.jobs import submissions
 from app.jobs.dispatch import Sender, celery_application
 from app.jobs.job_records import look_up
+from app.jobs.owner_quotas import OverQuota, Quotas
 from app.jobs.watched_states import batches_seen, jobs_seen
 from app.ogc import routes as ogc
 from app.openapi import about, finished
@@ -47,6 +48,7 @@ from app.routes import (
     lines,
     own_aerodynamics,
     own_conductors,
+    own_quotas,
     pictures,
     previews,
     reference,
@@ -125,6 +127,7 @@ def create_app(settings: Settings | None = None) -> Service:
     limits = {"": settings.max_body_bytes, **of_batches}
     slowest = settings.silent_body_seconds, settings.least_body_bytes_per_second
     problems.install(app, limits, slowest, frame.shown_problem)
+    app.add_exception_handler(OverQuota, own_quotas.answer)
     app.add_middleware(Compression)
     app.add_middleware(HeadAsGet)
     if settings.cors_origins:
@@ -156,7 +159,7 @@ def _add_addresses(app: Service) -> None:
         app.include_router(module.router)
     for module in (batch_ranking, clearance, events, deliveries, aerodynamics, own_aerodynamics, own_conductors):
         app.include_router(module.router)
-    for module in (reference, health, explorer):
+    for module in (reference, own_quotas, health, explorer):
         app.include_router(module.router)
     app.include_router(ogc.router)
     for router in views.routers():
@@ -180,8 +183,10 @@ def _equip(app: Service, settings: Settings, database: Engine) -> None:
     app.state.previews = Previews(settings.preview_seconds)
     app.state.sender = Sender(celery_application(settings), app.state.writers)
     app.state.places = Places(settings.batches_at_once, settings.senders_at_once)
+    app.state.quotas = allowed = Quotas.of(settings)
+    accept = partial(submissions.accept, allowed=allowed)
     app.state.inbox = GroupedCalls(
-        "inbox", partial(committed_together, app.state.writers, submissions.accept), _INBOX_PAUSE_SECONDS
+        "inbox", partial(committed_together, app.state.writers, accept), _INBOX_PAUSE_SECONDS
     )
     app.state.messages = GroupedCalls(
         "messages", lambda job_ids: [app.state.sender.send(job_ids)] * len(job_ids), _MESSAGES_PAUSE_SECONDS

@@ -36,10 +36,10 @@ def execute(
     job_id: UUID,
     owner: str,
     end_process: Callable[[], None] | None = None,
-) -> None:
+) -> str | None:
     """Claim a job, compute it, and end it: the job itself or, if it is another owner's turn, one of that owner's.
 
-    Do nothing if no job waits, as after a repeated message.
+    Return whose job it was. Do nothing and return None if no job waits that may run, as after a repeated message.
 
     A step of the engine may take minutes. If a job that was cancelled or given to another worker does not stop within
     `stop_seconds`, it is ended as it stands, and `end_process` is called from another thread, to stop the computation.
@@ -50,14 +50,15 @@ def execute(
         If the database fails at the claim or at the end; the lease then expires, and the job runs again.
     """
     with sessions.begin() as session:
-        chosen = turns.in_turn(session, job_id)
+        chosen = turns.in_turn(session, job_id, settings.running_jobs_per_owner)
         held = leases.claim(session, chosen, owner, settings.lease_seconds) if chosen is not None else None
         steps = _steps(session, held) if held is not None else None
     if held is None or steps is None:
-        _logger.info("no job is waiting for a worker, nor is %s, whose message came", job_id)
-        return
+        _logger.info("no job is waiting that may run, nor is %s, whose message came", job_id)
+        return None
     with correlation.bound(held.ids), telemetry.job_span(held.ids):
         _work(sessions, settings, held, steps, end_process)
+    return held.owner
 
 
 def _work(

@@ -7,14 +7,16 @@ import logging
 from datetime import timedelta
 from uuid import UUID
 
+from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.batches import batch_records
-from app.jobs import idempotency, leases
+from app.jobs import idempotency, leases, turns
 from app.jobs.dispatch import BrokerUnavailable, open_queue
 from app.runtime.settings import Settings
 from app.security import sessions as sessions_of_browsers
 from app.storage import counters, steady_clock
+from app.tables import Job
 
 _logger = logging.getLogger(__name__)
 
@@ -80,6 +82,24 @@ def _send_waiting(sessions: sessionmaker[Session], settings: Settings, chunks: b
         with sessions.begin() as session:
             leases.mark_undispatched(session, taken[sent:])
     return sent
+
+
+def call_next(sessions: sessionmaker[Session], settings: Settings, owner: str) -> None:
+    """Send a message for an owner's next job, if none waits that could run it: those that came may have run nothing.
+
+    For the end of a job where an owner's running jobs are bounded. If it fails, a later sweep sends one.
+    """
+    try:
+        with open_queue(settings) as queue:
+            if not (queue.is_empty() and queue.is_empty(chunk=True)):
+                return
+            with sessions() as session:
+                following = turns.next_of(session, owner)
+                job = None if following is None else session.get(Job, following)
+            if job is not None:
+                queue.send(job.id, chunk=job.batch_id is not None)
+    except (BrokerUnavailable, SQLAlchemyError) as error:
+        _logger.warning("the next job of %s is left to the sweeper: %s", owner, error)
 
 
 def release(sessions: sessionmaker[Session], settings: Settings, owner: str | None = None) -> int:

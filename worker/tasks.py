@@ -17,6 +17,7 @@ from app.runtime.processes import end_with_parent
 from app.runtime.settings import Settings, get_settings
 from app.storage.database import make_engine, session_factory
 from worker.execute import execute
+from worker.sweep import call_next
 
 OWNER = "GALLOPING_WORKER_OWNER"
 _LOST_WAIT_SECONDS = 1.0  # until then the pool takes no message in the place of a killed process's; jobs return nothing
@@ -34,7 +35,9 @@ def worker_application(settings: Settings, owner: str) -> Celery:
 
     @application.task(name=TASK_NAME)
     def run(job_id: str) -> None:
-        execute(sessions(), settings, UUID(job_id), owner, _end_process)
+        owner_of_job = execute(sessions(), settings, UUID(job_id), owner, _end_process)
+        if owner_of_job is not None and settings.running_jobs_per_owner:
+            call_next(sessions(), settings, owner_of_job)
 
     return application
 

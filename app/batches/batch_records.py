@@ -15,13 +15,14 @@ from sqlalchemy import ColumnElement, Select, and_, delete, func, insert, select
 from sqlalchemy.orm import Session
 from uuid_utils.compat import uuid7
 
-from app.convert import NumberedLine
-from app.jobs import batch_progress
+from app.convert import NumberedLine, expected_bytes
+from app.jobs import batch_progress, owner_quotas
 from app.jobs.job_records import CancelOutcome, input_hash
+from app.jobs.owner_quotas import Amount, Quotas
 from app.runtime import correlation
 from app.security import audit
 from app.security.caller import Caller
-from app.storage import counters
+from app.storage import counters, stored_bytes
 from app.storage.database import database_time, insert_rows
 from app.tables import AuditAction, Batch, BatchItem, Job, JobEvent, JobEventKind, JobStatus, PointRow
 
@@ -30,25 +31,32 @@ _ABANDONED = timedelta(hours=6)
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """The lines of a batch in one message: their number, and which part of the batch they are."""
+    """The lines of a batch in one message: which part of it, their number, and the bytes that each may leave."""
 
     id: UUID
     part: int
     lines: int
+    line_bytes: int = 0
 
 
 def begin(session: Session, caller: Caller, analysis: dict[str, Any]) -> UUID:
     """Add a batch that stays invisible until `accept` is called, and return its id."""
     batch = Batch(id=uuid7(), owner=caller.owner, created_at=database_time(session), analysis=analysis)
+    batch.request_bytes = stored_bytes.of_request(analysis)
     session.add(batch)
     session.flush()
     return batch.id
 
 
 def add_items(session: Session, items: Sequence[dict[str, Any]]) -> None:
-    """Add lines, each a mapping with the columns of `BatchItem`."""
-    if items:
-        insert_rows(session, BatchItem, items)
+    """Add lines of one batch in the order of their numbers, each a mapping with the columns of `BatchItem`."""
+    if not items:
+        return
+    insert_rows(session, BatchItem, items)
+    batch_id, first, last = items[0]["batch_id"], items[0]["number"], items[-1]["number"]
+    added = BatchItem.batch_id == batch_id, BatchItem.number.between(first, last)
+    size = Batch.request_bytes + stored_bytes.of_lines(session, *added)
+    session.execute(update(Batch).where(Batch.id == batch_id).values(request_bytes=size))
 
 
 def accept(
@@ -70,6 +78,18 @@ def accept(
     _add_chunks(session, caller, batch_id, chunks, now, anew=anew)
     lines = sum(chunk.lines for chunk in chunks)
     audit.record(session, caller, AuditAction.BATCH_SUBMITTED, batch_id, f"{lines} lines", at=now)
+
+
+def require_room(session: Session, caller: Caller, chunks: Sequence[Chunk], allowed: Quotas) -> None:
+    """Check that the owner may have so many more chunks waiting, and what they and their lines may leave.
+
+    Raises
+    ------
+    OverQuota
+        If the owner may not.
+    """
+    size = sum(stored_bytes.ROW_BYTES + chunk.lines * chunk.line_bytes for chunk in chunks)
+    allowed.require(session, caller.owner, Amount(len(chunks), size))
 
 
 def note(session: Session, batch_id: UUID, notes: Sequence[str]) -> None:
@@ -151,28 +171,36 @@ def cancel(session: Session, caller: Caller, batch_id: UUID, *, may_remove: bool
     return CancelOutcome.REQUESTED if running else CancelOutcome.DISMISSED
 
 
-def resubmit(session: Session, caller: Caller, batch_id: UUID, chunk_lines: int) -> list[UUID]:
+def resubmit(
+    session: Session, caller: Caller, batch_id: UUID, chunk_lines: int, allowed: Quotas = owner_quotas.NONE
+) -> list[UUID]:
     """Put the failed lines into new chunks, and return the ids of these; empty if no line failed.
 
     The lines keep their numbers. The results of all other lines stay untouched.
+
+    Raises
+    ------
+    OverQuota
+        If the owner may not have so many more chunks waiting, or their results.
     """
-    if _locked(session, caller.owner, batch_id) is None:
+    batch = _locked(session, caller.owner, batch_id)
+    numbers = [] if batch is None else _failed_numbers(session, batch_id)
+    if batch is None or not numbers:
         return []
-    numbers = _failed_numbers(session, batch_id)
-    old = list(session.scalars(select(Job).where(*_has_failures(batch_id))))
-    for job in old:
+    line_bytes = expected_bytes({"analysis": batch.analysis})
+    for job in session.scalars(select(Job).where(*_has_failures(batch_id))).all():
         job.lines, job.failed_lines = (job.lines or 0) - (job.failed_lines or 0), 0
     session.flush()
     parts = session.scalar(select(func.count()).select_from(Job).where(Job.batch_id == batch_id)) or 0
     chunks: list[Chunk] = []
     for first in range(0, len(numbers), chunk_lines):
         moved = numbers[first : first + chunk_lines]
-        chunks.append(Chunk(uuid7(), parts + len(chunks) + 1, len(moved)))
+        chunks.append(Chunk(uuid7(), parts + len(chunks) + 1, len(moved), line_bytes))
         belongs = BatchItem.batch_id == batch_id, BatchItem.number.in_(moved)
         session.execute(update(BatchItem).where(*belongs).values(chunk_id=chunks[-1].id))
+    require_room(session, caller, chunks, allowed)
     _add_chunks(session, caller, batch_id, chunks, database_time(session))
-    if chunks:
-        audit.record(session, caller, AuditAction.BATCH_RESUBMITTED, batch_id, f"{len(numbers)} lines")
+    audit.record(session, caller, AuditAction.BATCH_RESUBMITTED, batch_id, f"{len(numbers)} lines")
     return [chunk.id for chunk in chunks]
 
 
@@ -240,13 +268,15 @@ def _as_job(caller: Caller, batch_id: UUID, chunk: Chunk, now: datetime, *, anew
         request_id=correlation.request_id(),
         trace_parent=correlation.trace_parent(),
         lines=chunk.lines,
+        request_bytes=stored_bytes.of_request(document),
+        result_bytes=chunk.lines * chunk.line_bytes,
     )
 
 
 def _dismiss_waiting(session: Session, batch_id: UUID) -> None:
     now = database_time(session)
     waiting = Job.batch_id == batch_id, Job.status == JobStatus.ACCEPTED
-    statement = update(Job).where(*waiting).values(status=JobStatus.DISMISSED, finished_at=now)
+    statement = update(Job).where(*waiting).values(status=JobStatus.DISMISSED, finished_at=now, result_bytes=0)
     dismissed = session.execute(statement.returning(Job.id, Job.attempt)).all()
     _record(session, dismissed, JobEventKind.DISMISSED, now)
     counters.add_end(session, JobStatus.DISMISSED, chunk=True, count=len(dismissed))

@@ -1,6 +1,7 @@
 """The border to the engine: JSON documents in, plain rows out. Units change here and nowhere else."""
 
 from app.convert.batches.costs import estimate, seconds_a_line
+from app.convert.batches.sizes import bytes_a_line, expected_bytes
 from app.convert.batches.stack import STACK, NumberedLine, kept_analysis, read_analysis, read_line, run_stack
 from app.convert.check import read, request_faults, with_further_faults
 from app.convert.clearance import EllipseMethodName, clearances, ellipse
@@ -37,6 +38,7 @@ __all__ = [
     "StaticState",
     "Table",
     "Tables",
+    "bytes_a_line",
     "clearances",
     "columns",
     "columns_of",
@@ -44,6 +46,7 @@ __all__ = [
     "estimate",
     "example_row",
     "example_tables",
+    "expected_bytes",
     "explicit_line",
     "explicit_request",
     "fit",

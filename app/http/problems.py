@@ -78,6 +78,12 @@ class ProblemKind(Enum):
         "The line takes longer than a preview may; submit it as a job.",
     )
     INVALID_DOCUMENT = ("invalid-document", 422, "Invalid document", "The body is not JSON, or fields of it are wrong.")
+    TOO_MANY_WAITING = (
+        "too-many-waiting",
+        429,
+        "Too many waiting jobs",
+        "So many jobs of one owner may not wait; try again when some have run, or cancel some.",
+    )
     BUSY = ("busy", 429, "Busy", "Earlier ones are not done yet; try again when Retry-After says.")
     TOO_MANY_REQUESTS = (
         "too-many-requests",
@@ -93,6 +99,12 @@ class ProblemKind(Enum):
     )
     INTERNAL = ("internal", 500, "Internal error", "The service has a defect; the operator's log has the details.")
     UNAVAILABLE = ("unavailable", 503, "Unavailable", "The service cannot reach what it needs; try again later.")
+    STORAGE_FULL = (
+        "storage-full",
+        507,
+        "Storage quota used up",
+        "Requests and results of an owner take all bytes that they may; DELETE jobs and batches, or ask the operator.",
+    )
 
     def __init__(self, slug: str, status: int, title: str, description: str) -> None:
         """Store the parts of a kind as attributes."""

@@ -12,7 +12,7 @@ from datetime import timedelta
 from typing import Any
 from uuid import UUID, uuid4
 
-from sqlalchemy import ColumnElement, and_, delete, or_, select, update
+from sqlalchemy import ColumnElement, and_, delete, or_, select, tuple_, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
@@ -115,6 +115,12 @@ def finish(session: Session, key: Key, request: str, answer: Answer) -> None:
 def release(session: Session, key: Key) -> None:
     """Free a reserved key, because nothing was created under it."""
     session.execute(delete(IdempotencyKey).where(*_held(key)))
+
+
+def forget(session: Session, keys: Sequence[Key]) -> None:
+    """Free keys whose answers this transaction has stored, because what they answer is not done."""
+    place = tuple_(IdempotencyKey.owner, IdempotencyKey.key, IdempotencyKey.holder)
+    session.execute(delete(IdempotencyKey).where(place.in_([(key.owner, key.value, key.holder) for key in keys])))
 
 
 def find(session: Session, key: Key) -> tuple[str, Answer] | None:

@@ -9,18 +9,19 @@ from enum import StrEnum
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, Select, delete, extract, func, select, tuple_
+from sqlalchemy import ColumnElement, Select, delete, extract, func, select, tuple_, update
 from sqlalchemy.orm import Session, defer, sessionmaker
 from uuid_utils.compat import uuid7
 
+from app.convert import expected_bytes
 from app.reference.text_forms import written_forms
 from app.runtime import correlation
 from app.runtime.correlation import Ids
 from app.security import audit
 from app.security.caller import Caller, Owned
-from app.storage import counters
+from app.storage import counters, stored_bytes
 from app.storage.database import database_time, insert_rows
-from app.tables import AuditAction, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
+from app.tables import AuditAction, Batch, BatchItem, Job, JobEvent, JobEventKind, JobStatus, JobTag
 
 LABELS = frozenset({"name", "asset_id", "tags"})
 
@@ -68,7 +69,7 @@ class Submission:
 
 
 def make(submission: Submission, now: datetime) -> Job:
-    """Return the job of a submission with its tags, for `insert` to store.
+    """Return the job of a submission with its tags and with its size, expected results included, for `insert` to store.
 
     Raises
     ------
@@ -88,6 +89,8 @@ def make(submission: Submission, now: datetime) -> Job:
         asset_id=submission.asset_id,
         document=submission.document,
         input_hash=input_hash(submission.document),
+        request_bytes=stored_bytes.of_request(submission.document),
+        result_bytes=expected_bytes(submission.document),
         request_id=submission.ids.request_id,
         trace_parent=submission.ids.trace_parent,
         tags=[JobTag(key=key, value=value) for key, value in sorted(submission.tags.items())],
@@ -162,12 +165,13 @@ def cancel(session: Session, caller: Caller, job_id: UUID, *, may_remove: bool =
 
     Removing a chunk removes its lines from the batch.
     """
+    _lock_batch(session, job_id)
     # Lock the row, so that no worker claims or finishes the job between the query and the change.
     job = session.scalars(_of(caller.owner, job_id).with_for_update()).one_or_none()
     if job is None:
         return CancelOutcome.MISSING
     if job.status is JobStatus.ACCEPTED:
-        job.status, job.finished_at = JobStatus.DISMISSED, database_time(session)
+        job.status, job.finished_at, job.result_bytes = JobStatus.DISMISSED, database_time(session), 0
         audit.record(session, caller, AuditAction.JOB_CANCELLED, job_id)
         record(session, job_id, JobEventKind.DISMISSED, attempt=job.attempt)
         counters.add_end(session, job.status, chunk=job.batch_id is not None)
@@ -180,10 +184,24 @@ def cancel(session: Session, caller: Caller, job_id: UUID, *, may_remove: bool =
         return CancelOutcome.REQUESTED
     if not may_remove:
         return CancelOutcome.KEPT
-    session.execute(delete(BatchItem).where(BatchItem.chunk_id == job_id))
+    if job.batch_id is not None:
+        _remove_lines(session, job.batch_id, job_id)
     session.execute(delete(Job).where(Job.id == job_id))
     audit.record(session, caller, AuditAction.JOB_REMOVED, job_id)
     return CancelOutcome.REMOVED
+
+
+def _lock_batch(session: Session, job_id: UUID) -> None:
+    """Lock the batch of a chunk before the chunk, as what changes a whole batch does."""
+    of_chunk = select(Job.batch_id).where(Job.id == job_id).scalar_subquery()
+    session.execute(select(Batch.id).where(Batch.id == of_chunk).with_for_update())
+
+
+def _remove_lines(session: Session, batch_id: UUID, chunk_id: UUID) -> None:
+    lines = BatchItem.chunk_id == chunk_id
+    left = Batch.request_bytes - stored_bytes.of_lines(session, lines)
+    session.execute(update(Batch).where(Batch.id == batch_id).values(request_bytes=left))
+    session.execute(delete(BatchItem).where(lines))
 
 
 def relabel(session: Session, caller: Caller, job: Job, tags: Mapping[str, str], **names: str | None) -> None:

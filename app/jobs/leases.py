@@ -16,10 +16,11 @@ from uuid import UUID
 from sqlalchemy import ColumnElement, CursorResult, and_, false, func, or_, select, update
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
+from app.jobs import turns
 from app.jobs.job_records import record
 from app.runtime.correlation import Ids
 from app.runtime.settings import Settings
-from app.storage import counters, stored_results
+from app.storage import counters, stored_bytes, stored_results
 from app.storage.counters import CounterName
 from app.storage.database import database_moment, database_time
 from app.storage.steady_clock import last_reading, steady_time
@@ -178,6 +179,8 @@ def take_undispatched(
     )
     overdue = _is_far(Job.dispatched_at, now, settings.redispatch_seconds)
     wanted = or_(never_sent, overdue if queue_is_empty else false())
+    if most_running := settings.running_jobs_per_owner:
+        wanted = and_(wanted, Job.owner.not_in(turns.having(most_running)))  # a message would run nothing
     of_batch = Job.batch_id.is_not(None) if chunks else Job.batch_id.is_(None)
     statement = select(Job.id).where(Job.status == JobStatus.ACCEPTED, of_batch, wanted)
     oldest = statement.order_by(Job.created_at, Job.id)
@@ -236,13 +239,14 @@ def _end(
             point.failure is None for point in points
         )  # null unless it is a chunk
         changes["reused_lines"] = sum(point.reused for point in points) if held.batch_id is not None else None
-    steady, now = steady_time(session), database_time(session)
+    steady, now, rows = steady_time(session), database_time(session), stored_results.rows_of(points)
     over = {"finished_at": now, "lease_owner": None, "lease_expires_at": None, "step": ""}
+    changes["result_bytes"] = stored_bytes.of_points(rows)
     statement = update(Job).where(*_guard(held)).values(**over, **changes)
     ended = session.execute(statement.execution_options(synchronize_session=False))
     if not isinstance(ended, CursorResult) or ended.rowcount != 1:
         return False
-    stored_results.store(session, held.job_id, points, held.batch_id)
+    stored_results.store(session, held.job_id, rows, held.batch_id)
     record(session, held.job_id, JobEventKind(changes["status"].value), attempt=held.attempt, detail=detail)
     _count_end(session, held, changes, steady)
     return True
@@ -262,7 +266,7 @@ def _release(session: Session, job: Job, settings: Settings) -> None:
     if kind is JobEventKind.RELEASED:
         job.status, job.dispatched_at, job.started_at, job.progress = JobStatus.ACCEPTED, None, None, 0.0
     else:
-        job.status, job.finished_at = JobStatus(kind.value), database_time(session)
+        job.status, job.finished_at, job.result_bytes = JobStatus(kind.value), database_time(session), 0
         counters.add_end(session, job.status, failure.kind if failure else None, chunk=job.batch_id is not None)
     if failure is not None:
         job.failure_kind, job.failure_detail, job.failed_lines = failure.kind, failure.detail, job.lines

@@ -8,7 +8,7 @@ placements is found as a whole, by its job.
 import hashlib
 import logging
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, cast
 from uuid import UUID
 
@@ -31,7 +31,7 @@ from sqlalchemy.orm import Session
 
 from app.convert import NumberedLine, PointResult
 from app.jobs import job_records
-from app.storage import counters
+from app.storage import counters, stored_bytes
 from app.storage.stored_results import RANKING_FIGURES, STATIC, CorruptResult, unpacked
 from app.tables import Job, JobEventKind, JobStatus, PointRow
 
@@ -44,10 +44,11 @@ _LINE_ALONE = {"line", "analysis"}
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Stored results: those of a job, or of one line of a batch by its number in a chunk."""
+    """Stored results: those of a job, or of one line of a batch by its number in a chunk, and the bytes of a copy."""
 
     job_id: UUID
     line_number: int | None = None
+    size: int = field(default=0, compare=False)
 
 
 def find(
@@ -86,7 +87,8 @@ def _found_line(session: Session, line_hash: str, engine_version: str) -> Source
     row = session.execute(statement.limit(1).with_for_update(read=True, key_share=True)).one_or_none()
     if row is None or not _is_sound(session, row):
         return None
-    return Source(row.job_id, row.point if row.batch_id is not None else None)
+    size = stored_bytes.of_points([row._asdict()])
+    return Source(row.job_id, row.point if row.batch_id is not None else None, size)
 
 
 def _is_sound(session: Session, row: Any) -> bool:
@@ -110,18 +112,18 @@ def _are_sound(session: Session, job_id: UUID) -> bool:
 def _found_whole(session: Session, owner: str, document: Mapping[str, Any], engine_version: str) -> Source | None:
     same = Job.owner == owner, Job.input_hash == job_records.input_hash(document), Job.batch_id.is_(None)
     usable = Job.status == JobStatus.SUCCESSFUL, Job.engine_version == engine_version
-    statement = select(Job.id).where(*same, *usable).order_by(Job.id).limit(1)
-    job_id = session.scalar(statement.with_for_update(read=True, key_share=True))
-    if job_id is None or not _are_sound(session, job_id):
+    statement = select(Job.id, Job.result_bytes).where(*same, *usable).order_by(Job.id).limit(1)
+    found = session.execute(statement.with_for_update(read=True, key_share=True)).one_or_none()
+    if found is None or not _are_sound(session, found.id):
         return None
-    return Source(job_id)
+    return Source(found.id, None, found.result_bytes)
 
 
 def adopt(job: Job, source: Source, engine_version: str) -> None:
     """End a job that is not stored yet with the results of another job or line; `copy` gives it those later."""
     job.status, job.progress = JobStatus.SUCCESSFUL, 1.0
     job.started_at = job.finished_at = job.created_at
-    job.engine_version, job.reused_from = engine_version, source.job_id
+    job.engine_version, job.reused_from, job.result_bytes = engine_version, source.job_id, source.size
 
 
 def copy(session: Session, job_id: UUID, source: Source) -> None:

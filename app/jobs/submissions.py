@@ -1,14 +1,15 @@
 """Jobs as they are posted: all posts of a group in one transaction, each under its Idempotency-Key if it has one."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy.orm import Session
 
 from app.convert import ENGINE_VERSION
-from app.jobs import idempotency, job_records, reuse, webhooks
+from app.jobs import idempotency, job_records, owner_quotas, reuse, webhooks
 from app.jobs.idempotency import Answer, Kept, Key, KeyTaken
 from app.jobs.job_records import Submission
+from app.jobs.owner_quotas import OverQuota, Quotas
 from app.jobs.webhooks import Subscription
 from app.security import audit
 from app.storage.database import database_time
@@ -34,11 +35,13 @@ class Order:
     keyed: Keyed | None = None
 
 
-def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
+def accept(
+    session: Session, orders: Sequence[Order], allowed: Quotas = owner_quotas.NONE
+) -> list[Job | KeyTaken | OverQuota]:
     """Store the jobs of orders; a job with stored results of the same input ends with these, others wait for a worker.
 
-    If the key of an order is taken, its place holds `KeyTaken` and nothing is stored for it. A group takes as few
-    statements as one order, apart from results that are copied.
+    If the key of an order is taken, its place holds `KeyTaken`, and `OverQuota` if its owner may not have the job;
+    nothing is stored for it then. A group takes as few statements as one order, apart from results that are copied.
 
     Raises
     ------
@@ -56,7 +59,9 @@ def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
         if source is not None:
             reuse.adopt(job, source, ENGINE_VERSION)
     taken = _taken(session, orders, jobs)
-    new = [item for item in zip(orders, jobs, sources, strict=True) if item[1] not in taken]
+    refused = _refused(session, [job for job in jobs if job not in taken], allowed)
+    _free_keys(session, orders, jobs, refused)
+    new = [item for item in zip(orders, jobs, sources, strict=True) if item[1] not in taken and item[1] not in refused]
     job_records.insert(session, [job for _, job, _ in new])
     audit.record_submissions(session, [(order.submission.caller, job.id) for order, job, _ in new], now)
     for order, job, source in new:
@@ -64,7 +69,7 @@ def accept(session: Session, orders: Sequence[Order]) -> list[Job | KeyTaken]:
             webhooks.register(session, job.owner, wanted, job_id=job.id)
         if source is not None:
             reuse.copy(session, job.id, source)
-    return [KeyTaken() if job in taken else job for job in jobs]
+    return [KeyTaken() if job in taken else refused.get(job, job) for job in jobs]
 
 
 def _taken(session: Session, orders: Sequence[Order], jobs: Sequence[Job]) -> set[Job]:
@@ -74,3 +79,19 @@ def _taken(session: Session, orders: Sequence[Order], jobs: Sequence[Job]) -> se
         return set()
     free = idempotency.keep(session, [Kept(item.key, item.fingerprint, item.answer(job)) for item, job in keyed])
     return {job for item, job in keyed if item.key.holder not in free}
+
+
+def _refused(session: Session, jobs: Sequence[Job], allowed: Quotas) -> dict[Job, OverQuota]:
+    """Return the jobs that their owners may not have; owners in a fixed order, so that two groups never deadlock."""
+    refused: dict[Job, OverQuota] = {}
+    for owner in sorted({job.owner for job in jobs}):
+        of_owner = [job for job in jobs if job.owner == owner]
+        found = allowed.refusals(session, owner, [owner_quotas.amount([job]) for job in of_owner])
+        refused |= {job: over for job, over in zip(of_owner, found, strict=True) if over is not None}
+    return refused
+
+
+def _free_keys(session: Session, orders: Sequence[Order], jobs: Sequence[Job], refused: Mapping[Job, object]) -> None:
+    keyed = [order.keyed for order, job in zip(orders, jobs, strict=True) if job in refused and order.keyed is not None]
+    if keyed:
+        idempotency.forget(session, [item.key for item in keyed])

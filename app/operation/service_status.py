@@ -1,6 +1,6 @@
 """The status of the whole service for its operator: database, broker, workers, queues, jobs, leases."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -9,6 +9,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from app.jobs.dispatch import BrokerUnavailable, open_queue
+from app.jobs.owner_quotas import Standing, standings
 from app.operation import workers
 from app.runtime.settings import Settings
 from app.storage.database import database_time, make_engine, session_factory
@@ -58,7 +59,7 @@ class Queues:
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """The part of the status that comes from the database.
+    """The part of the status that comes from the database; `owners` is what each owner has.
 
     `clock_went_back_seconds` is the step of the database's clock that no worker has allowed for yet, else zero.
     """
@@ -67,6 +68,7 @@ class Contents:
     chunks: Work
     leases: Leases
     workers: Sequence[WorkerState]
+    owners: Mapping[str, Standing]
     clock_went_back_seconds: float
 
 
@@ -139,6 +141,7 @@ def _contents(session: Session, settings: Settings) -> Contents:
         chunks=_work(session, now, chunks=True),
         leases=_leases(session, steady),
         workers=_workers(session, settings, steady),
+        owners=standings(session),
         clock_went_back_seconds=unnoted_step(session).total_seconds(),
     )
 

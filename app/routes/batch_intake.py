@@ -24,11 +24,14 @@ from app.http.strict_routes import KnownParametersRoute
 from app.interactive import Busy
 from app.jobs import idempotency, webhooks
 from app.jobs.idempotency import Key
+from app.jobs.owner_quotas import Amount, OverQuota, Quotas
 from app.jobs.webhooks import Subscription
 from app.routes import batch_documentation, documentation
 from app.routes.batch_status import BATCHES, accepted_batch
 from app.routes.dependencies import CallerOf, MayReuse, Readers, SenderOf, Writers, vet_webhook
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_holding_key, stored_answer
+from app.routes.own_quotas import QUOTA_PROBLEMS
+from app.routes.own_quotas import problem as over_quota
 from app.runtime.settings import Settings
 from app.schemas.faults import BadInput, Fault, parse_json
 from app.security.caller import Caller
@@ -44,6 +47,7 @@ ADDRESSES = (BATCHES, f"{BATCHES}/estimate")
 """Where the bodies of batches come in."""
 
 _RETRY_SECONDS = "5"
+_LEAST = Amount(waiting=1)  # that the smallest batch needs
 # Bodies that have no room for an analysis and for defaults, or need not have it.
 _ADDRESSED = ("text/csv", XLSX, GEOJSON, RDF_XML)
 _BODY_PROBLEMS = (
@@ -86,12 +90,13 @@ class _Posted:
     how: IntakeQuery
     may_reuse: bool
     places: Places
+    allowed: Quotas
     digest: "_Hash" = field(default_factory=hashlib.sha256)
 
 
 async def _posted(request: Request, how: Annotated[IntakeQuery, Query()], may_reuse: MayReuse) -> _Posted:
     state = request.app.state
-    return _Posted(request, state.settings, how, may_reuse, state.places)
+    return _Posted(request, state.settings, how, may_reuse, state.places, state.quotas)
 
 
 PostedBatch = Annotated[_Posted, Depends(_posted)]
@@ -104,7 +109,7 @@ PostedBatch = Annotated[_Posted, Depends(_posted)]
     response_model=BatchDocument,
     responses={
         202: batch_documentation.ACCEPTED_ANSWER,
-        **documentation.problems(*KEY_PROBLEMS, *_BODY_PROBLEMS),
+        **documentation.problems(*KEY_PROBLEMS, *QUOTA_PROBLEMS, *_BODY_PROBLEMS),
     },
     openapi_extra=batch_documentation.request_body(),
 )
@@ -168,6 +173,8 @@ def _refusals() -> Iterator[None]:
         raise ProblemError(ProblemKind.TOO_LARGE, str(error), headers={"Connection": "close"}) from error
     except BadInput as error:
         raise invalid_document(error.faults) from error
+    except OverQuota as error:
+        raise over_quota(error, {"Connection": "close"}) from error
 
 
 def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, posted: _Posted) -> PostOutcome:
@@ -180,7 +187,9 @@ def _take_in(writers: sessionmaker[Session], caller: Caller, key: Key | None, po
         if key is not None:
             idempotency.finish(session, key, _digest_so_far(posted), stored_answer(answers[0]))
 
-    with closing(replace(_incoming(posted), anew=not posted.may_reuse)) as incoming:
+    with writers.begin() as session:  # before the body is read
+        posted.allowed.require(session, caller.owner, _LEAST)
+    with closing(replace(_incoming(posted), anew=not posted.may_reuse, allowed=posted.allowed)) as incoming:
         webhook_url = _webhook_url(posted, incoming)
         receipt = intake.receive(writers, posted.settings, caller, incoming, on_accept, atomic=posted.how.atomic)
     return PostOutcome(answers[0], receipt.chunk_ids)

@@ -4,7 +4,7 @@ from typing import Annotated
 from urllib.parse import urlencode
 from uuid import UUID
 
-from fastapi import APIRouter, Depends, Query, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy.orm import Session
 
@@ -29,6 +29,7 @@ from app.routes.batch_status import (
 from app.routes.dependencies import RETRY_SECONDS, CallerOf, Readers, SenderOf, SettingsOf, Writers
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf, PostOutcome, run_once
 from app.routes.moments import Moment
+from app.routes.own_quotas import QUOTA_PROBLEMS
 from app.routes.waiting import APPLIED_HEADER, BatchWatch, Wait, applied, wait_for_end
 from app.runtime.signing import signing_key
 from app.security.caller import Owned
@@ -123,18 +124,18 @@ def list_batches(
     response_model=BatchDocument,
     responses={
         202: batch_documentation.ACCEPTED_ANSWER,
-        **documentation.problems(ProblemKind.NOT_FOUND, *KEY_PROBLEMS),
+        **documentation.problems(ProblemKind.NOT_FOUND, *KEY_PROBLEMS, *QUOTA_PROBLEMS),
     },
 )
 def resubmit_failed_lines(
-    batch_id: UUID, settings: SettingsOf, caller: CallerOf, key: KeyOf, writers: Writers, sender: SenderOf
+    request: Request, batch_id: UUID, caller: CallerOf, key: KeyOf, writers: Writers, sender: SenderOf
 ) -> Response:
     """Run the failed lines again under their numbers; without failed lines, change nothing."""
 
     def make(session: Session) -> PostOutcome:
         batch = find_batch(session, caller, batch_id)
-        size = intake.lines_a_chunk(settings, convert.read_analysis(batch.analysis))
-        chunk_ids = batch_records.resubmit(session, caller, batch_id, size)
+        size = intake.lines_a_chunk(request.app.state.settings, convert.read_analysis(batch.analysis))
+        chunk_ids = batch_records.resubmit(session, caller, batch_id, size, request.app.state.quotas)
         return PostOutcome(accepted_batch(session, caller, batch_id), chunk_ids)
 
     made = run_once(writers, key, lambda: idempotency.fingerprint(batch_address(batch_id), "resubmit"), make)

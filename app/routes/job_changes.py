@@ -19,6 +19,7 @@ from app.routes.dependencies import CallerOf, Writers
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf
 from app.routes.job_intake import JOBS, accepted_order, keyed_order
 from app.routes.job_status import find_job, job_address, job_document
+from app.routes.own_quotas import QUOTA_PROBLEMS
 from app.schemas.fields import with_marks
 from app.schemas.labels import JobLabels
 from app.security.caller import Caller
@@ -73,7 +74,7 @@ def change_job_labels(
             ),
             "headers": documentation.ACCEPTED_HEADERS,
         },
-        **documentation.problems(*KEY_PROBLEMS, ProblemKind.NOT_FOUND, ProblemKind.NOT_READY),
+        **documentation.problems(*KEY_PROBLEMS, *QUOTA_PROBLEMS, ProblemKind.NOT_FOUND, ProblemKind.NOT_READY),
     },
 )
 async def retry_job(request: Request, job_id: UUID, key: KeyOf) -> Response:

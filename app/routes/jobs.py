@@ -22,6 +22,7 @@ from app.routes.job_intake import JOBS, accepted_job, estimate
 from app.routes.job_status import find_job, find_status, job_address, job_document
 from app.routes.known_lines import KnownLineRoute
 from app.routes.moments import Moment
+from app.routes.own_quotas import QUOTA_PROBLEMS
 from app.routes.waiting import APPLIED_HEADER, Wait, applied, wait_for_end
 from app.runtime.signing import signing_key
 from app.schemas.fields import Label, example_of
@@ -81,7 +82,11 @@ class ListQuery(BaseModel):
             "headers": documentation.ACCEPTED_HEADERS,
         },
         **documentation.problems(
-            *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
+            *KEY_PROBLEMS,
+            *QUOTA_PROBLEMS,
+            ProblemKind.TOO_LARGE,
+            ProblemKind.UNSUPPORTED_MEDIA_TYPE,
+            ProblemKind.INVALID_DOCUMENT,
         ),
     },
 )

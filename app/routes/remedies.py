@@ -11,6 +11,7 @@ from app.routes.dependencies import PREFIX, MayReuse
 from app.routes.idempotent_posts import KEY_PROBLEMS, KeyOf
 from app.routes.job_intake import accepted_job
 from app.routes.known_lines import KnownLineRoute
+from app.routes.own_quotas import QUOTA_PROBLEMS
 from app.schemas.request import RemediesRequest
 
 router = APIRouter(prefix=f"{PREFIX}/remedies", tags=["jobs"], route_class=KnownLineRoute)
@@ -29,7 +30,11 @@ router = APIRouter(prefix=f"{PREFIX}/remedies", tags=["jobs"], route_class=Known
             "headers": documentation.ACCEPTED_HEADERS,
         },
         **documentation.problems(
-            *KEY_PROBLEMS, ProblemKind.TOO_LARGE, ProblemKind.UNSUPPORTED_MEDIA_TYPE, ProblemKind.INVALID_DOCUMENT
+            *KEY_PROBLEMS,
+            *QUOTA_PROBLEMS,
+            ProblemKind.TOO_LARGE,
+            ProblemKind.UNSUPPORTED_MEDIA_TYPE,
+            ProblemKind.INVALID_DOCUMENT,
         ),
     },
 )

@@ -19,10 +19,13 @@ _SECRETS = ("database_url", "broker_url", "signing_secret")  # the addresses hol
 
 _SECRET_NAMES = AliasChoices("GALLOPING_SIGNING_SECRET", "GALLOPING_CURSOR_SECRET")  # the second is deprecated
 
+_EMBEDDED_BYTES, _SERVER_BYTES = 10_000_000_000, 100_000_000_000
+
 _ORIGIN = re.compile(r"https?://[^/\s?#]+")
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
+Bound = Annotated[int, Field(ge=0)]  # zero is no bound
 
 
 def _default_database(data: dict[str, object]) -> str:
@@ -31,6 +34,10 @@ def _default_database(data: dict[str, object]) -> str:
 
 def _default_broker(_: dict[str, object]) -> str:
     return "filesystem://localhost"
+
+
+def _default_stored_bytes(data: dict[str, object]) -> int:
+    return _EMBEDDED_BYTES if str(data.get("database_url")).startswith("sqlite") else _SERVER_BYTES
 
 
 def _usable_processors() -> int:
@@ -71,6 +78,16 @@ class Settings(BaseSettings):
     reads_per_minute: Count = Field(default=60_000, description="Most GETs a minute with one owner's keys")
     changes_per_minute: Count = Field(default=6_000, description="Most other requests a minute with one owner's keys")
     strangers_per_minute: Count = Field(default=300, description="Most unfamiliar keys a minute from one address")
+    running_jobs_per_owner: Bound = Field(
+        default=0, description="Most jobs and chunks of one owner that run at once; 0 for no bound"
+    )
+    waiting_jobs_per_owner: Bound = Field(
+        default=200_000, description="Most jobs and chunks of one owner that wait; 0 for no bound"
+    )
+    stored_bytes_per_owner: Bound = Field(
+        default_factory=_default_stored_bytes,
+        description="Most bytes of one owner's requests and results; 0 for no bound",
+    )
     max_body_bytes: Count = Field(default=20_000_000, description="Largest request body")
     max_batch_bytes: Count = Field(default=512_000_000, description="Largest NDJSON or CSV batch, decompressed")
     max_batch_line_bytes: Count = Field(default=1_000_000, description="Longest line of text in an NDJSON or CSV batch")

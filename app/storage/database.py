@@ -126,6 +126,12 @@ def database_moment(session: Session) -> datetime | ColumnElement[datetime]:
     return func.clock_timestamp(type_=UtcDateTime)
 
 
+def serialize(session: Session, subject: str) -> None:
+    """Let no other transaction pass here with the same subject until this one ends; SQLite has one writer at once."""
+    if session.get_bind().dialect.name == "postgresql":
+        session.execute(select(func.pg_advisory_xact_lock(func.hashtextextended(subject, 0))))
+
+
 def insert_rows(session: Session, kind: type[Base], records: Sequence[Mapping[str, Any]]) -> None:
     """Insert any number of rows in one call of the driver.
 

@@ -39,18 +39,21 @@ class CorruptResult(Exception):
     """Raised when a stored result is not what was stored."""
 
 
-def store(session: Session, job_id: UUID, points_found: Sequence["PointResult"], batch_id: UUID | None = None) -> None:
-    """Insert the results of points of a job, or of lines of a batch's chunk, in one statement.
+def rows_of(points_found: Sequence["PointResult"]) -> list[dict[str, Any]]:
+    """Return points as the rows that `store` inserts."""
+    compressor = _packer()
+    return [_as_columns(point, compressor) for point in points_found]
+
+
+def store(session: Session, job_id: UUID, rows: Sequence[dict[str, Any]], batch_id: UUID | None = None) -> None:
+    """Insert the rows of points of a job, or of lines of a batch's chunk, in one statement.
 
     Raises
     ------
     sqlalchemy.exc.SQLAlchemyError
         If a point is stored already.
     """
-    if points_found:
-        place = {"job_id": job_id, "batch_id": batch_id}
-        compressor = _packer()
-        insert_rows(session, PointRow, [{**place, **_as_columns(point, compressor)} for point in points_found])
+    insert_rows(session, PointRow, [{"job_id": job_id, "batch_id": batch_id, **row} for row in rows])
 
 
 def ranking_columns(row: Any) -> dict[str, float | bool | None]:

@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import JSON, CheckConstraint, ForeignKey, Index, String, Text
+from sqlalchemy import JSON, BigInteger, CheckConstraint, ForeignKey, Index, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.tables.base import Base
@@ -14,7 +14,7 @@ class Batch(Base):
     """Many lines under one analysis. Its chunks, the jobs with this batch_id, hold the lines and their states.
 
     received_at is null while the lines arrive; the batch is invisible until then. notes are sentences on how its body
-    was read, null if there is nothing to tell.
+    was read, null if there is nothing to tell. request_bytes is what the batch and its lines take, rejected ones, too.
     """
 
     __tablename__ = "batches"
@@ -29,6 +29,7 @@ class Batch(Base):
     notes: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
     name: Mapped[str | None] = mapped_column(Text)
     tags: Mapped[dict[str, str] | None] = mapped_column(JSON(none_as_null=True))
+    request_bytes: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")
 
 
 class BatchItem(Base):

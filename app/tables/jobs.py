@@ -18,8 +18,9 @@ class Job(Base):
 
     batch_id, lines, failed_lines and reused_lines belong to a chunk and are null for any other job. request_id and
     trace_parent come from the request that created the job. reused_from is the job or chunk whose results were copied;
-    it may have been deleted since. lease_expires_at and claimed_at are of the steady clock, all other moments of the
-    database's.
+    it may have been deleted since. request_bytes is what the job takes without its results; result_bytes is what these
+    are expected to take until it has ended, then what they take. lease_expires_at and claimed_at are of the steady
+    clock, all other moments of the database's.
     """
 
     __tablename__ = "jobs"
@@ -35,6 +36,7 @@ class Job(Base):
         Index(None, "owner", "asset_id", "created_at"),
         Index(None, "batch_id", "created_at"),
         Index(None, "owner", "input_hash"),
+        Index(None, "owner", "request_bytes", "result_bytes"),
     )
 
     id: Mapped[UUID] = mapped_column(primary_key=True)
@@ -65,6 +67,8 @@ class Job(Base):
     reused_from: Mapped[UUID | None]
     reused_lines: Mapped[int | None]
     claimed_at: Mapped[datetime | None]
+    request_bytes: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")
+    result_bytes: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")
 
     tags: Mapped[list["JobTag"]] = relationship(order_by="JobTag.key", lazy="selectin", passive_deletes=True)
     events: Mapped[list["JobEvent"]] = relationship(order_by="JobEvent.id", lazy="select", passive_deletes=True)

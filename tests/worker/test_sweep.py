@@ -6,10 +6,12 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.jobs import leases
 from app.jobs.dispatch import open_queue
 from app.runtime.settings import Settings
+from app.security.caller import LOCAL
 from app.tables import JobStatus
-from tests.documents import add_job, look
+from tests.batch_rows import add_batch
+from tests.documents import STRANGER, add_job, create_job, look
 from tests.servers import free_port
-from worker.sweep import ClockKeeper, release, sweep
+from worker.sweep import ClockKeeper, call_next, release, sweep
 
 
 @pytest.fixture
@@ -93,3 +95,43 @@ def test_release_gives_back_only_what_is_lost(sessions: sessionmaker[Session], s
     assert release(sessions, settings) == 0
     assert release(sessions, settings, "dead") == 1
     assert look(sessions, held).status is JobStatus.RUNNING
+
+
+def test_jobs_of_an_owner_who_runs_as_many_as_he_may_wait_without_messages(
+    sessions: sessionmaker[Session], eager: Settings, tmp_path: Path
+) -> None:
+    bounded = eager.model_copy(update={"running_jobs_per_owner": 1})
+    running, waiting = add_job(sessions), add_job(sessions)
+    with sessions.begin() as session:
+        held = leases.claim(session, running, "here", 60.0)
+        stranger = create_job(session, STRANGER, {"line": {}}).id
+    assert held is not None
+    assert sweep(sessions, bounded) == 1
+    assert [str(stranger) in message for message in messages(tmp_path)] == [True]
+    with sessions.begin() as session:
+        assert leases.dismiss(session, held)
+    assert sweep(sessions, bounded) == 1
+    assert str(waiting) in "".join(messages(tmp_path))
+
+
+def test_the_next_job_is_called_where_no_message_waits(
+    sessions: sessionmaker[Session], settings: Settings, tmp_path: Path
+) -> None:
+    call_next(sessions, settings, LOCAL.owner)
+    assert messages(tmp_path) == [], "nothing waits"
+    first, _ = add_job(sessions), add_job(sessions)
+    call_next(sessions, settings, STRANGER.owner)
+    assert messages(tmp_path) == []
+    for _ in range(2):
+        call_next(sessions, settings, LOCAL.owner)
+    (message,) = messages(tmp_path)
+    assert str(first) in message, "the second call found it"
+
+
+def test_a_chunk_is_called_by_the_queue_of_chunks(
+    sessions: sessionmaker[Session], settings: Settings, tmp_path: Path
+) -> None:
+    add_batch(sessions, 1)
+    call_next(sessions, settings, LOCAL.owner)
+    with open_queue(settings) as queue:
+        assert (queue.length(), queue.length(chunk=True)) == (0, 1)

@@ -12,6 +12,8 @@ from app.convert.known.wrapping import without_wrapper
 from app.exchange.cim import read_segments
 from app.exchange.feature_texts import cut_features
 from app.exchange.features import read_features
+from app.jobs import owner_quotas
+from app.jobs.owner_quotas import Quotas
 from app.schemas.faults import BadInput, BodyTooLarge, Fault, parse_json
 from app.sheets.columns import Columns
 from app.sheets.delimited import read_delimited
@@ -30,8 +32,8 @@ class Incoming:
     """An analysis document and the documents of the lines; a `BadInput` stands for an unreadable line.
 
     `defaults` is a document of what the lines leave open. With `anew`, workers compute the lines even if their results
-    are stored. `notes` tells how the body was read; its sentences are complete when the last line was taken. `close` it
-    when no more lines are taken.
+    are stored. `notes` tells how the body was read; its sentences are complete when the last line was taken. `allowed`
+    are the quotas of its owner. `close` it when no more lines are taken.
     """
 
     analysis: object
@@ -41,6 +43,7 @@ class Incoming:
     notes: Callable[[], list[str]] = list
     file: IO[bytes] | None = None
     defaults: object = None
+    allowed: Quotas = owner_quotas.NONE
 
     def close(self) -> None:
         """Close the file from which the lines come, if they come from one."""

@@ -5,7 +5,7 @@ No transaction lasts longer than one block, so a slow sender blocks nobody.
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import Any
 from uuid import UUID
@@ -21,6 +21,7 @@ from app.batches import batch_records
 from app.batches.batch_records import Chunk
 from app.batches.intake.body_formats import Incoming
 from app.exchange.defaults import checked_defaults, filled
+from app.jobs.owner_quotas import Amount
 from app.owned import records
 from app.runtime.settings import Settings
 from app.schemas.faults import MOST_FAULTS, BadInput, Fault, json_pointer
@@ -82,6 +83,8 @@ def receive(
         If the analysis is wrong, if no line can run, or if a line of an atomic batch cannot; nothing is stored then.
     BodyTooLarge
         If reading the lines raises it; nothing is stored then.
+    OverQuota
+        If the owner may not have so much more; nothing is stored then.
     sqlalchemy.exc.SQLAlchemyError
         If the database fails; stored lines are removed now or by a later sweep.
     """
@@ -95,8 +98,10 @@ def receive(
         for block in _blocks(settings, draft, incoming.lines):
             with sessions.begin() as session:
                 batch_records.add_items(session, block)
+                incoming.allowed.require(session, caller.owner, Amount())  # the block is stored already
         _refuse_hopeless(draft)
         with sessions.begin() as session:
+            batch_records.require_room(session, caller, draft.chunks, incoming.allowed)
             batch_records.accept(session, caller, batch_id, draft.chunks, draft.rejected, anew=incoming.anew)
             batch_records.note(session, batch_id, incoming.notes())
             on_accept(session, batch_id)
@@ -246,9 +251,10 @@ def _split(document: object) -> tuple[str | None, object]:
 def _chunk_id(draft: _Draft) -> UUID:
     """Return the chunk for the next line; begin a new one if the last is full."""
     if not draft.chunks or draft.chunks[-1].lines == draft.chunk_lines:
-        draft.chunks.append(Chunk(uuid7(), len(draft.chunks) + 1, 0))
+        line_bytes = convert.bytes_a_line(draft.analysis)
+        draft.chunks.append(Chunk(uuid7(), len(draft.chunks) + 1, 0, line_bytes))
     last = draft.chunks[-1]
-    draft.chunks[-1] = Chunk(last.id, last.part, last.lines + 1)
+    draft.chunks[-1] = replace(last, lines=last.lines + 1)
     return last.id
 
 

@@ -17,7 +17,7 @@ _WORKERS = ("name", "version", "processes", "running", "seen")
 
 
 def status(json: AsJson = False, data_dir: DataDirectory = None) -> None:
-    """Show database, broker, workers, queues, jobs and leases; exit with 1 if anything needs the operator."""
+    """Show database, broker, workers, owners, queues, jobs and leases; exit with 1 if anything needs the operator."""
     from app.operation import service_status as service
 
     settings = read_settings(data_dir)
@@ -82,6 +82,13 @@ def _show_contents(contents: "Contents") -> None:
         for kind, work in kinds.items()
     ]
     print_table(tuple(rows[0]), rows)
+    if contents.owners:
+        names = ("owner", "running", "waiting", "stored MB")
+        owners = [
+            dict(zip(names, (owner, had.running, had.waiting, f"{1e-6 * had.stored:.1f}"), strict=True))
+            for owner, had in contents.owners.items()
+        ]
+        print_table(names, owners)
     if contents.workers:
         seen = ({"seen": f"{_seconds(worker.seen_seconds_ago)} ago"} for worker in contents.workers)
         states = [

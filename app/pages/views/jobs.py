@@ -6,15 +6,19 @@ from typing import Annotated
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Depends, Query, Request, Response
+from sqlalchemy.orm import Session
 
 from app.http import paging
 from app.http.problems import query_fault
 from app.http.strict_routes import KnownParametersRoute
 from app.jobs import job_records
 from app.jobs.job_records import JobFilters
+from app.jobs.owner_quotas import standing
 from app.pages.frame import page
+from app.pages.wording import words
 from app.routes.dependencies import CallerOf, Readers
 from app.runtime.signing import signing_key
+from app.security.caller import Caller
 from app.tables import JobStatus
 
 router = APIRouter(include_in_schema=False, route_class=KnownParametersRoute)
@@ -80,4 +84,16 @@ def list_of_jobs(
             older = f"/pages/jobs?{urlencode({**wanted.query, **position})}"
         jobs = found[:_ON_PAGE]
         tags = sorted({f"{tag.key}:{tag.value}" for job in jobs for tag in job.tags})
-        return page(request, "jobs.html", jobs=jobs, older=older, wanted=wanted, states=list(JobStatus), tags=tags)
+        stored, states = _stored(request, session, caller), list(JobStatus)
+    return page(request, "jobs.html", jobs=jobs, older=older, wanted=wanted, states=states, tags=tags, stored=stored)
+
+
+def _stored(request: Request, session: Session, caller: Caller) -> str:
+    """Return the sentence on what the owner has and may have, empty without a bound on bytes."""
+    most = request.app.state.settings.stored_bytes_per_owner
+    if not most:
+        return ""
+    had = standing(session, caller.owner)
+    sizes = {"stored": f"{1e-6 * had.stored:,.1f}", "most": f"{1e-6 * most:,.0f}"}
+    sentence: str = words().jobs.stored.format(running=had.running, waiting=had.waiting, **sizes)
+    return sentence

@@ -6,8 +6,10 @@ from sqlalchemy import event, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.jobs import leases, turns
+from app.security.caller import LOCAL
 from app.tables import Job
 from tests.documents import STRANGER, add_job, create_job
+from tests.threads import at_once
 
 MANY = 30
 ENOUGH = 40  # draws after which one of two owners has not come up once in a million million times
@@ -97,3 +99,41 @@ def test_turns_are_found_along_the_index_of_waiting_jobs(sessions: sessionmaker[
     waiting = [plan for plan in plans if "ix_jobs_waiting" in plan]
     assert len(waiting) >= 3, plans
     assert all("_jobs" in plan and "Seq Scan" not in plan for plan in plans), plans
+
+
+def test_an_owner_runs_as_many_jobs_as_he_may_and_others_go_on(sessions: sessionmaker[Session]) -> None:
+    crowd = [add_job(sessions) for _ in range(4)]
+    taken = [take(sessions, job_id, most=2) for job_id in crowd]
+    assert taken == [*crowd[:2], None, None]
+    alone = of_stranger(sessions)
+    assert take(sessions, crowd[3], most=2) == alone
+    assert take(sessions, crowd[3], most=3) == crowd[3]
+    with sessions.begin() as session:
+        assert list(session.scalars(turns.having(3))) == [LOCAL.owner]
+        assert turns.next_of(session, LOCAL.owner) == crowd[2]
+        assert turns.next_of(session, STRANGER.owner) is None
+
+
+@pytest.mark.parametrize("most", [1, 3])
+def test_workers_that_claim_at_once_do_not_pass_the_last_place(sessions: sessionmaker[Session], most: int) -> None:
+    crowd, others = [add_job(sessions) for _ in range(8)], [of_stranger(sessions) for _ in range(8)]
+    taken: list[UUID] = []
+
+    def one(number: int) -> None:
+        for job_id in (crowd[number], others[number]):
+            found = take(sessions, job_id, most)
+            if found is not None:
+                taken.append(found)
+
+    at_once(one, 8)
+    assert len(set(taken)) == len(taken) == 2 * most
+    assert len(set(taken) & set(crowd)) == len(set(taken) & set(others)) == most
+
+
+def take(sessions: sessionmaker[Session], job_id: UUID, most: int) -> UUID | None:
+    """Choose and claim a job as a worker does."""
+    with sessions.begin() as session:
+        chosen = turns.in_turn(session, job_id, most)
+        if chosen is not None:
+            assert leases.claim(session, chosen, "here", 30.0) is not None
+    return chosen

@@ -8,6 +8,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.jobs import leases
 from app.operation import service_status, workers
 from app.runtime.settings import Settings
+from app.security.caller import LOCAL
 from app.storage.database import database_time
 from app.tables import JobStatus, SteadyClock
 from tests.batch_rows import add_batch, run
@@ -39,6 +40,10 @@ def test_work_is_counted_as_it_is(deployment: Settings, deployed: sessionmaker[S
     assert found.contents.leases == service_status.Leases(held=2, expired=1, undispatched=1)
     (worker,) = found.contents.workers
     assert (worker.name, worker.running, worker.processes, worker.silent) == ("here", 1, 2, False)
+    (owner,) = found.contents.owners.items()
+    assert owner[0] == LOCAL.owner
+    assert (owner[1].running, owner[1].waiting) == (2, 2)
+    assert 0 < owner[1].expected < owner[1].stored
     assert found.faults() == ["1 leases have expired, and no worker has released their jobs."]
 
 

@@ -16,6 +16,15 @@ def test_defaults_need_no_other_server(tmp_path: Path) -> None:
     assert settings.signing_secret is None
 
 
+def test_quotas_of_an_owner_allow_the_largest_batch_and_follow_the_database(tmp_path: Path) -> None:
+    embedded, server = Settings(data_dir=tmp_path), Settings(database_url="postgresql://a:b@localhost/d")
+    assert (embedded.stored_bytes_per_owner, server.stored_bytes_per_owner) == (10_000_000_000, 100_000_000_000)
+    assert embedded.waiting_jobs_per_owner == 2 * embedded.max_batch_lines
+    assert embedded.running_jobs_per_owner == 0
+    with pytest.raises(ValidationError):
+        Settings(data_dir=tmp_path, stored_bytes_per_owner=-1)
+
+
 def test_relative_data_directory_becomes_absolute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     settings = Settings(data_dir=Path("here"))

@@ -22,7 +22,7 @@ def computed() -> list[PointResult]:
 def keep(sessions: sessionmaker[Session], points: list[PointResult]) -> UUID:
     job_id = add_job(sessions)
     with sessions.begin() as session:
-        stored_results.store(session, job_id, points)
+        stored_results.store(session, job_id, stored_results.rows_of(points))
     return job_id
 
 
@@ -108,7 +108,7 @@ def test_a_point_is_one_row_much_smaller_than_its_text(
 def test_a_point_is_stored_once(sessions: sessionmaker[Session]) -> None:
     job_id = keep(sessions, [point_result()])
     with pytest.raises(IntegrityError), sessions.begin() as session:
-        stored_results.store(session, job_id, [point_result()])
+        stored_results.store(session, job_id, stored_results.rows_of([point_result()]))
 
 
 def test_a_job_without_study_has_no_axes(sessions: sessionmaker[Session]) -> None:

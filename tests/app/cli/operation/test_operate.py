@@ -1,6 +1,7 @@
 """The operator's commands as operators use them: keys, audit, prune, status."""
 
 import json
+import re
 from pathlib import Path
 
 import httpx
@@ -114,8 +115,19 @@ def test_status_shows_the_service_and_its_exit_code_what_is_wrong(own_settings: 
     shown = on_a_terminal("status", *place, code=1)
     assert "No worker is running." in shown
     assert "oldest waiting" in shown
+    assert "stored MB" not in shown, "nobody has anything"
     piped = galloping("status", *place)
     found = json.loads(piped.stdout)
     assert piped.returncode == 1
     assert (found["database"], found["broker"], found["queues"]) == ("ok", "ok", {"jobs": 0, "chunks": 0})
     assert found["faults"] == ["No worker is running."]
+
+
+def test_status_shows_what_every_owner_has(own_client: httpx.Client, own_settings: Settings) -> None:
+    place = ("--data-dir", str(own_settings.data_dir))
+    service.submit(own_client)
+    shown = on_a_terminal("status", *place, code=1)
+    assert re.search(r"owner +running +waiting +stored MB", shown)
+    assert re.search(r"local +0 +1 +0\.0", shown)
+    found = json.loads(galloping("status", *place).stdout)
+    assert found["contents"]["owners"]["local"]["waiting"] == 1
