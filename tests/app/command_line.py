@@ -36,7 +36,7 @@ def refused(*arguments: str, text: str | None = None) -> str:
 def on_a_terminal(*arguments: str, code: int = 0) -> str:
     """Return what a command prints on a terminal of its own, a hundred characters wide."""
     ours, theirs = pty.openpty()
-    environment = {**os.environ, "COLUMNS": "100", "TERM": "dumb"}
+    environment = {**os.environ, "COLUMNS": "100", "LINES": "50", "TERM": "dumb"}  # without LINES rich takes 80 columns
     command = [sys.executable, "-m", "app.cli", *arguments]
     with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=subprocess.PIPE, env=environment) as running:
         os.close(theirs)

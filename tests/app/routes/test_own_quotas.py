@@ -19,6 +19,7 @@ from tests.documents import short_request
 
 ROOM = 60_000  # of a few short jobs, and of no study of thousands
 EXECUTION = "/ogc/processes/galloping/execution"
+AT_ONCE = {"Prefer": "respond-async"}
 
 
 def study(points: int) -> dict[str, Any]:
@@ -40,7 +41,7 @@ WAYS: dict[str, Way] = {
     "job": lambda client: client.post("/v1/jobs", json=short_request(), headers=service.ANEW),
     "remedies": lambda client: client.post("/v1/remedies", json={"line": short_request()["line"]}),
     "batch": lambda client: client.post("/v1/batches", json=batch(1)),
-    "execution": lambda client: client.post(EXECUTION, json={"inputs": short_request()}),
+    "execution": lambda client: client.post(EXECUTION, json={"inputs": short_request()}, headers=AT_ONCE),
     "form": lambda client: send(client, "/pages/examples/c11-twin", {}),
 }
 
