@@ -119,10 +119,7 @@ def create_app(settings: Settings | None = None) -> Service:
         responses={"default": documentation.ANY_PROBLEM},
     )
     _equip(app, settings, database)
-    app.state.meter = meter = Meter(settings)
-    app.state.strangers = strangers = Strangers(settings, app.state.readers, meter)
-    app.state.callers = callers = known_callers(app.state.readers, app.state.writers, settings.key_cache_seconds)
-    app.add_middleware(Gate, settings, app.state.readers, callers, meter, strangers)
+    _guard(app, settings)
     of_batches = dict.fromkeys((*batch_intake.ADDRESSES, views.BATCH_FILES), settings.max_batch_bytes)
     limits = {"": settings.max_body_bytes, **of_batches}
     slowest = settings.silent_body_seconds, settings.least_body_bytes_per_second
@@ -134,6 +131,14 @@ def create_app(settings: Settings | None = None) -> Service:
         cors.install(app, settings.cors_origins)
     _add_addresses(app)
     return app
+
+
+def _guard(app: Service, settings: Settings) -> None:
+    """Let requests in by key or token only, where there are keys, and count those of callers and of strangers."""
+    app.state.meter = meter = Meter(settings)
+    app.state.strangers = strangers = Strangers(settings, app.state.readers, meter)
+    app.state.callers = callers = known_callers(app.state.readers, app.state.writers, settings.key_cache_seconds)
+    app.add_middleware(Gate, settings, app.state.readers, callers, meter, strangers)
 
 
 async def _close(app: Service) -> None:
