@@ -19,6 +19,7 @@ from engine.progress import driven
 
 FINER_STEPS = (4, 16)  # factors on the number of steps of Floquet's integration, where its error leaves doubt
 DOUBTFUL = 1e-6  # error of the multipliers, below which finer steps would not settle an unknown stability
+OF_STEPS = 0.5  # share of an error that is left at most where the steps cause it: a quarter of their width leaves 1/256
 INACCURATE = 1e-4  # error of the multipliers over the largest, above which finer steps are used in any case
 CLUSTER = 0.05  # distance from 1 within which several multipliers err by far more than the trivial one
 LIGHT = 1.0  # size of an exponent's real part beyond which a mode changes e-fold in a period: no resonance is sharp
@@ -34,19 +35,22 @@ LONGEST = 40  # most points that replace a segment
 
 
 def judged_points(problem: CycleProblem, points: BranchPoints) -> Floquet:
-    """Return the multipliers of points on branches, with finer steps where they are inaccurate or leave doubt."""
+    """Return the multipliers of points on branches, with finer steps where they are inaccurate or leave doubt.
+
+    Steps that do not lower the error show that too few harmonics cause it: still finer ones would not, either.
+    """
     result = floquet(*problem.models(points.z, points.branch), problem.orbits(points.z, points.branch))
+    by_steps = np.ones(points.branch.size, dtype=np.bool_)
     for fineness in FINER_STEPS:
         unknown = np.asarray(result.stability == Stability.UNKNOWN, dtype=np.bool_)
         largest = np.abs(result.multipliers).max(axis=-1, initial=1.0)
-        index = np.flatnonzero(
-            ((unknown | crowded(result)) & (result.trivial_error > DOUBTFUL))
-            | (result.trivial_error > INACCURATE * largest)
-        )
+        doubtful = (unknown | crowded(result)) & (result.trivial_error > DOUBTFUL)
+        index = np.flatnonzero((doubtful | (result.trivial_error > INACCURATE * largest)) & by_steps)
         if index.size == 0:
             break
         some = points.select(index)
         finer = floquet(*problem.models(some.z, some.branch), problem.orbits(some.z, some.branch), fineness)
+        by_steps[index] = finer.trivial_error < OF_STEPS * result.trivial_error[index]
         for name in ("multipliers", "trivial_error", "stability"):
             getattr(result, name)[index] = getattr(finer, name)
     return result

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from engine.cycles.branches import follow_from_hopf_points
-from engine.cycles.refinement import FAR, LIGHT, signed_exponents
+from engine.cycles.floquet import floquet
+from engine.cycles.refinement import FAR, LIGHT, judged_points, signed_exponents
 from engine.cycles.transitions import Kind
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from tests.builders import hybrid, source_line
@@ -46,3 +47,18 @@ def test_a_strongly_damped_line_keeps_the_points_of_the_continuation() -> None:
     crossings = critical_wind_speeds(model, 14.0)
     branch_set = follow_from_hopf_points(model, crossings, np.array([0]), 5, np.array([4.0, 6.0]))
     assert branch_set.points.branch.size < 25
+
+
+def test_finer_steps_are_taken_only_where_they_cause_the_error() -> None:
+    model = hybrid(resonant_line(), 2)
+    crossings = critical_wind_speeds(model, 14.0)
+    branch_set = follow_from_hopf_points(model, crossings, np.array([0]), 3, WINDS)
+    problem, points = branch_set.problem, branch_set.points
+    judged = judged_points(problem, points)
+    where = (problem.model, branch_set.member, branch_set.orbits)
+    once, finer, finest = (floquet(*where, fineness) for fineness in (1, 4, 16))
+    by_harmonics = (finer.trivial_error > 1e-6) & (finer.trivial_error > 0.9 * once.trivial_error)
+    assert by_harmonics.sum() > 5
+    assert (judged.trivial_error[by_harmonics] != finest.trivial_error[by_harmonics]).all()
+    change = np.abs(judged.trivial_error - finest.trivial_error)[by_harmonics]
+    assert (change < 1e-2 * finest.trivial_error[by_harmonics]).all()
