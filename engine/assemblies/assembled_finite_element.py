@@ -14,7 +14,7 @@ from engine.assemblies.assembly import by_member
 from engine.assemblies.numbered_modes import NumberedModes, directional_modes, loops_of, member_shares
 from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W, device_damping
 from engine.mechanics.modes import assign, directional_shapes
-from engine.models.aerodynamic_load import take_load
+from engine.models.aerodynamic_load import by_points, take_load
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonals
 from engine.models.stretching import take_stretching
 from engine.models.unexpanded_load import take_unexpanded
@@ -60,7 +60,7 @@ def assembled_finite_element(
         mass=np.eye(chosen.size)[None],
         damping=damping[None],
         stiffness=stiffness[None],
-        load=take_load(load_on_members(whole, blown, analysis), first),
+        load=take_load(by_points(load_on_members(whole, blown, analysis)), first),
         shapes=over_all_nodes(blown)[:, 0],
         direction=modes.direction[chosen],
         statically_unstable=np.array([bool((diagonals(stiffness) <= 0.0).any() or _has_no_frequency(whole))]),

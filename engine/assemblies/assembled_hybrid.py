@@ -13,7 +13,7 @@ from engine.mechanics.cross_sections import Sections
 from engine.mechanics.finite_elements import U, V, device_damping
 from engine.mechanics.modes import at_points, directional_shapes
 from engine.models import aerodynamic_load, unexpanded_load
-from engine.models.aerodynamic_load import PolynomialLoad, published_load, span_load
+from engine.models.aerodynamic_load import SpanLoad, published_load, span_load
 from engine.models.discretization import discretize
 from engine.models.hybrid import condensed, hybrid_model, integrated, three_coordinates
 from engine.models.reduced_model import ReducedModel, damping_ratios, diagonal_matrices, diagonals
@@ -92,7 +92,7 @@ def assembled_published_load(whole: AssembledLine, model: ReducedModel) -> Reduc
     return replace(model, load=load)
 
 
-def load_on_members(whole: AssembledLine, blown: FloatArray, analysis: Analysis) -> PolynomialLoad:
+def load_on_members(whole: AssembledLine, blown: FloatArray, analysis: Analysis) -> SpanLoad:
     """Return the load point by point along all members, from fields (members, groups, m, 3, nodes): (1, groups)."""
     members = whole.members
     values = at_points(members.matrices, blown)

@@ -100,13 +100,20 @@ def mass_points(
     return interpolation, section_points.local_weight * np.linalg.norm(metric, axis=-1)
 
 
+def padded_positions(lines: Sequence[Line]) -> tuple[FloatArray, BoolArray]:
+    """Return (y, z) of the sub-conductors, (lines, n, 2) [m], zero beyond those of a line, and which it has."""
+    each = [line.bundle.positions for line in lines]
+    count = np.array([len(positions) for positions in each])
+    most = int(count.max())
+    padded = [(*positions, *((0.0, 0.0),) * (most - len(positions))) for positions in each]
+    return np.array(padded, dtype=np.float64), np.arange(most) < count[:, None]
+
+
 def bundle_sums(lines: Sequence[Line]) -> FloatArray:
     """Return n, sum y, sum z, sum y^2, sum z^2 and sum y z over the sub-conductors: (6, lines)."""
-    sums = []
-    for line in lines:
-        y, z = np.array(line.bundle.positions).T
-        sums.append((y.size, y.sum(), z.sum(), y @ y, z @ z, y @ z))
-    return np.array(sums, dtype=np.float64).T
+    positions, present = padded_positions(lines)
+    y, z = np.moveaxis(positions, -1, 0)
+    return np.stack([values.sum(axis=-1) for values in (present, y, z, y**2, z**2, y * z)])
 
 
 def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:

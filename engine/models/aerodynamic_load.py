@@ -42,6 +42,26 @@ class PolynomialLoad:
     angle: FloatArray
 
 
+@dataclass(frozen=True, slots=True)
+class SpanLoad:
+    """The load before its integration along the span: at each quadrature point, loads of shapes times coefficients.
+
+    forms: (lines, groups, points, local variables, 2 m), as those of `PolynomialLoad`; outputs: (lines, groups, points,
+    m, 3), what the lift, drag and moment at a point contribute to each generalized coordinate; coefficients:
+    (lines, 1, points, 3, monomials) of these in the local variables; angle: as that of `PolynomialLoad`.
+    """
+
+    forms: FloatArray
+    outputs: FloatArray
+    coefficients: FloatArray
+    angle: FloatArray
+
+    @property
+    def table(self) -> FloatArray:
+        """The table of each point: (lines, groups, points, m, monomials)."""
+        return self.outputs @ self.coefficients
+
+
 def polynomial_load(forms: FloatArray, table: FloatArray, angle: FloatArray) -> PolynomialLoad:
     """Return a load with the derivatives of its table."""
     return PolynomialLoad(forms, table, polynomial.slopes(table), angle)
@@ -95,7 +115,7 @@ def _local(load: PolynomialLoad, state: FloatArray) -> FloatArray:
 
 def span_load(
     lines: Sequence[Line], sections_of_lines: Sections, weight: FloatArray, fields: FloatArray, model: AerodynamicModel
-) -> PolynomialLoad:
+) -> SpanLoad:
     """Return the load, point by point along the span, for any set of shapes.
 
     Parameters
@@ -110,8 +130,7 @@ def span_load(
 
     Returns
     -------
-    PolynomialLoad
-        With leading axes (lines, groups) and one point for every quadrature point.
+    SpanLoad
     """
     points = merge_axes(fields, -2)
     diameter = np.array([line.conductor.diameter for line in lines])[:, None, None]
@@ -129,7 +148,12 @@ def span_load(
     )
     arm = np.concatenate([np.ones((len(lines), 1, 1, 2)), diameter[..., None]], axis=-1)
     outputs = np.moveaxis(points, -1, 2) * (strength[..., None] * arm)[..., None, :]
-    return polynomial_load(forms, outputs @ local[:, None], angle)
+    return SpanLoad(forms, outputs, local[:, None], angle)
+
+
+def by_points(load: SpanLoad) -> PolynomialLoad:
+    """Return the load with leading axes (lines, groups) and one point for every quadrature point."""
+    return polynomial_load(load.forms, load.table, load.angle)
 
 
 def span_angles(lines: Sequence[Line], sections_of_lines: Sections, fields: FloatArray) -> FloatArray:
@@ -155,13 +179,12 @@ def angle_forms(fields: FloatArray, diameter: FloatArray, factor: FloatArray) ->
     return np.moveaxis(np.concatenate([theta, rates], axis=2), -1, 2)
 
 
-def integrate_along_span(load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
+def integrate_along_span(load: SpanLoad, active: Sequence[int]) -> PolynomialLoad:
     """Integrate a load along the span, as polynomials in the components of (q, q'/U) that it depends on.
 
     Parameters
     ----------
-    load : PolynomialLoad
-        With one point for every quadrature point.
+    load : SpanLoad
     active : sequence of int
         Indices into the 2 m components; the forms must vanish for all others.
 
@@ -173,34 +196,35 @@ def integrate_along_span(load: PolynomialLoad, active: Sequence[int]) -> Polynom
     return _of_components(polynomial.substitute(load.table, load.forms[..., list(active)]), load, active)
 
 
-def integrate_each(load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
+def integrate_each(load: SpanLoad, active: Sequence[int]) -> PolynomialLoad:
     """Integrate a load along the span whose local variable l depends on the component active[l] of (q, q'/U) alone.
 
     Parameters and result are those of `integrate_along_span`. Each monomial only takes a factor, so this is far faster.
     """
     factors = np.stack([load.forms[..., i, component] for i, component in enumerate(active)], axis=-1)
-    table = (load.table * polynomial.powers(factors)[..., None, :]).sum(axis=-3)
+    # Side by side in memory, so that one product sums over points and loads.
+    by_component = load.coefficients * np.ascontiguousarray(polynomial.powers(factors))[..., None, :]
+    table = merge_axes(load.outputs.swapaxes(-3, -2), -2) @ merge_axes(by_component, -3, -2)
     return _of_components(table, load, active)
 
 
-def _of_components(table: FloatArray, load: PolynomialLoad, active: Sequence[int]) -> PolynomialLoad:
+def _of_components(table: FloatArray, load: SpanLoad, active: Sequence[int]) -> PolynomialLoad:
     select = np.eye(load.forms.shape[-1])[list(active)]
     forms = np.broadcast_to(select, (*table.shape[:-2], 1, *select.shape))
     return polynomial_load(forms, table[..., None, :, :], load.angle)
 
 
-def cheapest_load(load: PolynomialLoad) -> PolynomialLoad:
+def cheapest_load(load: SpanLoad) -> PolynomialLoad:
     """Return a load of one polynomial in all components of (q, q'/U), where that costs less than all its points.
 
     The number of its monomials grows with the third power of the number of components, so it pays for few coordinates.
-    load: leading axes (lines, groups), with one point for every quadrature point.
     """
     points, local, components = load.forms.shape[-3:]
     coordinates = load.forms.any(axis=tuple(range(load.forms.ndim - 1))).reshape(2, -1).any(axis=0)  # no relief
     active = np.flatnonzero(np.tile(coordinates, 2)).tolist()
     one, each = (_products(variables, components) for variables in (len(active), local))
     if one > WORTH * points * each:
-        return load
+        return by_points(load)
     # One line after another, because the products of forms at all points of a stack would take much memory.
     lines = zip(load.table, load.forms[..., active], strict=True)
     return _of_components(np.stack([polynomial.substitute(*line) for line in lines]), load, active)
@@ -247,13 +271,13 @@ def published_load(
     return polynomial_load(form[..., None, None, :], table[..., None, :, :], angle)
 
 
-def of_all_members(load: PolynomialLoad) -> PolynomialLoad:
+def of_all_members(load: SpanLoad) -> SpanLoad:
     """Join the loads on the points of members (members, groups) to that on all points of their assembly (1, groups)."""
 
     def joined(values: FloatArray) -> FloatArray:
         return np.concatenate(list(values), axis=1)[None]
 
-    return PolynomialLoad(*(joined(getattr(load, field.name)) for field in fields(load)))
+    return SpanLoad(*(joined(getattr(load, field.name)) for field in fields(load)))
 
 
 def take_load(load: PolynomialLoad, index: Any) -> PolynomialLoad:

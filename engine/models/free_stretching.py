@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
+from engine.mechanics.finite_elements import padded_positions
 from engine.spec import CrossSection, Line
 
 NEGLIGIBLE = 1e-12  # of the largest eigenvalue: rounding in the sums over a regular bundle
@@ -82,13 +83,10 @@ def shares(lines: Sequence[Line]) -> FloatArray:
 
     n is the largest number of sub-conductors; where there are fewer, the mean stands for the others.
     """
-    result = np.zeros((len(lines), max(len(line.bundle.positions) for line in lines), 3))
-    for line, own in zip(lines, result, strict=True):
-        position = np.array(line.bundle.positions)
-        half_square = 0.5 * (position**2).sum(axis=1, keepdims=True)
-        share = np.append(position, half_square, axis=1)
-        own[: len(share)] = share - share.mean(axis=0)
-    return result
+    positions, present = padded_positions(lines)
+    share = np.append(positions, 0.5 * (positions**2).sum(axis=-1, keepdims=True), axis=-1)
+    mean = share.sum(axis=1, keepdims=True) / present.sum(axis=1)[:, None, None]
+    return np.where(present[..., None], share - mean, 0.0)
 
 
 def own_stiffness(lines: Sequence[Line], yoke_stiffness: FloatArray, effective_length: FloatArray) -> FloatArray:

@@ -7,11 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.arrays import FloatArray
-from engine.mechanics.finite_elements import FIELDS, Matrices, device_damping
+from engine.arrays import FloatArray, merge_axes
+from engine.mechanics.finite_elements import FIELDS, device_damping
 from engine.mechanics.modes import DirectionalShapes, at_points
 from engine.models.aerodynamic_load import (
     PolynomialLoad,
+    SpanLoad,
+    by_points,
     cheapest_load,
     integrate_along_span,
     integrate_each,
@@ -72,7 +74,7 @@ def hybrid_model(
     """
     relief = _relief(discretization, loops, analysis)
     basis = _basis(shapes.nodal[:, :, :, None], relief)
-    system = _of_each_group(discretization.matrices)
+    system = discretization.matrices.stiffness, discretization.matrices.mass
     mass, stiffness, _ = condensed(system, basis, 1, analysis.longitudinal_inertia)
     squares = diagonals(stiffness) / diagonals(mass)
     selected = [shapes.loops.index(k) for k in loops]
@@ -88,8 +90,9 @@ def hybrid_model(
     fields = _with_relief(discretization, nodal, None if relief is None else np.zeros_like(relief))
     damping = diagonal_matrices(rate * diagonals(mass))  # (11)
     damping += device_damping(discretization.lines, discretization.profile, fields)
-    load = _hybrid_load(discretization, fields, analysis) if whole else no_load(mass.shape)
-    unexpanded = load_as_it_stands(discretization, at_points(discretization.matrices, fields), analysis)
+    values = at_points(discretization.matrices, fields)
+    load = _hybrid_load(discretization, values, analysis) if whole else no_load(mass.shape)
+    unexpanded = load_as_it_stands(discretization, values, analysis)
     moving = _with_relief(discretization, nodal, relief)
     stretching = _stretching(discretization, moving, analysis) if whole else None
     direction = np.arange(fields.shape[2]) % 3
@@ -112,7 +115,7 @@ def joint_model(
     relief = _relief(discretization, loops, analysis)
     selected = [shapes.loops.index(k) for k in loops]
     basis = _basis(np.moveaxis(shapes.nodal[:, selected], 1, 2)[:, None], relief)
-    system = _of_each_group(discretization.matrices)
+    system = discretization.matrices.stiffness, discretization.matrices.mass
     mass, stiffness = (m[:, 0] for m in condensed(system, basis, len(loops), analysis.longitudinal_inertia)[:2])
     nodal = np.stack([model.shapes[:, :3] for model in alone], axis=2).reshape(
         len(mass), -1, *alone[0].shapes.shape[-2:]
@@ -123,14 +126,14 @@ def joint_model(
         own = np.append(own, diagonals(alone[0].damping)[:, 3:], axis=-1)
     coupled = device_damping(discretization.lines, discretization.profile, fields)  # in `own` as well
     values = at_points(discretization.matrices, fields)
-    load = span_load(
+    along_span = span_load(
         discretization.lines,
         discretization.sections,
         discretization.matrices.weight,
         values[:, None],
         analysis.aerodynamic_model,
     )
-    load = load if analysis.load_stands else cheapest_load(load)
+    load = by_points(along_span) if analysis.load_stands else cheapest_load(along_span)
     unstable = np.any([model.statically_unstable for model in alone], axis=0)
     return ReducedModel(
         mass=mass,
@@ -202,15 +205,12 @@ def _basis(nodal: FloatArray, relief: FloatArray | None) -> FloatArray:
     return np.append(basis, np.broadcast_to(relief[:, None, None], (lines, groups, 1, nodes * FIELDS)), axis=-2)
 
 
-def _of_each_group(system: Matrices) -> tuple[FloatArray, FloatArray]:
-    """Return K and M with an axis for groups: (lines, 1, freedoms, freedoms) each."""
-    return system.stiffness[:, None], system.mass[:, None]
-
-
 def condensed(
     system: tuple[FloatArray, FloatArray], basis: FloatArray, longitudinal: int, inertia: LongitudinalInertia
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Project K and M onto a basis (..., coordinates, freedoms) and condense its first ones, f_u, eqs. (18)-(20).
+    """Project K and M onto bases (..., groups, coordinates, freedoms) and condense their first ones, eqs. (18)-(20).
+
+    system: K and M, (..., freedoms, freedoms) each; longitudinal: how many coordinates come first, those of f_u.
 
     Where their inertia counts, each vertical shape moves with its own f_u as in the mode that both come from; the
     static condensation would be off by a third of a percent where longitudinal and vertical frequencies come close.
@@ -221,7 +221,8 @@ def condensed(
     moving : (..., kept, coordinates)
         The motion of the basis in each coordinate that is kept.
     """
-    stiffness, mass = (basis @ matrix @ basis.swapaxes(-1, -2) for matrix in system)
+    rows = merge_axes(basis, -3, -2)  # of all groups, so that a matrix is read once
+    stiffness, mass = ((rows @ matrix).reshape(basis.shape) @ basis.swapaxes(-1, -2) for matrix in system)
     along, across = slice(longitudinal), slice(longitudinal, None)
     follow = np.asarray(-np.linalg.solve(stiffness[..., along, along], stiffness[..., along, across]))
     kept = follow.shape[-1]
@@ -242,10 +243,10 @@ def _stretching(discretization: Discretization, moving: FloatArray, analysis: An
     return stretching_of(discretization, moving)
 
 
-def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: Analysis) -> PolynomialLoad:
-    values = at_points(discretization.matrices, nodal)
+def _hybrid_load(discretization: Discretization, values: FloatArray, analysis: Analysis) -> PolynomialLoad:
+    """Return the load on coordinates whose fields at the quadrature points are (lines, groups, m, 3, ...)."""
     if analysis.load_stands:  # nothing but the angle of attack is read
-        shape = (*nodal.shape[:3], nodal.shape[2])
+        shape = (*values.shape[:3], values.shape[2])
         return no_load(shape, span_angles(discretization.lines, discretization.sections, values))
     if analysis.closure is Closure.PUBLISHED:
         return published_load(
@@ -262,10 +263,10 @@ def _hybrid_load(discretization: Discretization, nodal: FloatArray, analysis: An
         values,
         analysis.aerodynamic_model,
     )
-    return integrated(load, nodal.shape[2], analysis, turned=bool(discretization.profile.tilt.any()))
+    return integrated(load, values.shape[2], analysis, turned=bool(discretization.profile.tilt.any()))
 
 
-def integrated(load: PolynomialLoad, coordinates: int, analysis: Analysis, *, turned: bool) -> PolynomialLoad:
+def integrated(load: SpanLoad, coordinates: int, analysis: Analysis, *, turned: bool) -> PolynomialLoad:
     """Integrate the load on f_v, f_w and f_theta, the first ones of some coordinates, along the span.
 
     turned: whether the plane of the sag is, so that the rates of both f_v and f_w make each velocity.

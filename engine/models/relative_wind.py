@@ -13,6 +13,7 @@ from math import comb
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merge_axes
+from engine.mechanics.finite_elements import bundle_sums
 from engine.numerics import polynomial
 from engine.spec import AerodynamicModel, Line
 
@@ -27,9 +28,9 @@ _Series = dict[tuple[int, ...], float]
 
 def arm_scale(lines: Sequence[Line]) -> FloatArray:
     """Return l of each line, the root of the mean square of r_i plus that of half a diameter: (lines,) [m]."""
-    squares = [np.square(line.bundle.positions).sum(axis=-1).mean() for line in lines]
+    count, _, _, y_y, z_z, _ = bundle_sums(lines)
     halves = np.array([0.5 * line.conductor.diameter for line in lines])
-    return np.asarray(np.sqrt(squares + halves**2))
+    return np.asarray(np.sqrt((y_y + z_z) / count + halves**2))
 
 
 def local_motion_forms(fields: FloatArray, scale: FloatArray, factor: FloatArray) -> FloatArray:

@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray, merge_axes
+from engine.arrays import FloatArray, IntArray, merge_axes, take_rows
 from engine.mechanics.cross_sections import Sections
+from engine.mechanics.finite_elements import turned_sums
 from engine.mechanics.interpolation import element_nodes, section_slopes, shape_functions
 from engine.mechanics.static_profile import StaticProfile
 from engine.models.discretization import Discretization
@@ -106,9 +107,8 @@ def stretching_of(
     lines, profile, section_points, _ = discretization.parts
     at = slope_points(lines, profile, section_points)
     slopes = merge_axes(_slopes_at(at, nodal), -2)  # (lines, groups, m, 3, points)
-    offsets = [_offsets(line, turn) for line, turn in zip(lines, section_points.twist, strict=True)]
     stiffness = span_stiffness(lines, profile, at)[:, None, None, None]
-    linear, square = _stretches(at, slopes, offsets)
+    linear, square = _stretches(at, slopes, _mean_offset(lines, section_points.twist))
     if pulled is not None:
         linear = linear + pulled
     count = np.array([len(line.bundle.positions) for line in lines])
@@ -117,8 +117,8 @@ def stretching_of(
     free = np.array([has_own_tensions(line) for line in lines])
     rigid = np.flatnonzero((count > 1) & ~free)
     if rigid.size:
-        some, here = [lines[i] for i in rigid], [offsets[i] for i in rigid]
-        table[rigid] += _local_table(some, _take_points(at, rigid), slopes[rigid], here)
+        some, here = [lines[i] for i in rigid], [_offsets(lines[i], section_points.twist[i]) for i in rigid]
+        table[rigid] += _local_table(some, take_rows(at, rigid), slopes[rigid], here)
     if free.any():
         own, forms = _own_stretching(discretization, np.flatnonzero(free), at, nodal)
         table[free] += own
@@ -214,25 +214,26 @@ def _offsets(line: Line, twist: FloatArray) -> FloatArray:
     return np.stack([-(s * y + c * z), c * y - s * z, square], axis=-1)
 
 
-def _stretches(at: SlopePoints, slopes: FloatArray, offsets: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Return the linear and the square stretch of the mean sub-conductor: (lines, groups, m), (lines, groups, m, m)."""
-    mean = np.stack([offset.mean(axis=1) for offset in offsets])  # (lines, points, 3)
+def _mean_offset(lines: Sequence[Line], twist: FloatArray) -> FloatArray:
+    """Return the mean of `_offsets` over the sub-conductors at points with a twist [rad]: (lines, 3, points)."""
+    n, s_y, s_z, s_yy, s_zz, _ = merge_axes(turned_sums(lines, twist), -2)
+    return np.asarray(np.stack([-s_z, s_y, 0.5 * (s_yy + s_zz)], axis=1) / n[:, None])
+
+
+def _stretches(at: SlopePoints, slopes: FloatArray, mean: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the linear and square stretch of the sub-conductor with the mean offset: (lines, groups, m[, m])."""
     weight = merge_axes(at.weight / at.direction[..., 0], -2)
-    curve = merge_axes(at.direction[..., 1:], -3, -2)
-    levers = merge_axes(at.section_slopes, -3, -2)
-    row = np.concatenate([curve, (levers * mean[..., :TWIST]).sum(axis=-1, keepdims=True)], axis=-1)
-    linear = np.einsum("lgmfp,lpf,lp->lgm", slopes, row, weight, optimize=True)
-    metric = np.zeros((*weight.shape, SLOPES, SLOPES))
-    metric[...] = np.eye(SLOPES)
-    metric[..., :TWIST, TWIST] = metric[..., TWIST, :TWIST] = mean[..., :TWIST]
-    metric[..., TWIST, TWIST] = 2.0 * mean[..., TWIST]
-    metric *= weight[..., None, None]
-    square = np.einsum("lgafp,lpfh,lgbhp->lgab", slopes, metric, slopes, optimize=True)
-    return np.asarray(linear), np.asarray(square)
-
-
-def _take_points(at: SlopePoints, lines: IntArray) -> SlopePoints:
-    return SlopePoints(*(getattr(at, field.name)[lines] for field in fields(at)))
+    curve, levers = (merge_axes(x, -3, -2).swapaxes(-1, -2) for x in (at.direction[..., 1:], at.section_slopes))
+    row = np.append(curve, (levers * mean[:, :TWIST]).sum(axis=1, keepdims=True), axis=1) * weight[:, None]
+    metric = np.zeros((len(mean), SLOPES, SLOPES, weight.shape[-1]))
+    metric[...] = np.eye(SLOPES)[..., None]
+    metric[:, :TWIST, TWIST] = metric[:, TWIST, :TWIST] = mean[:, :TWIST]
+    metric[:, TWIST, TWIST] = 2.0 * mean[:, TWIST]
+    metric *= weight[:, None, None]
+    weighted = (metric[:, None, None] * slopes[..., None, :, :]).sum(axis=-2)
+    flat = merge_axes(slopes, -2)
+    linear = flat @ merge_axes(row, -2)[:, None, :, None]
+    return linear[..., 0], merge_axes(weighted, -2) @ flat.swapaxes(-1, -2)
 
 
 def _own_stretching(
@@ -242,7 +243,7 @@ def _own_stretching(
 
     free: which lines; the table has the shape (free lines, groups, m, monomials).
     """
-    lines, points, moved = [discretization.lines[i] for i in free], _take_points(at, free), nodal[free]
+    lines, points, moved = [discretization.lines[i] for i in free], take_rows(at, free), nodal[free]
     angle = np.zeros(nodal.shape[-1]) if discretization.twist is None else discretization.twist.angle[free, None, None]
     twist, turn = moved[..., TWIST, :], np.nan_to_num(angle)
     turning = np.stack([np.cos(turn) * twist, np.sin(turn) * twist], axis=-2)

@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 
 from engine.arrays import FloatArray
 from engine.mechanics.modes import at_points
-from engine.models.aerodynamic_load import force, force_gradient, integrate_along_span, integrate_each, span_load
+from engine.models.aerodynamic_load import (
+    by_points,
+    force,
+    force_gradient,
+    integrate_along_span,
+    integrate_each,
+    span_load,
+)
 from engine.models.reduced_model import ReducedModel
 from engine.spec import AerodynamicModel, Aerodynamics, AirflowSpoiler, Analysis, Bundle, IceSegment, Line, Wind
 from tests.builders import discretized, finite_element, hybrid, random_line, source_line
@@ -161,7 +168,7 @@ def test_integrated_load_is_the_pointwise_one() -> None:
     active = (2, 3, 5)
     once = integrate_along_span(pointwise, active)
     state = 0.2 * np.random.default_rng(2).normal(size=(1, 1, 7, 6))
-    expected = force(pointwise, state)
+    expected = force(by_points(pointwise), state)
     assert force(once, state) == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())
     assert force(model.load, state[:, 0]) == pytest.approx(expected[:, 0], rel=1e-10, abs=1e-9)
 
@@ -198,7 +205,7 @@ def test_finite_element_load_is_one_polynomial_where_that_costs_less(
         (line,), discretization.sections, discretization.matrices.weight, values, analysis.aerodynamic_model
     )
     state = 0.2 * np.random.default_rng(8).normal(size=(1, 5, 2 * model.mass.shape[-1]))
-    expected = force(pointwise, state[:, None])[:, 0]
+    expected = force(by_points(pointwise), state[:, None])[:, 0]
     assert force(model.load, state) == pytest.approx(expected, rel=1e-9, abs=1e-11 * np.abs(expected).max())
 
 
