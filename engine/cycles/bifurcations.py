@@ -203,16 +203,15 @@ def _hopf_points(
         which, where = np.nonzero(reached)
         number[where] = families[which]
     index = hopf[number >= 0]
-    member, speed = crossings.member[index], crossings.wind_speed[index]
     return Bifurcations(
-        member=member,
+        member=crossings.member[index],
         branch=number[number >= 0],
         kind=filled(index.size, Kind.HOPF),
-        parameter=speed,
+        parameter=crossings.wind_speed[index],
         angular_frequency=crossings.angular_frequency[index],
         second_frequency=np.full(index.size, np.nan),
         coordinate=crossings.coordinate[index],
-        uncertainty=crossing_error(model, member, speed),
+        uncertainty=crossing_error(model, crossings, index),
         may_end_stability=np.ones(index.size, dtype=np.bool_),
     )
 

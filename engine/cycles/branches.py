@@ -67,7 +67,7 @@ def follow_from_hopf_points(
         Whether those that start beyond that are followed on where they enter it, see `entering` and `followed_into`.
     """
     member, speed = crossings.member[hopf], crossings.wind_speed[hopf]
-    shape = critical_modes(model, member, speed)
+    shape = critical_modes(model, crossings, hopf)
     first = np.zeros((hopf.size, shape.shape[-1], 2 * harmonics + 1))
     first[..., 1], first[..., 2] = shape.real, -shape.imag
     hopf_wind_speed = Orbits(first, crossings.angular_frequency[hopf], speed)

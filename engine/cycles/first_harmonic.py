@@ -14,6 +14,7 @@ import numpy as np
 from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
 from engine.cycles.harmonic_balance import Orbits, basis, linearized
 from engine.kernels import compiled
+from engine.models.complex_modes import complex_modes
 from engine.models.critical_wind_speeds import at_wind, state_matrices
 from engine.models.reduced_model import ReducedModel, diagonals, take, with_samples
 from engine.models.stretching import restoring_force
@@ -230,7 +231,7 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     m = model.mass.shape[-1]
     weight = 1.0 / np.sqrt(model.modal_masses)[member]
     frequency = values.imag[member, mode]
-    shape = _complex(_unstable_modes(matrices[member], values[member, mode]) * weight)
+    shape = _complex(complex_modes(matrices[member], values[member, mode]) * weight)
     linear, cubic = _work(model, member, wind_speed[member], frequency, shape)
     grows = (linear > 0.0) & (cubic < 0.0)
     size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
@@ -257,22 +258,6 @@ def stiffened_frequencies(
     work = (restoring_force(here.stretching, q) * q).sum(axis=(-1, -2))
     inertia = ((q @ here.mass) * q).sum(axis=(-1, -2))
     return np.asarray(np.sqrt(frequency**2 + np.maximum(work / inertia, 0.0)))
-
-
-def _unstable_modes(matrices: FloatArray, values: ComplexArray) -> ComplexArray:
-    """Return the displacement part, of unit norm, of the eigenvectors to eigenvalues (k,): (k, m).
-
-    The matrices (k, 2 m, 2 m) are A of y' = A y with y = (q, q'). Two steps of inverse iteration close to each
-    eigenvalue are accurate enough for a guess.
-    """
-    m = matrices.shape[-1] // 2
-    beside = values[:, None, None] * (1.0 + 1e-9)
-    pencil = beside**2 * np.eye(m) - beside * matrices[:, m:, m:] - matrices[:, m:, :m]
-    vector = np.ones((values.size, m, 1), dtype=np.complex128)
-    for _ in range(2):
-        vector = np.linalg.solve(pencil, vector)
-        vector /= np.linalg.norm(vector, axis=1, keepdims=True)
-    return _complex(vector[..., 0])
 
 
 def _complex(values: AnyArray) -> ComplexArray:

@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
+from engine.models.complex_modes import complex_modes, followed_eigenvalues
 from engine.models.reduced_model import ReducedModel, gradient_at_rest
 
 NEARLY_IMAGINARY = (
@@ -115,23 +116,36 @@ def critical_wind_speeds(model: ReducedModel, limit: float) -> Crossings:
     diverging = _divergences(model, usable, limit)
     member = np.concatenate([usable[oscillating[0]], diverging[0]])
     speed = np.concatenate([oscillating[1], diverging[1]])
-    oscillation = np.arange(member.size) < oscillating[0].size
+    frequency = np.concatenate([oscillating[2], np.zeros(diverging[0].size)])
     order = np.lexsort((speed, member))
-    member, speed, oscillation = member[order], speed[order], oscillation[order]
-    return _classified(_select(matrices, member), member, speed, oscillation, limit)
+    member, speed, frequency = member[order], speed[order], frequency[order]
+    return _classified(_select(matrices, member), member, speed, frequency, limit)
 
 
-def critical_modes(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> ComplexArray:
-    """Return the mode nearest to the imaginary axis at wind speeds (k,) of models (k,): (k, m), not normalized."""
-    _, _, vector = _nearest_pair(_select(state_matrices(model), member), wind_speed)
-    m = model.mass.shape[-1]
-    return np.asarray(vector[:, :m] / np.sqrt(model.modal_masses)[member])
+def critical_modes(model: ReducedModel, crossings: Crossings, index: IntArray) -> ComplexArray:
+    """Return the modes of some of the Hopf points (k,): (k, m), not normalized; the largest coordinate is real."""
+    matrices, speed, value = _at_hopf_points(model, crossings, index)
+    mode = complex_modes(at_wind(matrices, speed), value)
+    largest = np.take_along_axis(mode, np.abs(mode).argmax(axis=-1)[:, None], axis=-1)
+    return np.asarray(mode * largest.conj() / np.sqrt(model.modal_masses)[crossings.member[index]])
 
 
-def crossing_error(model: ReducedModel, member: IntArray, wind_speed: FloatArray) -> FloatArray:
-    """Return the size of one more Newton step on the growth rate at crossings (k,): (k,) [m/s]."""
-    value, slope, _ = _nearest_pair(_select(state_matrices(model), member), wind_speed)
+def crossing_error(model: ReducedModel, crossings: Crossings, index: IntArray) -> FloatArray:
+    """Return the size of one more Newton step on the growth rate at some of the Hopf points (k,): (k,) [m/s]."""
+    value, slope = _followed(*_at_hopf_points(model, crossings, index))
     return np.asarray(np.abs(value.real / slope.real))
+
+
+def _at_hopf_points(
+    model: ReducedModel, crossings: Crossings, index: IntArray
+) -> tuple[StateMatrices, FloatArray, ComplexArray]:
+    """Return state matrices, wind speeds and imaginary eigenvalues of some of the Hopf points: (k, ...) each."""
+    matrices = _select(state_matrices(model), crossings.member[index])
+    return matrices, crossings.wind_speed[index], _imaginary(crossings.angular_frequency[index])
+
+
+def _imaginary(angular_frequency: FloatArray) -> ComplexArray:
+    return np.asarray(1j * angular_frequency, dtype=np.complex128)
 
 
 def unstable_pairs(values: ComplexArray) -> IntArray:
@@ -143,42 +157,45 @@ def unstable_pairs(values: ComplexArray) -> IntArray:
 
 def bialternate_sum(matrix: FloatArray) -> FloatArray:
     """Return the bialternate sum 2 A * I of (..., n, n): (..., n(n-1)/2, n(n-1)/2), eigenvalues lambda_i + lambda_j."""
-    projection, injection = _antisymmetric(matrix.shape[-1])
     n = matrix.shape[-1]
-    identity = np.eye(n)
-    total = matrix[..., :, None, :, None] * identity[:, None, :]
-    total = total + identity[:, None, :, None] * matrix[..., None, :, None, :]
-    flat = total.reshape(*matrix.shape[:-2], n * n, n * n)
-    return np.asarray(projection @ flat @ injection)
+    _, column = np.tril_indices(n, -1)
+    place, sign = _shared_indices(n)
+    total = np.take(matrix.reshape(*matrix.shape[:-2], n * n), place, axis=-1) * sign
+    total[..., np.arange(column.size), np.arange(column.size)] += matrix[..., column, column]
+    return np.asarray(total)
 
 
 @lru_cache
-def _antisymmetric(n: int) -> tuple[FloatArray, FloatArray]:
-    """Return the maps between antisymmetric pairs (i > j) and the Kronecker square."""
-    rows, columns = np.tril_indices(n, -1)
-    injection = np.zeros((n * n, rows.size))
-    injection[rows * n + columns, np.arange(rows.size)] = 1.0
-    injection[columns * n + rows, np.arange(rows.size)] = -1.0
-    return 0.5 * injection.T, injection
+def _shared_indices(n: int) -> tuple[IntArray, FloatArray]:
+    """Return which entry of A, and with which sign, couples two pairs i > j and k > m that share an index.
+
+    Shape (pairs, pairs) each. Equal pairs share both of theirs; the entry is then that of the first.
+    """
+    k, m = np.tril_indices(n, -1)
+    i, j = k[:, None], m[:, None]
+    shared = [j == m, i == k, j == k, i == m]
+    place = np.select(shared, [i * n + k, j * n + m, i * n + m, j * n + k])
+    return place, np.select(shared, [1.0, 1.0, -1.0, -1.0])
 
 
 def _select(matrices: StateMatrices, members: IntArray) -> StateMatrices:
     return StateMatrices(matrices.constant[members], matrices.linear[members], matrices.quadratic[members])
 
 
-def _oscillations(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
-    """Return members and wind speeds of all imaginary pairs, refined by Newton's method on the growth rate."""
+def _oscillations(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return members, wind speeds and frequencies of imaginary pairs, refined by Newton's method on the growth rate."""
     member, speed = _singular_speeds(matrices, limit)
-    value, _, _ = _nearest_pair(_select(matrices, member), speed)
+    value = _nearest_pairs(at_wind(_select(matrices, member), speed))
     # Two real eigenvalues of opposite sign also sum to zero; such a speed has no imaginary pair, unless by chance.
     imaginary = np.abs(value.real) < NEARLY_IMAGINARY * np.abs(value.imag)
-    member, speed = member[imaginary], speed[imaginary]
+    member, speed, value = member[imaginary], speed[imaginary], value[imaginary]
     here = _select(matrices, member)
     for _ in range(2):
-        value, slope, _ = _nearest_pair(here, speed)
-        speed = speed - value.real / np.where(slope.real == 0.0, np.inf, slope.real)
+        value, slope = _followed(here, speed, value)
+        step = -value.real / np.where(slope.real == 0.0, np.inf, slope.real)
+        speed, value = speed + step, value + slope * step
     valid = (speed > 0.0) & (speed <= limit) & _distinct(member, speed)
-    return member[valid], speed[valid]
+    return member[valid], speed[valid], value.imag[valid]
 
 
 def _distinct(member: IntArray, speed: FloatArray) -> BoolArray:
@@ -191,33 +208,35 @@ def _distinct(member: IntArray, speed: FloatArray) -> BoolArray:
 
 
 def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
-    """Solve (B_0 + U B_1 + U^2 B_2) v = 0 for real U in (0, limit] as an eigenproblem in limit/U."""
+    """Solve (B_0 + U B_1 + U^2 B_2) v = 0 for real U in (0, limit] as an eigenproblem in limit/U.
+
+    Its unknowns are v limit/U, and v only where B_2 has a column: the wind has a stiffness for few coordinates.
+    """
     b_0, b_1, b_2 = (bialternate_sum(a) for a in (matrices.constant, matrices.linear, matrices.quadratic))
-    size = b_0.shape[-1]
-    problem = np.zeros((b_0.shape[0], 2 * size, 2 * size))
-    problem[:, :size, size:] = np.eye(size)
-    problem[:, size:, :size] = -np.linalg.solve(b_0, b_2) * limit**2
-    problem[:, size:, size:] = -np.linalg.solve(b_0, b_1) * limit
-    inverse = eigenvalues(problem) if problem.size else np.zeros((0, 2 * size), dtype=np.complex128)
+    kept = np.flatnonzero(b_2.any(axis=(0, 1)))
+    count, size = kept.size, kept.size + b_0.shape[-1]
+    problem = np.zeros((b_0.shape[0], size, size))
+    problem[:, np.arange(count), count + kept] = 1.0
+    wind = np.concatenate([b_2[..., kept] * limit**2, b_1 * limit], axis=-1)
+    problem[:, count:] = -np.linalg.solve(b_0, wind)
+    inverse = eigenvalues(problem) if problem.size else np.zeros((0, size), dtype=np.complex128)
     real = (np.abs(inverse.imag) < 1e-6 * np.abs(inverse)) & (inverse.real > 1.0 - 1e-9)
     member, column = np.nonzero(real)
     return member, limit / inverse.real[member, column]
 
 
-def _nearest_pair(matrices: StateMatrices, speed: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return the eigenvalue nearest to the imaginary axis, its derivative by the wind speed, and its eigenvector."""
-    if speed.size == 0:
-        none = np.zeros(0, dtype=np.complex128)
-        return none, none, np.zeros((0, matrices.constant.shape[-1]), dtype=np.complex128)
-    values, vectors = np.linalg.eig(at_wind(matrices, speed))
-    values, vectors = np.asarray(values, dtype=np.complex128), np.asarray(vectors, dtype=np.complex128)
-    size = np.abs(values).max(axis=-1, keepdims=True)
-    distance = np.where(values.imag > 1e-9 * size, np.abs(values.real), np.inf)
-    nearest = distance.argmin(axis=-1)
-    slope = matrices.linear + 2.0 * speed[:, None, None] * matrices.quadratic
-    slopes = np.diagonal(np.linalg.solve(vectors, slope @ vectors), axis1=-2, axis2=-1)
-    row = np.arange(speed.size)
-    return values[row, nearest], slopes[row, nearest], vectors[row, :, nearest]
+def _nearest_pairs(matrices: FloatArray) -> ComplexArray:
+    """Return of each matrix (k, n, n) the eigenvalue above the real axis that is nearest to the imaginary one: (k,)."""
+    values = eigenvalues(matrices)
+    size = np.abs(values).max(axis=-1, keepdims=True, initial=0.0)
+    nearest = np.where(values.imag > 1e-9 * size, np.abs(values.real), np.inf).argmin(axis=-1)
+    return np.asarray(values[np.arange(nearest.size), nearest])
+
+
+def _followed(matrices: StateMatrices, speed: FloatArray, guess: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the eigenvalues next to guesses at wind speeds (k,), and their derivatives by the wind speed, (k,)."""
+    slopes = matrices.linear + 2.0 * speed[:, None, None] * matrices.quadratic
+    return followed_eigenvalues(at_wind(matrices, speed), slopes, guess)
 
 
 def _divergences(model: ReducedModel, usable: IntArray, limit: float) -> tuple[IntArray, FloatArray]:
@@ -236,32 +255,39 @@ def _classified(
     matrices: StateMatrices,
     member: IntArray,
     speed: FloatArray,
-    oscillation: BoolArray,
+    frequency: FloatArray,
     limit: float,
 ) -> Crossings:
-    """Return crossings with direction, frequency, dominant coordinate and number of unstable pairs above each."""
-    value, slope, vector = _nearest_pair(matrices, speed)
-    m = matrices.constant.shape[-1] // 2
+    """Return crossings with direction, dominant coordinate and number of unstable pairs above each.
+
+    frequency: (crossings,), 0 for a divergence [rad/s].
+    """
     same = member[1:] == member[:-1]
     following = np.where(np.append(same, False), np.append(speed[1:], limit), np.maximum(limit, speed * (1.0 + 1e-6)))
     preceding = np.where(np.append(False, same), np.append(0.0, speed[:-1]), 0.0)[: speed.size]
-    between = np.stack([0.5 * (preceding + speed), 0.5 * (speed + following[: speed.size])], axis=-1)
-    counts = unstable_pairs(eigenvalues(at_wind(matrices, between)))
-    onset = np.where(oscillation, slope.real > 0.0, counts[:, 1] > counts[:, 0])
-    null_vector = _null_vectors(matrices, speed)
-    shape = np.where(oscillation[:, None], np.abs(vector[:, :m]), null_vector)
+    after = unstable_pairs(eigenvalues(at_wind(matrices, 0.5 * (speed + following[: speed.size]))))
+    swinging, still = np.flatnonzero(frequency > 0.0), np.flatnonzero(frequency == 0.0)
+    here, turning = _select(matrices, swinging), _select(matrices, still)
+    onset, shape = np.zeros(speed.size, dtype=np.bool_), np.zeros((speed.size, matrices.constant.shape[-1] // 2))
+    value = _imaginary(frequency[swinging])
+    onset[swinging] = _followed(here, speed[swinging], value)[1].real > 0.0
+    shape[swinging] = np.abs(complex_modes(at_wind(here, speed[swinging]), value))
+    before = unstable_pairs(eigenvalues(at_wind(turning, 0.5 * (preceding + speed)[still])))
+    onset[still] = after[still] > before
+    shape[still] = _null_vectors(turning, speed[still])
     return Crossings(
         member=member,
         wind_speed=speed,
-        angular_frequency=np.where(oscillation, value.imag, 0.0),
+        angular_frequency=frequency,
         onset=onset,
-        oscillation=oscillation,
+        oscillation=frequency > 0.0,
         coordinate=(shape**2).argmax(axis=-1),
-        unstable_after=counts[:, 1],
+        unstable_after=after,
     )
 
 
 def _null_vectors(matrices: StateMatrices, speed: FloatArray) -> FloatArray:
+    """Return the sizes of the displacements to which A has no answer at wind speeds (k,): (k, m)."""
     m = matrices.constant.shape[-1] // 2
     _, _, right = np.linalg.svd(at_wind(matrices, speed)[:, m:, :m])
     return np.asarray(np.abs(right[:, -1, :]))
