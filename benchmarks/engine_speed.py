@@ -27,6 +27,7 @@ from engine.models.reduced_model import ReducedModel, take
 from engine.progress import finished
 from engine.result import Result
 from engine.spec import Analysis, Line, Model
+from worker.memory import settle
 
 HARMONICS = 5
 HIGHEST_WIND = 30.0  # m/s
@@ -190,6 +191,7 @@ def fleet(largest: int) -> Iterator[tuple[str, float]]:
     generator = np.random.default_rng(20260101)
     lines = [random_line(generator) for _ in range(min(largest, 2000))]
     analysed(lines[:STACK], STANDARD_JOB)
+    settle()
     rates, floors, gains = [], [], []
     for first in range(0, PARTS * STACK, STACK):
         part = lines[first : first + STACK]
@@ -215,6 +217,7 @@ def full_fleet() -> Iterator[tuple[str, float]]:
     """Yield lines per second and core under full physics, and their rate over that of the source's, taken in turn."""
     generator = np.random.default_rng(20260101)
     full, source = [], []
+    settle()
     for _ in range(PARTS):
         lines = [random_line(generator) for _ in range(STACK)]
         iced, analysis = under_full_physics(lines, STANDARD_JOB)

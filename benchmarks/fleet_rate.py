@@ -11,6 +11,7 @@ import numpy as np
 
 from benchmarks.engine_speed import STACK, STANDARD_JOB, analysed
 from benchmarks.lines import random_line, under_full_physics
+from worker.memory import settle
 
 SEED = 20260101
 
@@ -21,6 +22,7 @@ def fleet_rates() -> Iterator[tuple[str, float, float]]:
     lines = [random_line(generator) for _ in range(STACK)]
     for physics, job in (("full", under_full_physics(lines, STANDARD_JOB)), ("source", (lines, STANDARD_JOB))):
         analysed(*job)
+        settle()
         loop = _seconds(lambda: sum(range(10_000_000)))
         yield physics, STACK / _seconds(lambda job=job: analysed(*job)), loop  # type: ignore[misc]
 

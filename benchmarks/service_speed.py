@@ -37,6 +37,7 @@ from benchmarks.processor import seconds_by_role
 from engine.analysis import analyse_stack
 from engine.spec import Analysis, Line
 from tests.servers import free_port, postgres_server, redis_server
+from worker.memory import settle
 
 POSTS = 1000
 POST_RUNS = 9
@@ -122,8 +123,7 @@ def _engine_seconds(stacks: Sequence[list[Line]]) -> float:
     _, analysis = _specification(_documents(1)[0], schemas.Analysis.model_validate(STANDARD))
     for stack in stacks[:1]:
         _analyse(stack, analysis)
-    gc.collect()
-    gc.freeze()
+    settle()
     begin = time.perf_counter()
     for stack in stacks:
         _analyse(stack, analysis)

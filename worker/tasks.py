@@ -1,6 +1,5 @@
 """The Celery side of a worker: one thin task, and the process that runs the pool (`python -m worker.tasks`)."""
 
-import gc
 import os
 import signal
 from functools import cache
@@ -17,6 +16,7 @@ from app.runtime.processes import end_with_parent
 from app.runtime.settings import Settings, get_settings
 from app.storage.database import make_engine, session_factory
 from worker.execute import execute
+from worker.memory import settle
 from worker.sweep import call_next
 
 OWNER = "GALLOPING_WORKER_OWNER"
@@ -82,15 +82,6 @@ def load() -> None:
     configure_mappers()
 
 
-def freeze(**_: object) -> None:
-    """Exclude everything loaded so far from garbage collection: it lives as long as the process.
-
-    The engine creates no reference cycles, so most later objects are freed without collection.
-    """
-    gc.collect()
-    gc.freeze()
-
-
 def _mute_celery() -> None:
     """Drop what Celery prints about signals, on standard output, which reads as if it were said to whoever serves.
 
@@ -108,7 +99,7 @@ def _run_pool() -> None:
     telemetry.configure(settings, "worker")
     setup_logging.connect(_leave_logs)
     load()
-    worker_process_init.connect(freeze)
+    worker_process_init.connect(settle)
     worker_process_shutdown.connect(telemetry.finish)
     application = worker_application(settings, os.environ[OWNER])
     quiet = ["--without-gossip", "--without-mingle", "--without-heartbeat", "--hostname=galloping@%h"]

@@ -29,18 +29,6 @@ print({name for name in set(sys.modules) - before if name.split(".")[0] in ("eng
     assert printed(script) == "set()"
 
 
-def test_what_is_loaded_is_not_looked_through_again() -> None:
-    script = """
-import gc
-from worker.tasks import freeze, load
-load()
-before = len(gc.get_objects())
-freeze()
-print(before > 50_000, len(gc.get_objects()) < 1_000, gc.isenabled())
-"""
-    assert printed(script) == "True True True"
-
-
 def test_every_process_of_a_pool_freezes_what_it_has() -> None:
     script = """
 import gc, os
