@@ -214,7 +214,7 @@ def largest_reaches(motion: NodalMotion, member: IntArray, state: FloatArray) ->
     reach = np.empty((2, motions))
     published = motion.model is AerodynamicModel.PUBLISHED
     size = (members, motions, samples, nodes, width // 2, subconductors, published)
-    reaches(size, contiguous(motion.forms, arms, motion.diameter, member, state), reach)
+    reaches(size, contiguous(motion.forms, arms, motion.diameter, member, state.swapaxes(-1, -2)), reach)
     return reach
 
 

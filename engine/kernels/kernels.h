@@ -168,7 +168,7 @@ typedef struct {
 int integrate_flows(const Flows *flows);
 
 /* Arguments and results of find_reaches, laid out as engine.models.relative_wind.NodalMotion: forms (members, nodes, 4,
- * 2 m), arms (members, nodes, subconductors, 2), diameter (members); member (motions), state (motions, samples, 2 m),
+ * 2 m), arms (members, nodes, subconductors, 2), diameter (members); member (motions), state (motions, 2 m, samples),
  * finite; reach (2, motions). Where `published`, only the vertical velocity turns the wind. */
 typedef struct {
     ptrdiff_t motions, samples, nodes, subconductors;

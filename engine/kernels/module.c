@@ -330,7 +330,7 @@ static PyObject *reaches(PyObject *Py_UNUSED(self), PyObject *arguments)
         && (wanted.arms = REALS(arms, SIZE(members, nodes, wanted.subconductors, 2)))
         && (wanted.diameter = REALS(diameter, members)) && (wanted.member = INDICES(member, motions))
         && within(wanted.member, motions, members)
-        && (wanted.state = REALS(state, SIZE(motions, wanted.samples, width)))
+        && (wanted.state = REALS(state, SIZE(motions, width, wanted.samples)))
         && (wanted.reach = RESULT(reach, SIZE(2, motions)))) {
         Py_BEGIN_ALLOW_THREADS
         done = find_reaches(&wanted);

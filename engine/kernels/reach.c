@@ -9,51 +9,85 @@ enum { TURN, RISE, SWAY, TURNING, LOCAL }; /* Theta, V'/(U phi), W'/(U phi) and 
 /* Gather the states at LANES samples from one on, the last sample again beyond the last one. */
 WITHIN void gather(const Reaches *wanted, ptrdiff_t motion, ptrdiff_t sample, Lanes *state)
 {
-    const ptrdiff_t width = 2 * wanted->m;
-    for (int lane = 0; lane < LANES; lane++) {
-        const ptrdiff_t at = sample + lane < wanted->samples ? sample + lane : wanted->samples - 1;
-        for (ptrdiff_t v = 0; v < width; v++)
-            state[v][lane] = wanted->state[(motion * wanted->samples + at) * width + v];
+    const ptrdiff_t width = 2 * wanted->m, last = wanted->samples - 1;
+    for (ptrdiff_t v = 0; v < width; v++) {
+        const double *course = wanted->state + (motion * width + v) * wanted->samples;
+        for (ptrdiff_t lane = 0; lane < LANES; lane++)
+            state[v][lane] = course[sample + lane < last ? sample + lane : last];
     }
 }
 
 WITHIN Lanes larger(Lanes a, Lanes b) { return chosen(a > b, a, b); }
 
-/* Raise the largest size of the angle and the largest square of the velocity by those at a node. */
-WITHIN void reach_at_node(const Reaches *wanted, ptrdiff_t member, ptrdiff_t node, const Lanes *state, Lanes *largest)
+WITHIN Lanes size_of(Lanes a) { return larger(a, -a); }
+
+/* Return the product of a linear form with m numbers. */
+WITHIN Lanes sum_of(const double *form, const Lanes *numbers, ptrdiff_t m)
 {
-    const ptrdiff_t width = 2 * wanted->m, place = member * wanted->nodes + node;
-    const double *forms = wanted->forms + place * LOCAL * width, *arms = wanted->arms + place * wanted->subconductors * 2;
+    Lanes sum = {0};
+    for (ptrdiff_t v = 0; v < m; v++)
+        sum += form[v] * numbers[v];
+    return sum;
+}
+
+/* Return the largest number in all lanes. */
+WITHIN Lanes largest_of(Lanes a)
+{
+    double most = a[0];
+    for (int lane = 1; lane < LANES; lane++)
+        most = a[lane] > most ? a[lane] : most;
+    return (Lanes){0} + most;
+}
+
+/* Raise the largest size of the angle and the largest square of the velocity by those at a node. The angle
+ * turn - atan(across/along) lies between turn and turn - across/along: where neither is larger than the largest so far, it
+ * is not needed. */
+WITHIN void reach_at_node(const Reaches *wanted, ptrdiff_t member, ptrdiff_t node, ptrdiff_t m, const Lanes *state,
+                          Lanes *largest)
+{
+    const ptrdiff_t place = member * wanted->nodes + node, count = wanted->subconductors;
+    const double *forms = wanted->forms + place * LOCAL * 2 * m, *arms = wanted->arms + place * count * 2;
     const double half = 0.5 * wanted->diameter[member];
-    Lanes local[LOCAL] = {{0}, {0}, {0}, {0}};
-    for (int i = 0; i < LOCAL; i++)
-        for (ptrdiff_t v = 0; v < width; v++)
-            local[i] += forms[i * width + v] * state[v];
-    Lanes angle = local[TURN] - local[RISE] - half * local[TURNING];
-    for (ptrdiff_t i = 0; i < wanted->subconductors; i++) {
-        const Lanes rise = local[RISE] - arms[2 * i + 1] * local[TURNING];
-        const Lanes sway = local[SWAY] + arms[2 * i] * local[TURNING];
-        if (!wanted->published)
-            angle = local[TURN] - angle_of(rise + half * local[TURNING], 1.0 - sway);
-        largest[0] = larger(largest[0], larger(angle, -angle));
+    const Lanes turn = sum_of(forms, state, m);
+    Lanes rates[LOCAL];
+    for (int i = RISE; i < LOCAL; i++)
+        rates[i] = sum_of(forms + (2 * i + 1) * m, state + m, m);
+    if (wanted->published)
+        largest[0] = larger(largest[0], size_of(turn - rates[RISE] - half * rates[TURNING]));
+    const Masks small = size_of(turn) <= largest[0];
+    for (ptrdiff_t i = 0; i < count; i++) {
+        if (i > 0 && arms[2 * i] == arms[0] && arms[2 * i + 1] == arms[1])
+            break; /* the first one again: there are no more */
+        const Lanes rise = rates[RISE] - arms[2 * i + 1] * rates[TURNING];
+        const Lanes sway = rates[SWAY] + arms[2 * i] * rates[TURNING];
+        const Lanes across = rise + half * rates[TURNING], along = 1.0 - sway;
         largest[1] = larger(largest[1], rise * rise + sway * sway);
+        if (wanted->published || all_hold(small & (along > 0.0) & (size_of(turn * along - across) <= largest[0] * along)))
+            continue;
+        largest[0] = largest_of(larger(largest[0], size_of(turn - angle_of(across, along))));
     }
 }
 
-WIDE static void reach_of(const Reaches *wanted, ptrdiff_t motion, Lanes *state)
+WITHIN void reach_with(const Reaches *wanted, ptrdiff_t motion, ptrdiff_t m, Lanes *state)
 {
     Lanes largest[2] = {{0}, {0}};
     for (ptrdiff_t sample = 0; sample < wanted->samples; sample += LANES) {
         gather(wanted, motion, sample, state);
         for (ptrdiff_t node = 0; node < wanted->nodes; node++)
-            reach_at_node(wanted, wanted->member[motion], node, state, largest);
+            reach_at_node(wanted, wanted->member[motion], node, m, state, largest);
     }
-    double most[2] = {0.0, 0.0};
-    for (int i = 0; i < 2; i++)
-        for (int lane = 0; lane < LANES; lane++)
-            most[i] = largest[i][lane] > most[i] ? largest[i][lane] : most[i];
-    wanted->reach[motion] = most[0];
-    wanted->reach[wanted->motions + motion] = sqrt(most[1]);
+    wanted->reach[motion] = largest_of(largest[0])[0];
+    wanted->reach[wanted->motions + motion] = sqrt(largest_of(largest[1])[0]);
+}
+
+WIDE static void reach_of(const Reaches *wanted, ptrdiff_t motion, Lanes *state)
+{
+    if (wanted->m == 3) /* the hybrid model: the compiler unrolls loops of known length */
+        reach_with(wanted, motion, 3, state);
+    else if (wanted->m == 4) /* with a relief coordinate */
+        reach_with(wanted, motion, 4, state);
+    else
+        reach_with(wanted, motion, wanted->m, state);
 }
 
 int find_reaches(const Reaches *wanted)

@@ -62,8 +62,9 @@ class NodalMotion:
     """The motion at the nodes of a stack of models and what turns it into that of the sub-conductors.
 
     forms: (members, nodes, 4, 2 m), Theta, V'/(U phi), W'/(U phi) and Theta'/(U phi) [1/m] as linear forms in
-    (q, q'/U); arms: (members, nodes, n, 2), (y_i, z_i) of n sub-conductors, where there are fewer the first one again
-    [m]; diameter: (members,) [m]; model: which velocities change the relative wind.
+    (q, q'/U), the first in q alone and the others in q'/U alone; arms: (members, nodes, n, 2), (y_i, z_i) of n
+    sub-conductors, where there are fewer the first one again [m]; diameter: (members,) [m]; model: which velocities
+    change the relative wind.
     """
 
     forms: FloatArray
