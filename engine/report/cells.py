@@ -24,16 +24,24 @@ def finite_or_none(value: float) -> float | None:
 
 def numbers(column: FloatArray) -> list[float | None]:
     """Return the numbers of a column (rows,), None in place of those that are not finite."""
-    cells = column.astype(np.object_)
-    cells[~np.isfinite(column)] = None
-    values: list[float | None] = cells.tolist()
+    values: list[float | None] = column.tolist()
+    for row in np.flatnonzero(~np.isfinite(column)).tolist():
+        values[row] = None
     return values
 
 
-def filled_rows(kind: type[Row], columns: Mapping[str, Iterable[Any]]) -> Iterator[Row]:
-    """Yield rows of a frozen dataclass without slots from columns of some of its fields; the others are None.
+def filled_rows(kind: type[Row], columns: Mapping[str, Iterable[Any]], alike: Mapping[str, Any]) -> Iterator[Row]:
+    """Yield rows of a frozen dataclass without slots from columns of equal length; fields without a column are None.
 
     Its constructor sets every field by a call, which takes two to four times as long.
+
+    Parameters
+    ----------
+    kind : type
+    columns : mapping
+        Columns by the names of their fields.
+    alike : mapping
+        Cells that are the same in all rows.
 
     Raises
     ------
@@ -42,10 +50,11 @@ def filled_rows(kind: type[Row], columns: Mapping[str, Iterable[Any]]) -> Iterat
     """
     blank = dict.fromkeys(field.name for field in fields(kind))  # type: ignore[arg-type]
     names = tuple(columns)
-    if unknown := columns.keys() - blank.keys():
+    if unknown := (columns.keys() | alike.keys()) - blank.keys():
         raise AttributeError(f"{kind.__name__} has no fields {', '.join(sorted(unknown))}")
-    for cells in zip(*columns.values(), strict=False):  # some repeat one cell without end
-        row = object.__new__(kind)
-        vars(row).update(blank)
-        vars(row).update(zip(names, cells, strict=True))
+    blank |= alike
+    for cells in zip(*columns.values(), strict=True):
+        row, filled = object.__new__(kind), blank.copy()
+        filled.update(zip(names, cells, strict=True))
+        object.__setattr__(row, "__dict__", filled)
         yield row

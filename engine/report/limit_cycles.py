@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import chain, repeat
+from itertools import chain, pairwise, repeat
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from engine.kernels import compiled
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
 from engine.models.relative_wind import FASTEST, NodalMotion, largest_reach
 from engine.outcome import Outcome, Stability
-from engine.report.cells import filled_rows, lists_by_line, numbers
+from engine.report.cells import filled_rows, numbers
 from engine.report.findings import (
     MissingMotions,
     ModelFindings,
@@ -32,7 +32,7 @@ from engine.spec import AerodynamicModel, Analysis
 from engine.tori.spectrum import amplitude_range, base_frequencies, mean_square_velocity, sampled_states
 
 REACH_SAMPLES = 48
-_UNSTABLE = Outcome.STATICALLY_UNSTABLE
+_AT_REST = np.array([Outcome.CONVERGED, Outcome.STATICALLY_UNSTABLE], dtype=np.object_)
 _AMPLITUDES = ("vertical_m", "horizontal_m", "torsional_rad")
 _SHARES = ("vertical_share", "horizontal_share", "torsional_share")
 _SMALLEST = ("vertical_min_m", "horizontal_min_m", "torsional_min_rad")
@@ -42,18 +42,16 @@ _FREQUENCIES = ("frequency_hz", "second_frequency_hz")
 _VERDICTS = np.array([Stability.UNKNOWN, Stability.UNSTABLE, Stability.STABLE], dtype=np.object_)
 
 
-@dataclass(frozen=True, slots=True)
-class Motion:
-    """A row and, for a cycle, its Fourier series where it is observed: (3, 2 H + 1) of V, W [m] and Theta [rad]."""
-
-    row: LimitCycleRow
-    series: FloatArray | None = None
+# A row and, for a cycle, the Fourier coefficients of V, W [m] and Theta [rad] where it is observed.
+Motion = tuple[LimitCycleRow, tuple[tuple[float, ...], ...] | None]
 
 
 def limit_cycle_rows(
     observer: Observer, findings: ModelFindings, tensions: MotionTensions, analysis: Analysis, lowest: FloatArray
 ) -> list[list[Motion]]:
     """Return a row for the equilibrium, every cycle and every torus at each wind speed, one list per line.
+
+    They are sorted by loops and wind speed; equilibria come first.
 
     Parameters
     ----------
@@ -66,14 +64,16 @@ def limit_cycle_rows(
     lowest : (lines,)
         Lowest vertical frequency of each line [Hz].
     """
-    table: list[list[Motion]] = lists_by_line(findings.line)
     local = observer.local_motion(findings, analysis.aerodynamic_model)
     seen = _Seen(observer, findings, tensions, lowest * observer.span_length, local)
-    for line, motion in chain(_equilibria(seen, analysis.loops), _cycles(seen), _quasi_periodic_motions(seen)):
-        table[line].append(motion)
-    for motions in table:
-        motions.sort(key=lambda motion: (motion.row.loops, motion.row.wind_speed_m_per_s))  # equilibria stay first
-    return table
+    kinds = [*_equilibria(seen, analysis.loops), _cycles(seen), _quasi_periodic_motions(seen)]
+    line, loops, wind = (
+        np.concatenate([getattr(kind.keys, name) for kind in kinds]) for name in ("line", "loops", "wind_speed")
+    )
+    motions = list(chain(*(kind.motions for kind in kinds)))
+    order = np.lexsort((wind, loops, line))
+    first = np.searchsorted(line[order], np.arange(findings.line.max(initial=-1) + 2)).tolist()
+    return [[motions[i] for i in order[begin:end].tolist()] for begin, end in pairwise(first)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,15 @@ class _RowKeys:
     observed: Observed
 
 
-def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[tuple[int, Motion]]:
+@dataclass(frozen=True, slots=True)
+class _Motions:
+    """Motions of one kind with their keys."""
+
+    keys: _RowKeys
+    motions: Iterator[Motion]
+
+
+def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[_Motions]:
     """Yield rows of the static state, and of wind speeds where it is unstable and no stable motion is known."""
     findings = seen.findings
     members, winds = findings.winds.shape
@@ -120,16 +128,15 @@ def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[tuple[int, Moti
     )
     amplitude = np.where(static[member], np.nan, 0.0)
     labels: dict[str, Iterable[Any]] = {
-        "kind": repeat("equilibrium"),
         "stability": _VERDICTS[verdict[member, wind]].tolist(),
-        "outcome": [_UNSTABLE if missing else Outcome.CONVERGED for missing in static[member].tolist()],
+        "outcome": _AT_REST[static[member].astype(np.intp)].tolist(),
     }
-    yield from _rows(seen, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels)
-    yield from _without_motion(seen, missing_motions(findings, growing & ~static[:, None]), loops)
+    yield _rows(seen, keys, dict.fromkeys(_AMPLITUDES, amplitude), labels, {"kind": "equilibrium"})
+    yield _without_motion(seen, missing_motions(findings, growing & ~static[:, None]), loops)
 
 
-def _without_motion(seen: _Seen, missing: MissingMotions, asked: tuple[int, ...]) -> Iterator[tuple[int, Motion]]:
-    """Yield a row for each wind speed where a stable motion must exist but none is known.
+def _without_motion(seen: _Seen, missing: MissingMotions, asked: tuple[int, ...]) -> _Motions:
+    """Return a row for each wind speed where a stable motion must exist but none is known.
 
     One row, with the first of the member's loops that was asked for, stands for all of its unstable modes.
     """
@@ -138,19 +145,14 @@ def _without_motion(seen: _Seen, missing: MissingMotions, asked: tuple[int, ...]
     loops = findings.loops[member, first[member]]
     observed = seen.observer.resting(findings, member, loops)
     keys = _RowKeys(findings.line[member], loops, findings.winds[member, missing.wind], observed)
-    labels: dict[str, Iterable[Any]] = {
-        "kind": missing.kind,
-        "stability": repeat(Stability.UNKNOWN),
-        "outcome": missing.outcome,
-    }
-    return _rows(seen, keys, dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan)), labels)
+    labels: dict[str, Iterable[Any]] = {"kind": missing.kind, "outcome": missing.outcome}
+    unknown = dict.fromkeys(_AMPLITUDES, np.full(member.size, np.nan))
+    return _rows(seen, keys, unknown, labels, {"stability": Stability.UNKNOWN})
 
 
-def _cycles(seen: _Seen) -> Iterator[tuple[int, Motion]]:
-    """Yield the rows of all cycles with their Fourier series at the point of observation."""
+def _cycles(seen: _Seen) -> _Motions:
+    """Return the rows of all cycles with their Fourier series at the point of observation."""
     observer, findings, cycles = seen.observer, seen.findings, seen.findings.cycles
-    if cycles.member.size == 0:
-        return iter(())
     state = states(cycles.orbits, 2.0 * np.pi * np.arange(REACH_SAMPLES) / REACH_SAMPLES)
     observed = observer.moving(findings, cycles.member, cycle_coordinates(findings), state)
     series = observed.shapes.swapaxes(-1, -2) @ cycles.orbits.coefficients
@@ -159,14 +161,13 @@ def _cycles(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     slack = seen.tensions.cycles[..., 0].min(axis=-1) <= 0.0
     keys = _RowKeys(findings.line[cycles.member], cycle_loops(findings), cycles.orbits.wind_speed, observed)
     labels: dict[str, Iterable[Any]] = {
-        "kind": repeat("periodic"),
         "stability": cycles.floquet.stability.tolist(),
         "branch": cycles.branch.tolist(),
         "found_by": cycles.found_by,
         "harmonics": cycles.harmonics.tolist(),
         "outcome": _slack_first(slack, _outcomes(seen, keys, measures)),
     }
-    return _rows(seen, keys, measures, labels, series)
+    return _rows(seen, keys, measures, labels, {"kind": "periodic"}, _as_tuples(series))
 
 
 def _reach(motion: NodalMotion, member: IntArray, state: FloatArray) -> FloatArray:
@@ -191,8 +192,8 @@ def _measures(findings: ModelFindings, series: FloatArray) -> dict[str, FloatArr
     }
 
 
-def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
-    """Yield the rows of all quasi-periodic motions."""
+def _quasi_periodic_motions(seen: _Seen) -> _Motions:
+    """Return the rows of all quasi-periodic motions."""
     observer, findings = seen.observer, seen.findings
     known, model = findings.quasi_periodic, findings.model
     tori, member = known.tori, known.member
@@ -221,14 +222,12 @@ def _quasi_periodic_motions(seen: _Seen) -> Iterator[tuple[int, Motion]]:
     }
     keys = _RowKeys(findings.line[member], torus_loops(findings), tori.wind_speed, observed)
     labels: dict[str, Iterable[Any]] = {
-        "kind": repeat("quasi_periodic"),
         "stability": known.stability.tolist(),
         "branch": known.branch.tolist(),
         "found_by": known.found_by,
-        "harmonics": repeat(tori.order[0]),
         "outcome": _slack_first(slack, _outcomes(seen, keys, measures)),
     }
-    return _rows(seen, keys, measures, labels)
+    return _rows(seen, keys, measures, labels, {"kind": "quasi_periodic", "harmonics": tori.order[0]})
 
 
 def _outcomes(seen: _Seen, keys: _RowKeys, measures: Mapping[str, FloatArray]) -> list[Outcome]:
@@ -249,11 +248,12 @@ def _rows(
     keys: _RowKeys,
     measures: Mapping[str, FloatArray],
     labels: Mapping[str, Iterable[Any]],
-    series: Iterable[FloatArray | None] = repeat(None),
-) -> Iterator[tuple[int, Motion]]:
-    """Yield rows written from columns, with the line of each. Missing columns and numbers that are not finite are None.
+    alike: Mapping[str, Any],
+    series: Iterable[tuple[tuple[float, ...], ...] | None] = repeat(None),
+) -> _Motions:
+    """Return rows written from columns. Missing columns and numbers that are not finite are None.
 
-    measures: columns of numbers, which include the amplitudes; labels: all others.
+    measures: columns of numbers, which include the amplitudes; labels: all others; alike: cells that all rows share.
     """
     sag, speed = keys.observed.sag, seen.speed[keys.line]
     with np.errstate(invalid="ignore"):  # the speed of a line without a vertical frequency is infinite
@@ -266,6 +266,13 @@ def _rows(
         "reduced_wind_speed": reduced,
     }
     columns: dict[str, Iterable[Any]] = {name: numbers(column) for name, column in measures.items()}
-    columns |= {"model": repeat(seen.findings.name), "loops": keys.loops.tolist(), **labels}
-    columns |= {"span": keys.observed.span, "span_shares": keys.observed.shares}
-    return zip(keys.line.tolist(), map(Motion, filled_rows(LimitCycleRow, columns), series), strict=False)
+    columns |= {"loops": keys.loops.tolist(), "span": keys.observed.span, "span_shares": keys.observed.shares, **labels}
+    rows = filled_rows(LimitCycleRow, columns, {"model": seen.findings.name, **alike})
+    return _Motions(keys, zip(rows, series, strict=False))  # other motions than cycles repeat None without end
+
+
+def _as_tuples(series: FloatArray) -> Iterator[tuple[tuple[float, ...], ...]]:
+    """Return Fourier series (cycles, 3, 2 H + 1) as three tuples a cycle."""
+    coefficients = iter(series.ravel().tolist())
+    coordinates = zip(*[coefficients] * series.shape[-1], strict=True)
+    return zip(*[coordinates] * series.shape[-2], strict=True)

@@ -175,12 +175,8 @@ def _statically_unstable(findings: tuple[ModelFindings, ...], lines: int) -> Boo
 
 def cycles_and_orbits(motions: list[Motion]) -> tuple[tuple[LimitCycleRow, ...], tuple[Orbit, ...]]:
     """Return the rows of motions, and the Fourier series of those that are cycles."""
-    orbits = []
-    for i, motion in enumerate(motions):
-        if motion.series is not None:
-            vertical, horizontal, torsional = (tuple(row) for row in motion.series.tolist())
-            orbits.append(Orbit(i, vertical, horizontal, torsional))
-    return tuple(motion.row for motion in motions), tuple(orbits)
+    orbits = [Orbit(i, *series) for i, (_, series) in enumerate(motions) if series is not None]
+    return tuple([row for row, _ in motions]), tuple(orbits)
 
 
 def den_hartog(discretization: Discretization, line: int) -> DenHartog:

@@ -54,7 +54,7 @@ def section_result(found: SectionFindings, analysis: Analysis, observer: Section
     lowest = np.array([found.lowest])
     findings = [(one, motion_tensions(observer, one)) for one in found.findings]
     motions = list(chain(*(limit_cycle_rows(observer, one, own, analysis, lowest)[0] for one, own in findings)))
-    motions.sort(key=lambda motion: motion.row.model != "hybrid")
+    motions.sort(key=lambda motion: motion[0].model != "hybrid")
     cycles, orbits = cycles_and_orbits(motions)
     reported = found.findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     tables: dict[str, tuple[Any, ...]] = {

@@ -1,7 +1,6 @@
 """Cells and rows from columns."""
 
 from dataclasses import asdict, dataclass, fields
-from itertools import repeat
 
 import numpy as np
 import pytest
@@ -21,7 +20,7 @@ def test_numbers_that_are_not_finite_are_none() -> None:
 
 
 def test_filled_rows_are_those_of_the_constructor() -> None:
-    rows = list(filled_rows(Row, {"place": [1, 2], "name": repeat("here")}))
+    rows = list(filled_rows(Row, {"place": [1, 2]}, {"name": "here"}))
     assert rows == [Row("here", None, 1), Row("here", None, 2)]
     assert [hash(row) for row in rows] == [hash(Row("here", None, 1)), hash(Row("here", None, 2))]
     assert [list(asdict(row)) for row in rows] == [[field.name for field in fields(Row)]] * 2
@@ -30,4 +29,4 @@ def test_filled_rows_are_those_of_the_constructor() -> None:
 
 def test_a_column_that_is_no_field_is_refused() -> None:
     with pytest.raises(AttributeError, match="places"):
-        list(filled_rows(Row, {"places": [1]}))
+        list(filled_rows(Row, {"places": [1]}, {}))
