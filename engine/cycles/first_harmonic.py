@@ -11,13 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
+from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, merge_axes
 from engine.cycles.harmonic_balance import Orbits, basis, linearized
 from engine.kernels import compiled
+from engine.kernels.eigenvalues import eigenvalues
 from engine.models.complex_modes import complex_modes
 from engine.models.critical_wind_speeds import at_wind, state_matrices
-from engine.models.reduced_model import ReducedModel, diagonals, take, with_samples
-from engine.models.stretching import restoring_force
+from engine.models.reduced_model import ReducedModel, diagonals, of_each_member, with_samples
+from engine.numerics import polynomial
 
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 GRID = 40  # amplitudes at which the scalar equation is evaluated
@@ -29,11 +30,12 @@ ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
 class FirstHarmonic:
     """Explicit cycles q = mean + Re(amplitude exp(i w t)) of a stack of models.
 
-    member: (cycles,), index of the model; angular_frequency: (cycles,) [rad/s]; angle: (cycles,), R [rad];
-    mean: (cycles, 3); amplitude: (cycles, 3), complex.
+    member, wind: (cycles,), indices of the model and of its wind speed; angular_frequency: (cycles,) [rad/s]; angle:
+    (cycles,), R [rad]; mean: (cycles, 3); amplitude: (cycles, 3), complex.
     """
 
     member: IntArray
+    wind: IntArray
     angular_frequency: FloatArray
     angle: FloatArray
     mean: FloatArray
@@ -42,10 +44,11 @@ class FirstHarmonic:
 
 @dataclass(frozen=True, slots=True)
 class _ScalarEquation:
-    """The scalar equation of each member. The gains act through U^2 B_j; alpha' = r q is a linear form in q and q'.
+    """The scalar equation of each member at each wind speed, both one after another along the first axis.
 
-    polynomials: (members, 4, 7), coefficients in powers of s/scale of det Z and of r adj(Z) U^2 B_j; static:
-    (members, 3), alpha_0 per unit of each mean load; scale: (members,) [rad/s].
+    The gains act through U^2 B_j; alpha' = r q is a linear form in q and q'. polynomials: (places, 4, 7), coefficients
+    in powers of s/scale of det Z and of r adj(Z) U^2 B_j; static: (places, 3), alpha_0 per unit of each mean load;
+    scale: (places,) [rad/s].
     """
 
     polynomials: FloatArray
@@ -53,71 +56,79 @@ class _ScalarEquation:
     scale: FloatArray
 
 
-def explicit_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
+def explicit_cycles(model: ReducedModel, wind_speeds: FloatArray) -> FirstHarmonic:
     """Return every first-harmonic cycle of each model.
 
     Parameters
     ----------
     model : ReducedModel
         Of three degrees of freedom with the published closure, leading axis (members,).
-    wind_speed : (members,)
-        [m/s].
+    wind_speeds : (winds,) or (members, winds)
+        Of all members or of each [m/s].
 
     Returns
     -------
     FirstHarmonic
     """
-    equation = _scalar_equation(model, wind_speed)
+    speeds = of_each_member(model, wind_speeds)
+    equation = _scalar_equation(model, speeds)
     angle = np.concatenate([[0.0], np.geomspace(1e-4, LARGEST_ANGLE, GRID - 1)])
-    angles = np.broadcast_to(angle, (wind_speed.size, GRID))
-    even, _ = _even_part(equation, np.arange(wind_speed.size)[:, None], angles)
+    angles = np.broadcast_to(angle, (speeds.size, GRID))
+    even, _ = _even_part(equation, np.arange(speeds.size)[:, None], angles)
     known = np.isfinite(even)
     changes = known[:, 1:] & known[:, :-1] & (np.sign(even[:, 1:]) != np.sign(even[:, :-1]))
-    member, cell, root = np.nonzero(changes | (known[:, 1:] ^ known[:, :-1]))
-    left, right = _cut_to_real_roots(equation, member, root, angle[cell], angle[cell + 1])
-    ends = [np.sign(_even_part_at_root(equation, member, root, end)) for end in (left, right)]
+    place, cell, root = np.nonzero(changes | (known[:, 1:] ^ known[:, :-1]))
+    left, right = _cut_to_real_roots(equation, (place, root), (angle[cell], angle[cell + 1]))
+    ends = [np.sign(_even_part_at_root(equation, place, root, end)) for end in (left, right)]
     bracket = ends[0] * ends[1] < 0.0
-    member, root, sign = member[bracket], root[bracket], ends[0][bracket]
+    place, root, sign = place[bracket], root[bracket], ends[0][bracket]
     refined = _bisect(
-        lambda middle: np.sign(_even_part_at_root(equation, member, root, middle)) == sign,
+        lambda middle: np.sign(_even_part_at_root(equation, place, root, middle)) == sign,
         left[bracket],
         right[bracket],
     )
-    return _cycles_at_roots(model, wind_speed, equation, member, root, 0.5 * (refined[0] + refined[1]))
+    return _cycles_at_roots(model, speeds, equation, (place, root), 0.5 * (refined[0] + refined[1]))
 
 
-def _scalar_equation(model: ReducedModel, wind_speed: FloatArray) -> _ScalarEquation:
-    """Interpolate the characteristic polynomials from values on a circle, and solve the statics."""
-    square = wind_speed[:, None] ** 2
-    vectors = square[..., None] * model.load.table[:, 0].swapaxes(-1, -2)
-    frequency = np.sqrt(np.abs(diagonals(model.stiffness)))
-    frequency /= np.sqrt(model.modal_masses)
+def _scalar_equation(model: ReducedModel, wind_speeds: FloatArray) -> _ScalarEquation:
+    """Interpolate the characteristic polynomials from values on a circle, and solve the statics.
+
+    The structure Z does not know the wind, and r is the sum of a row for q and one for q'/U, eq. (A16).
+    """
+    m = model.mass.shape[-1]
+    columns = np.swapaxes(_load_vectors(model), -1, -2)
+    frequency = np.sqrt(np.abs(diagonals(model.stiffness))) / np.sqrt(model.modal_masses)
     scale = np.exp(np.log(frequency).mean(axis=-1))
     points = np.exp(2j * np.pi * np.arange(ORDER + 1) / (ORDER + 1))
-    s = points * scale[:, None]
-    dynamic = _dynamic_stiffness(model, s)
-    angle_rows = _angle_rows(model, wind_speed, s)
-    response = np.linalg.solve(dynamic, np.swapaxes(vectors, -1, -2)[:, None].astype(np.complex128))
-    determinant = np.linalg.det(dynamic)
-    numerators = determinant[..., None] * (angle_rows[..., None, :] @ response)[..., 0, :]
-    values = np.concatenate([determinant[..., None], numerators], axis=-1)
-    coefficients = np.fft.fft(values, axis=1).real / (ORDER + 1)
-    at_rest = np.linalg.solve(model.stiffness, np.swapaxes(vectors, -1, -2))
-    form = model.load.forms[:, 0, 0, : model.mass.shape[-1]]
-    return _ScalarEquation(coefficients.swapaxes(-1, -2), (form[:, None, :] @ at_rest)[:, 0], scale)
+    s = _complex(points * scale[:, None])
+    dynamic = _dynamic_stiffness(model, np.arange(scale.size)[:, None], s)
+    response = np.linalg.solve(dynamic, columns[:, None].astype(np.complex128))
+    by_motion, by_velocity = (model.load.forms[:, None, 0, :1, part] @ response for part in (slice(m), slice(m, None)))
+    determinant = np.linalg.det(dynamic)[..., None]
+    parts = (np.ones((*s.shape, 1)), by_motion[..., 0, :], s[..., None] * by_velocity[..., 0, :])
+    values = determinant * np.concatenate(parts, axis=-1)
+    coefficients = (np.fft.fft(values, axis=1).real / (ORDER + 1)).swapaxes(-1, -2)[:, None]
+    speed = wind_speeds[..., None, None]
+    numerators = speed**2 * coefficients[:, :, 1 : 1 + m] + speed * coefficients[:, :, 1 + m :]
+    polynomials = np.empty((*wind_speeds.shape, 1 + m, ORDER + 1))
+    polynomials[..., :1, :], polynomials[..., 1:, :] = coefficients[:, :, :1], numerators
+    at_rest = model.load.forms[:, 0, :1, :m] @ np.linalg.solve(model.stiffness, columns)
+    return _ScalarEquation(
+        merge_axes(polynomials, -4, -3),
+        merge_axes(speed[..., 0] ** 2 * at_rest, -3, -2),
+        np.repeat(scale, wind_speeds.shape[-1]),
+    )
 
 
-def _dynamic_stiffness(model: ReducedModel, s: ComplexArray) -> ComplexArray:
-    """Return Z(s) = M s^2 + C s + K: (members, points, 3, 3)."""
+def _load_vectors(model: ReducedModel) -> FloatArray:
+    """Return B_j, the coefficients of the powers of alpha' in the load over U^2: (members, 3, 3), j first."""
+    return model.load.table[:, 0].swapaxes(-1, -2)
+
+
+def _dynamic_stiffness(model: ReducedModel, member: IntArray, s: ComplexArray) -> ComplexArray:
+    """Return Z(s) = M s^2 + C s + K of members at points, arrays that broadcast to (...): (..., 3, 3)."""
     laplace = s[..., None, None]
-    return np.asarray(model.mass[:, None] * laplace**2 + model.damping[:, None] * laplace + model.stiffness[:, None])
-
-
-def _angle_rows(model: ReducedModel, wind_speed: FloatArray, s: ComplexArray) -> ComplexArray:
-    """Return the rows r(s) of alpha' = r(s) q, eq. (A16): (members, points, 3)."""
-    m = model.mass.shape[-1]
-    form = model.load.forms[:, None, 0, 0]
-    return np.asarray(form[..., :m] + form[..., m:] * (s / wind_speed[:, None])[..., None])
+    return np.asarray(model.mass[member] * laplace**2 + model.damping[member] * laplace + model.stiffness[member])
 
 
 def _mean_angle(static: FloatArray, angle: FloatArray) -> FloatArray:
@@ -138,13 +149,13 @@ def _gains(alpha: FloatArray, angle: FloatArray) -> FloatArray:
     return np.stack([np.ones_like(alpha), 2.0 * alpha, 3.0 * alpha**2 + 0.75 * angle**2], axis=-1)
 
 
-def _even_part(equation: _ScalarEquation, member: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _even_part(equation: _ScalarEquation, place: IntArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the even part at both roots w^2 of the odd part, and these roots (NaN if not positive): (..., 2) each."""
     if compiled.AVAILABLE:
-        return compiled.even_part(equation.polynomials, equation.static, member, angle)
-    gains = _gains(_mean_angle(equation.static[member], angle), angle)
+        return compiled.even_part(equation.polynomials, equation.static, place, angle)
+    gains = _gains(_mean_angle(equation.static[place], angle), angle)
     factors = np.concatenate([np.ones((*angle.shape, 1)), -gains], axis=-1)
-    p = (factors[..., None, :] @ equation.polynomials[member])[..., 0, :]
+    p = (factors[..., None, :] @ equation.polynomials[place])[..., 0, :]
     discriminant = p[..., 3] ** 2 - 4.0 * p[..., 5] * p[..., 1]
     root = np.sqrt(np.where(discriminant >= 0.0, discriminant, np.nan))
     far = p[..., 3] + np.copysign(root, p[..., 3])
@@ -155,22 +166,27 @@ def _even_part(equation: _ScalarEquation, member: IntArray, angle: FloatArray) -
     return even, square
 
 
-def _even_part_at_root(equation: _ScalarEquation, member: IntArray, root: IntArray, angle: FloatArray) -> FloatArray:
+def _even_part_at_root(equation: _ScalarEquation, place: IntArray, root: IntArray, angle: FloatArray) -> FloatArray:
     """Return the even part at the root with index `root` (0 or 1) of the odd part: (brackets,)."""
-    return np.asarray(_even_part(equation, member, angle)[0][np.arange(member.size), root])
+    return np.asarray(_even_part(equation, place, angle)[0][np.arange(place.size), root])
 
 
 def _cut_to_real_roots(
-    equation: _ScalarEquation, member: IntArray, root: IntArray, left: FloatArray, right: FloatArray
+    equation: _ScalarEquation, at: tuple[IntArray, IntArray], cells: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Shrink each cell to where the root of the odd part is real and positive; a pair of roots may begin inside it."""
-    known = [np.isfinite(_even_part_at_root(equation, member, root, end)) for end in (left, right)]
+    """Shrink cells to where the root of the odd part is real and positive; a pair of roots may begin inside one."""
+    place, root = at
+    left, right = (end.copy() for end in cells)
+    known = [np.isfinite(_even_part_at_root(equation, place, root, end)) for end in cells]
+    cut = np.flatnonzero(known[0] != known[1])
+    place, root, from_left = place[cut], root[cut], known[0][cut]
     low, high = _bisect(
-        lambda middle: np.isfinite(_even_part_at_root(equation, member, root, middle)) == known[0],
-        left.copy(),
-        right.copy(),
+        lambda middle: np.isfinite(_even_part_at_root(equation, place, root, middle)) == from_left,
+        left[cut],
+        right[cut],
     )
-    return np.where(known[0], left, high), np.where(known[1], right, low)
+    left[cut], right[cut] = np.where(from_left, left[cut], high), np.where(from_left, low, right[cut])
+    return left, right
 
 
 def _bisect(
@@ -186,25 +202,27 @@ def _bisect(
 
 def _cycles_at_roots(
     model: ReducedModel,
-    wind_speed: FloatArray,
+    wind_speeds: FloatArray,
     equation: _ScalarEquation,
-    member: IntArray,
-    root: IntArray,
+    at: tuple[IntArray, IntArray],
     angle: FloatArray,
 ) -> FirstHarmonic:
-    _, square = _even_part(equation, member, angle)
-    frequency = np.sqrt(square[np.arange(member.size), root]) * equation.scale[member]
-    alpha = _mean_angle(equation.static[member], angle)
-    vectors = wind_speed[member, None, None] ** 2 * model.load.table[member, 0].swapaxes(-1, -2)
+    """Return the cycles of given places and roots of the odd part, `at`, and amplitudes, (cycles,) each."""
+    place, root = at
+    member, wind = np.divmod(place, max(wind_speeds.shape[-1], 1))
+    _, square = _even_part(equation, place, angle)
+    frequency = np.sqrt(square[np.arange(place.size), root]) * equation.scale[place]
+    alpha = _mean_angle(equation.static[place], angle)
+    vectors = wind_speeds.ravel()[place, None, None] ** 2 * _load_vectors(model)[member]
     gain = (_gains(alpha, angle)[:, None] @ vectors)[:, 0]
-    dynamic = _dynamic_stiffness(take(model, member), _complex(1j * frequency[:, None]))[:, 0]
+    dynamic = _dynamic_stiffness(model, member, _complex(1j * frequency))
     amplitude = np.linalg.solve(dynamic, (gain * angle[:, None])[..., None].astype(np.complex128))[..., 0]
     mean_load = np.stack([alpha, alpha**2 + 0.5 * angle**2, alpha**3 + 1.5 * alpha * angle**2], axis=-1)
     mean = np.linalg.solve(model.stiffness[member], (mean_load[:, None] @ vectors)[:, 0, :, None])[..., 0]
-    return FirstHarmonic(member, frequency, angle, mean, _complex(amplitude))
+    return FirstHarmonic(member, wind, frequency, angle, np.asarray(mean), _complex(amplitude))
 
 
-def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstHarmonic:
+def energy_balance_cycles(model: ReducedModel, wind_speeds: FloatArray) -> FirstHarmonic:
     """Estimate a cycle along every unstable mode of any model by the balance of energy over one period.
 
     Along q = R Re(v exp(i w t)) the work of the wind minus that of the damping is p_1 R^2 + p_3 R^4 for a cubic load;
@@ -215,31 +233,29 @@ def energy_balance_cycles(model: ReducedModel, wind_speed: FloatArray) -> FirstH
     ----------
     model : ReducedModel
         Leading axis (members,), any number of degrees of freedom.
-    wind_speed : (members,)
-        [m/s].
+    wind_speeds : (winds,) or (members, winds)
+        Of all members or of each [m/s].
 
     Returns
     -------
     FirstHarmonic
         With zero mean; `angle` is NaN.
     """
-    matrices = at_wind(state_matrices(model), wind_speed)
-    values = eigenvalues(matrices)
-    member, mode = np.nonzero(
-        (values.real > 0.0) & (values.imag > 1e-9 * np.abs(values).max(axis=-1, initial=0.0)[:, None])
-    )
-    m = model.mass.shape[-1]
+    speeds = of_each_member(model, wind_speeds)
+    matrices = at_wind(state_matrices(model), speeds)
+    values = eigenvalues(merge_axes(matrices, -4, -3)).reshape(matrices.shape[:-1])
+    size = np.abs(values).max(axis=-1, initial=0.0, keepdims=True)
+    member, wind, mode = np.nonzero((values.real > 0.0) & (values.imag > 1e-9 * size))
     weight = 1.0 / np.sqrt(model.modal_masses)[member]
-    frequency = values.imag[member, mode]
-    shape = _complex(complex_modes(matrices[member], values[member, mode]) * weight)
-    linear, cubic = _work(model, member, wind_speed[member], frequency, shape)
-    grows = (linear > 0.0) & (cubic < 0.0)
-    size = np.sqrt(np.where(grows, -linear / np.where(grows, cubic, 1.0), np.nan))
-    growing = np.flatnonzero(grows)
-    amplitude = _complex(size[growing, None] * shape[growing])
-    none = np.full(growing.size, np.nan)
-    stiffened = stiffened_frequencies(model, member[growing], frequency[growing], amplitude)
-    return FirstHarmonic(member[growing], stiffened, none, np.zeros((growing.size, m)), amplitude)
+    value = values[member, wind, mode]
+    shape = _complex(complex_modes(matrices[member, wind], value) * weight)
+    linear, cubic = _work(model, member, speeds[member, wind], value.imag, shape)
+    grows = np.flatnonzero((linear > 0.0) & (cubic < 0.0))
+    size = np.sqrt(-linear[grows] / cubic[grows])
+    member, wind, amplitude = member[grows], wind[grows], _complex(size[:, None] * shape[grows])
+    stiffened = stiffened_frequencies(model, member, value.imag[grows], amplitude)
+    none = np.full(grows.size, np.nan)
+    return FirstHarmonic(member, wind, stiffened, none, np.zeros(amplitude.shape), amplitude)
 
 
 def stiffened_frequencies(
@@ -247,16 +263,15 @@ def stiffened_frequencies(
 ) -> FloatArray:
     """Return the frequencies (cycles,) of motions Re(amplitude exp(i w t)) with stretching [rad/s].
 
-    w^2 grows by <g . q> / <q . M q>, Rayleigh's quotient over one period; ten samples resolve the fourth harmonic.
-    amplitude: (cycles, m).
+    w^2 grows by <g . q> / <q . M q>, Rayleigh's quotient over one period. Only cubic terms of g do work in the mean,
+    and three samples of half a period are exact for them. amplitude: (cycles, m).
     """
     if model.stretching is None:
         return frequency
-    here = take(model, member)
-    assert here.stretching is not None
-    q = (amplitude[:, None] * np.exp(2j * np.pi * np.arange(10) / 10.0)[:, None]).real
-    work = (restoring_force(here.stretching, q) * q).sum(axis=(-1, -2))
-    inertia = ((q @ here.mass) * q).sum(axis=(-1, -2))
+    q = (amplitude[:, None] * np.exp(1j * np.pi * np.arange(3) / 3.0)[:, None]).real
+    cubes = slice(-polynomial.count(q.shape[-1], 3), None)
+    force = polynomial.powers(q)[..., cubes] @ model.stretching.table[..., cubes][member].swapaxes(-1, -2)
+    work, inertia = ((part * q).sum(axis=(-1, -2)) for part in (force, q @ model.mass[member]))
     return np.asarray(np.sqrt(frequency**2 + np.maximum(work / inertia, 0.0)))
 
 

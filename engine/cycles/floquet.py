@@ -5,9 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
+from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
 from engine.cycles.harmonic_balance import Orbits, basis, fourier, select, states
 from engine.kernels import compiled
+from engine.kernels.eigenvalues import eigenvalues
 from engine.models.reduced_model import ReducedModel, resultant_gradient, take
 from engine.outcome import Stability
 
@@ -51,23 +52,13 @@ def floquet(model: ReducedModel, member: IntArray, orbits: Orbits, fineness: int
     cycles, size, _ = matrices.shape
     values = np.full((cycles, size), np.nan, dtype=np.complex128)
     known = np.isfinite(matrices).all(axis=(-1, -2))
-    values[known] = multipliers_of(matrices[known])
+    values[known] = eigenvalues(matrices[known])
     trivial = np.abs(values - 1.0).argmin(axis=-1)
     order = np.argsort(np.arange(size) != trivial[:, None], axis=-1, kind="stable")
     values = np.take_along_axis(values, order, axis=-1)
     error = np.abs(values[:, 0] - 1.0)
     largest = np.abs(values[:, 1:]).max(axis=-1, initial=0.0)
     return Floquet(values, error, stability_verdicts(largest, error))
-
-
-def multipliers_of(matrices: FloatArray) -> ComplexArray:
-    """Return the eigenvalues of finite monodromy matrices (cycles, n, n): (cycles, n)."""
-    if not compiled.AVAILABLE:
-        return eigenvalues(matrices)
-    values = compiled.small_eigenvalues(matrices)
-    failed = np.isnan(values).any(axis=-1)
-    values[failed] = eigenvalues(matrices[failed])
-    return values
 
 
 def stability_verdicts(largest: FloatArray, error: FloatArray) -> ObjectArray:

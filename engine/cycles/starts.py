@@ -21,9 +21,8 @@ def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) 
 
     wind_speeds: of all members, (winds,), or of each, (members, winds) [m/s].
     """
-    member, wind, speed = _grid_points(model, wind_speeds)
-    guess = energy_balance_cycles(take(model, member), speed)
-    return _starts(guess, member, wind, speed, harmonics)
+    usable, winds = _usable(model, wind_speeds)
+    return _starts(energy_balance_cycles(take(model, usable), winds), usable, winds, harmonics)
 
 
 def explicit_starts(published: ReducedModel, model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
@@ -32,32 +31,25 @@ def explicit_starts(published: ReducedModel, model: ReducedModel, wind_speeds: F
     published: the models with the load of that closure, three coordinates each; model: the same models as they are,
     whose further coordinates start at rest and whose stretching raises the frequency; wind_speeds: as above.
     """
-    member, wind, speed = _grid_points(published, wind_speeds)
-    guess = explicit_cycles(take(published, member), speed)
+    usable, winds = _usable(published, wind_speeds)
+    guess = explicit_cycles(take(published, usable), winds)
     further = model.mass.shape[-1] - published.mass.shape[-1]
     amplitude = np.pad(guess.amplitude, ((0, 0), (0, further)))
-    frequency = stiffened_frequencies(model, member[guess.member], guess.angular_frequency, amplitude)
+    frequency = stiffened_frequencies(model, usable[guess.member], guess.angular_frequency, amplitude)
     guess = replace(
         guess, mean=np.pad(guess.mean, ((0, 0), (0, further))), amplitude=amplitude, angular_frequency=frequency
     )
-    return _starts(guess, member, wind, speed, harmonics)
+    return _starts(guess, usable, winds, harmonics)
 
 
-def _grid_points(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return member, wind speed index and wind speed of all places of members that are statically stable."""
-    usable, winds = np.flatnonzero(~model.statically_unstable), of_each_member(model, wind_speeds)
-    wind = np.tile(np.arange(winds.shape[-1]), usable.size)
-    return np.repeat(usable, winds.shape[-1]), wind, winds[usable].ravel()
+def _usable(model: ReducedModel, wind_speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the members that are statically stable, (k,), and their wind speeds (k, winds)."""
+    usable = np.flatnonzero(~model.statically_unstable)
+    return usable, of_each_member(model, wind_speeds)[usable]
 
 
-def _starts(
-    guess: FirstHarmonic,
-    member: IntArray,
-    wind: IntArray,
-    speed: FloatArray,
-    harmonics: int,
-) -> Starts:
-    """Convert first-harmonic cycles at points of the grid to starts with H harmonics."""
+def _starts(guess: FirstHarmonic, usable: IntArray, winds: FloatArray, harmonics: int) -> Starts:
+    """Convert first-harmonic cycles of some members to starts with H harmonics."""
     first = np.stack([guess.mean, guess.amplitude.real, -guess.amplitude.imag], axis=-1)
-    orbits = Orbits(first, guess.angular_frequency, speed[guess.member])
-    return Starts(member[guess.member], wind[guess.member], resized(orbits, harmonics))
+    orbits = Orbits(first, guess.angular_frequency, winds[guess.member, guess.wind])
+    return Starts(usable[guess.member], guess.wind, resized(orbits, harmonics))

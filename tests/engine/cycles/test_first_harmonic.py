@@ -1,12 +1,16 @@
 """Explicit first harmonics: gains, energy, and what an oscillating wind's work must be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from engine.cycles.first_harmonic import energy_balance_cycles, explicit_cycles
+from engine.cycles.first_harmonic import energy_balance_cycles, explicit_cycles, stiffened_frequencies
 from engine.models.aerodynamic_load import force
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
+from engine.models.stretching import restoring_force
+from engine.spec import Analysis, Stretching
 from tests.builders import Oscillators, finite_element, hand_made, hybrid, published, random_line, source_line
 
 
@@ -54,8 +58,8 @@ def test_explicit_cycle_is_born_at_the_critical_speed() -> None:
     model = published(source_line(2), 1)
     (critical,) = critical_wind_speeds(model, 5.0).wind_speed
     speeds = critical * np.array([0.999, 1.001, 1.004, 1.009])
-    found = explicit_cycles(take(model, np.zeros(4, dtype=np.intp)), speeds)
-    assert found.member.tolist() == [1, 2, 3]
+    found = explicit_cycles(model, speeds)
+    assert found.wind.tolist() == [1, 2, 3]
     # Amplitude grows with the root of the distance: 1, 2, 3 for 1, 4, 9 thousandths.
     size = np.abs(found.amplitude[:, 0])
     assert size[1:] / size[0] == pytest.approx([2.0, 3.0], rel=0.01)
@@ -64,11 +68,26 @@ def test_explicit_cycle_is_born_at_the_critical_speed() -> None:
 def test_stack_gives_what_each_member_gives() -> None:
     models = [published(random_line(np.random.default_rng(seed)), 1) for seed in (3, 4)]
     for model in models:
-        speeds = np.array([4.0, 8.0])
-        together = explicit_cycles(take(model, np.zeros(2, dtype=np.intp)), speeds)
-        alone = [explicit_cycles(model, speeds[i : i + 1]) for i in range(2)]
-        assert together.member.tolist() == [0] * alone[0].member.size + [1] * alone[1].member.size
+        stack = replace(take(model, [0, 0]), damping=np.array([[[1.0]], [[2.0]]]) * model.damping)
+        speeds = np.array([[4.0, 8.0, 9.0], [5.0, 6.0, 7.0]])
+        together = explicit_cycles(stack, speeds)
+        places = [(i, j) for i in range(2) for j in range(3)]
+        alone = [explicit_cycles(take(stack, [i]), speeds[i, j : j + 1]) for i, j in places]
+        expected = [place for place, one in zip(places, alone, strict=True) for _ in one.member]
+        assert list(zip(together.member.tolist(), together.wind.tolist(), strict=True)) == expected
         assert together.angle == pytest.approx(np.concatenate([a.angle for a in alone]), rel=1e-6)
+
+
+def test_stretching_raises_the_frequency_by_the_quotient_of_means_over_a_period() -> None:
+    model = hybrid(source_line(2), 2, Analysis(stretching=Stretching.INCLUDED))
+    assert model.stretching is not None
+    draw, member = np.random.default_rng(1), np.zeros(5, dtype=np.intp)
+    amplitude = draw.normal(size=(5, model.mass.shape[-1])) + 1j * draw.normal(size=(5, model.mass.shape[-1]))
+    found = stiffened_frequencies(model, member, np.full(5, 3.0), amplitude)
+    q = (amplitude[:, None] * np.exp(2j * np.pi * np.arange(64) / 64.0)[:, None]).real
+    work, inertia = ((part * q).sum(axis=(1, 2)) for part in (restoring_force(model.stretching, q), q @ model.mass[0]))
+    assert found == pytest.approx(np.sqrt(9.0 + work / inertia), rel=1e-12)
+    assert found.min() > 3.0
 
 
 def test_energy_balance_is_exact_for_a_cubic_damper() -> None:

@@ -5,9 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine.arrays import FloatArray
-from engine.cycles.floquet import floquet, monodromy, multipliers_of, stability_verdicts
+from engine.cycles.floquet import floquet, monodromy, stability_verdicts
 from engine.cycles.harmonic_balance import Orbits, states
-from engine.kernels import compiled
 from engine.models.aerodynamic_load import force_gradient
 from engine.models.reduced_model import ReducedModel
 from engine.outcome import Stability
@@ -76,16 +75,6 @@ def test_trivial_direction_is_the_velocity_of_the_orbit() -> None:
     around = states(orbit, np.array([-step, step]))[0]
     tangent = (around[1] - around[0]) / (2.0 * step) * np.repeat([1.0, speed], 3)
     assert monodromy(model, ALONE, orbit)[0] @ tangent == pytest.approx(tangent, abs=1e-4 * np.abs(tangent).max())
-
-
-@pytest.mark.parametrize("available", [True, False])
-def test_multipliers_are_eigenvalues_also_where_the_kernel_gives_up(
-    available: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(compiled, "AVAILABLE", available and compiled.AVAILABLE)
-    matrices = np.diag([3.0, 2.0, 1.0, 0.5]) * np.array([1.0, 1e200, 1e-200, 0.0])[:, None, None]
-    found = np.sort(multipliers_of(matrices).real, axis=-1)
-    assert found == pytest.approx(np.sort(np.diagonal(matrices, axis1=1, axis2=2), axis=-1), rel=1e-15)
 
 
 def test_stack_is_judged_as_its_members() -> None:

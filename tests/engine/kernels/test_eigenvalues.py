@@ -8,6 +8,7 @@ from scipy.linalg import eig, svdvals
 
 from engine.arrays import ComplexArray, FloatArray
 from engine.kernels import compiled
+from engine.kernels.eigenvalues import eigenvalues
 
 pytestmark = pytest.mark.skipif(not compiled.AVAILABLE, reason="the kernels were not built")
 
@@ -128,3 +129,11 @@ def test_a_stack_may_be_empty_or_a_part_of_another() -> None:
     matrices = stack(random, 6)
     assert compiled.small_eigenvalues(matrices[:0]).shape == (0, 6)
     assert (compiled.small_eigenvalues(matrices[::2]) == compiled.small_eigenvalues(matrices)[::2]).all()
+
+
+@pytest.mark.parametrize("available", [True, False])
+def test_lapack_finds_those_that_the_kernel_refuses(available: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiled, "AVAILABLE", available and compiled.AVAILABLE)
+    matrices = np.diag([3.0, 2.0, 1.0, 0.5]) * np.array([1.0, 1e200, 1e-200, 0.0])[:, None, None]
+    found = np.sort(eigenvalues(matrices).real, axis=-1)
+    assert found == pytest.approx(np.sort(np.diagonal(matrices, axis1=1, axis2=2), axis=-1), rel=1e-15)

@@ -1,0 +1,17 @@
+"""Eigenvalues of stacks of small matrices, by the kernel where it was built (engine/kernels/eigenvalues.c)."""
+
+import numpy as np
+
+from engine import arrays
+from engine.arrays import ComplexArray, FloatArray
+from engine.kernels import compiled
+
+
+def eigenvalues(matrices: FloatArray) -> ComplexArray:
+    """Return the eigenvalues of finite matrices (k, n, n): (k, n); LAPACK finds those where the kernel fails."""
+    if not compiled.AVAILABLE:
+        return arrays.eigenvalues(matrices)
+    values = compiled.small_eigenvalues(matrices)
+    failed = np.isnan(values).any(axis=-1)
+    values[failed] = arrays.eigenvalues(matrices[failed])
+    return values
