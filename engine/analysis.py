@@ -12,9 +12,10 @@ from engine.cycles.known_cycles import Starts, stacked
 from engine.cycles.search import Cycles
 from engine.cycles.starts import explicit_starts
 from engine.each_wind import analyse_lines
+from engine.mechanics.coupled_eigenvalues import full_eigenvalues
 from engine.mechanics.cross_sections import FEWER_POINTS, PIECE_POINTS
 from engine.mechanics.finite_elements import FIELDS
-from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_eigenvalues, full_modes
+from engine.mechanics.modes import DirectionalShapes, FullModes, directional_shapes, full_modes
 from engine.model_findings import ModelStack, findings_of
 from engine.models.critical_wind_speeds import Crossings, critical_wind_speeds
 from engine.models.discretization import (

@@ -176,6 +176,12 @@ def about(generator: np.random.Generator, values: Sequence[float], spread: float
     return [float(v * generator.uniform(1.0 - spread, 1.0 + spread)) for v in values]
 
 
+def deep(sag: float, dead_end: bool) -> Line:
+    """Return a line of this sag; with dead ends lam2 = (8 sag/L)^2 EA/H passes 4 pi^2 near 2.5 m."""
+    end = Support(dead_end=dead_end)
+    return replace(source_line(1), span=Span(125.88, sag=sag), supports=Supports(left=end, right=end))
+
+
 def random_line(generator: np.random.Generator) -> Line:
     """Draw a bundle or a single conductor around the source's line, all of its numbers changed by tens of percent."""
     n = int(generator.integers(1, 5))

@@ -7,16 +7,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, merge_axes, take_rows
+from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, U, V, W
-from engine.numerics.eigenproblems import eigenvalues_alone, largest_sines, solve_symmetric, standard_form
+from engine.numerics.eigenproblems import standard_form
 
 DIRECTIONS = (V, W, THETA)
 TORSIONAL = 2  # of the three directions
-FURTHER = (
-    2  # modes of each direction beyond the largest number of loops, in which modes of all freedoms are approximated
-)
-LARGEST_SINE = 0.1  # between a mode and its approximation, beyond which this one tells nothing
+FIELDS_OF = ((U, V), (W,), (THETA,))  # of the eigenproblem of each direction
+
+
+@dataclass(frozen=True, slots=True)
+class DirectionModes:
+    """All modes of the eigenproblem of a direction on its `moving_freedoms`, ascending.
+
+    vectors: (lines, modes, freedoms), orthonormal in M; squares: (lines, modes), eigenvalues [rad^2/s^2].
+    """
+
+    vectors: FloatArray
+    squares: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +34,13 @@ class DirectionalShapes:
     loops: the numbers of loops, in the order of the second axis. nodal: (lines, loops, 4, nodes), rows f_u, f_v, f_w,
     f_theta; f_v, f_w and f_theta have (2/L) int f^2 ds = 1 and the sign of sin(k pi s/L).
     angular_frequency: (lines, loops, 3) of the three eigenproblems [rad/s], NaN where the stiffness is negative.
-    lowest: (lines, 3, modes, freedoms), the lowest modes of each eigenproblem, whatever their loops.
+    modes: of each eigenproblem, whatever their loops.
     """
 
     loops: tuple[int, ...]
     nodal: FloatArray
     angular_frequency: FloatArray
-    lowest: FloatArray
+    modes: tuple[DirectionModes, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,16 +71,10 @@ def directional_shapes(system: Matrices, arc_length: FloatArray, loops: tuple[in
     DirectionalShapes
     """
     lines, freedoms, _ = system.stiffness.shape
-    nodes = freedoms // FIELDS
-    shapes = DirectionalShapes(
-        loops,
-        nodal=np.zeros((lines, len(loops), FIELDS, nodes)),
-        angular_frequency=np.empty((lines, len(loops), 3)),
-        lowest=np.zeros((lines, 3, min(max(loops) + FURTHER, nodes - 2), freedoms)),
-    )
-    for direction in range(3):
-        _solve_direction(shapes, direction, system, arc_length)
-    return shapes
+    nodal = np.zeros((lines, len(loops), FIELDS, freedoms // FIELDS))
+    frequency = np.empty((lines, len(loops), len(DIRECTIONS)))
+    modes = [_solve_direction(i, loops, nodal, frequency, system, arc_length) for i in range(len(DIRECTIONS))]
+    return DirectionalShapes(loops, nodal, frequency, tuple(modes))
 
 
 def turned_shapes(still: DirectionalShapes, system: Matrices, arc_length: FloatArray) -> DirectionalShapes:
@@ -85,24 +87,29 @@ def turned_shapes(still: DirectionalShapes, system: Matrices, arc_length: FloatA
     system, arc_length : Matrices, (lines,)
         As for `directional_shapes`, at the new twist.
     """
-    own = (still.nodal.copy(), still.angular_frequency.copy(), still.lowest.copy())
-    shapes = DirectionalShapes(still.loops, *own)
-    _solve_direction(shapes, TORSIONAL, system, arc_length)
-    return shapes
+    nodal, frequency = still.nodal.copy(), still.angular_frequency.copy()
+    torsional = _solve_direction(TORSIONAL, still.loops, nodal, frequency, system, arc_length)
+    return DirectionalShapes(still.loops, nodal, frequency, (*still.modes[:TORSIONAL], torsional))
 
 
-def _solve_direction(shapes: DirectionalShapes, direction: int, system: Matrices, arc_length: FloatArray) -> None:
-    """Solve the eigenproblem of a direction, in place."""
-    fields, nodes = ((U, V), (W,), (THETA,))[direction], shapes.nodal.shape[-1]
-    freedoms = _freedoms(fields, nodes)
-    vectors, values = _labelled(system, freedoms, (fields[-1],), shapes.loops, shapes.lowest.shape[2])
-    labels = len(shapes.loops)
+def _solve_direction(
+    direction: int,
+    loops: tuple[int, ...],
+    nodal: FloatArray,
+    frequency: FloatArray,
+    system: Matrices,
+    arc_length: FloatArray,
+) -> DirectionModes:
+    """Solve the eigenproblem of a direction and enter its shapes and frequencies, in place."""
+    fields, nodes = FIELDS_OF[direction], nodal.shape[-1]
+    freedoms = moving_freedoms(fields, nodes)
+    vectors, values, modes, inverse = _labelled(system, freedoms, (fields[-1],), loops)
     whole = np.zeros((*vectors.shape[:2], FIELDS * nodes))
     whole[..., freedoms] = vectors
-    shapes.lowest[:, direction] = whole[:, labels:]
-    shape = whole[:, :labels].reshape(-1, labels, nodes, FIELDS).swapaxes(-1, -2)[:, :, list(fields)]
-    shapes.nodal[:, :, list(fields)] = _normalized(shape, system, arc_length)
-    shapes.angular_frequency[:, :, direction] = np.sqrt(np.where(values > 0.0, values, np.nan))
+    shape = whole.reshape(-1, len(loops), nodes, FIELDS).swapaxes(-1, -2)[:, :, list(fields)]
+    nodal[:, :, list(fields)] = _normalized(shape, system, arc_length)
+    frequency[:, :, direction] = np.sqrt(np.where(values > 0.0, values, np.nan))
+    return DirectionModes(modes.vectors @ inverse, modes.squares)
 
 
 def longitudinal_share(system: Matrices, shapes: DirectionalShapes) -> FloatArray:
@@ -133,68 +140,11 @@ def full_modes(system: Matrices, loops: tuple[int, ...]) -> FullModes:
     FullModes
     """
     freedoms = np.flatnonzero(~_always_fixed(system.stiffness.shape[-1]))
-    vectors, values = _labelled(system, freedoms, DIRECTIONS, loops)
+    vectors, values, *_ = _labelled(system, freedoms, DIRECTIONS, loops)
     whole = np.zeros((*vectors.shape[:2], system.stiffness.shape[-1]))
     whole[..., freedoms] = vectors
     shape = (values.shape[0], len(DIRECTIONS), len(loops))
     return FullModes(loops, whole.reshape(*shape, -1), values.reshape(shape))
-
-
-def full_eigenvalues(system: Matrices, shapes: DirectionalShapes, loops: tuple[int, ...]) -> FloatArray:
-    """Compute the eigenvalues of the modes that `full_modes` labels, without their vectors, which take twice as long.
-
-    All eigenvalues are solved for. Which label each of the lowest has, its approximation by the directional modes tells
-    (Rayleigh and Ritz). Where the error of these could change a label, `full_modes` decides.
-
-    Parameters
-    ----------
-    system : Matrices
-    shapes : DirectionalShapes
-        Of the same lines.
-    loops : tuple of int
-        Distinct, from 1.
-
-    Returns
-    -------
-    (lines, 3, loops)
-        [rad^2/s^2].
-    """
-    freedoms = np.flatnonzero(~_always_fixed(system.stiffness.shape[-1]))
-    stiffness, mass = _on_freedoms(system, freedoms)
-    values = eigenvalues_alone(stiffness, mass)
-    basis = merge_axes(shapes.lowest, -3, -2)[..., freedoms]
-    across = basis.swapaxes(-1, -2)
-    approximate, vectors = solve_symmetric(basis @ stiffness @ across, basis @ mass @ across)
-    overlap = _momenta_of_sines(mass, freedoms, DIRECTIONS, loops) @ across @ vectors
-    chosen, clear = _clearly_assigned(overlap**2, largest_sines(approximate, values))
-    found = np.take_along_axis(values, chosen, axis=-1).reshape(-1, len(DIRECTIONS), len(loops))
-    doubtful = np.flatnonzero(~clear)
-    if doubtful.size:
-        found[doubtful] = full_modes(take_rows(system, doubtful), loops).eigenvalues
-    return found
-
-
-def _clearly_assigned(score: FloatArray, error: FloatArray) -> tuple[IntArray, BoolArray]:
-    """Assign modes as `assign` does, and tell of which lines no score within its error leads to another assignment.
-
-    score: (lines, labels, modes), squared overlaps with the lowest modes; those of a label with all modes sum up to 1;
-    error: (lines, modes).
-    """
-    known = error < LARGEST_SINE
-    score, error = np.where(known[:, None], score, 0.0), np.where(known, error, 0.0)
-    elsewhere = 1.0 - score.sum(axis=-1, keepdims=True)
-    score, error = np.append(score, elsewhere, axis=-1), np.append(error, error.sum(axis=-1, keepdims=True), axis=-1)
-    chosen = assign(score)
-    row = np.arange(len(score))
-    own = np.take_along_axis(score, chosen[..., None], axis=-1)[..., 0]
-    clear, rival = (chosen < known.shape[1]).all(axis=-1), score + error[:, None]
-    for label in np.argsort(-own, axis=-1).T:  # the order of assignment
-        mode = chosen[row, label]
-        least = own[row, label] - error[row, mode]
-        rival[row, label, mode] = -np.inf
-        clear &= least > np.maximum(rival[row, label].max(axis=-1), rival[row, :, mode].max(axis=-1))
-        rival[row, label, :] = rival[row, :, mode] = -np.inf
-    return chosen, clear
 
 
 def at_points(system: Matrices, nodal: FloatArray) -> FloatArray:
@@ -214,18 +164,19 @@ def _always_fixed(freedoms: int) -> BoolArray:
     return held
 
 
-def _freedoms(fields: tuple[int, ...], nodes: int) -> IntArray:
+def moving_freedoms(fields: tuple[int, ...], nodes: int) -> IntArray:
+    """Return the freedoms of some fields of which none is held in every line, ascending."""
     every = np.arange(FIELDS * nodes)
     return every[np.isin(every % FIELDS, fields) & ~_always_fixed(FIELDS * nodes)]
 
 
 def _labelled(
-    system: Matrices, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...], lowest: int = 0
-) -> tuple[FloatArray, FloatArray]:
+    system: Matrices, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray, DirectionModes, FloatArray]:
     """Solve the eigenproblem on some freedoms and pick one mode for each direction and number of loops.
 
-    Returns vectors (lines, labels + lowest, freedoms), of labels direction-major and then of the lowest modes, and
-    eigenvalues (lines, labels).
+    Returns vectors (lines, labels, freedoms), direction-major, and eigenvalues (lines, labels); then all modes, with
+    vectors of unit mass, and the matrix that turns these to freedoms.
     """
     stiffness, mass = _on_freedoms(system, freedoms)
     inverse, standard = standard_form(stiffness, mass)
@@ -235,7 +186,8 @@ def _labelled(
     sign = np.sign(np.take_along_axis(overlap, chosen[..., None], axis=-1))
     modes = vectors.swapaxes(-1, -2)
     selected = sign * np.take_along_axis(modes, chosen[..., None], axis=1)
-    return np.append(selected, modes[:, :lowest], axis=1) @ inverse, np.take_along_axis(values, chosen, axis=-1)
+    picked = np.take_along_axis(values, chosen, axis=-1)
+    return selected @ inverse, picked, DirectionModes(modes, values), inverse
 
 
 def _on_freedoms(system: Matrices, freedoms: IntArray) -> tuple[FloatArray, FloatArray]:
@@ -249,7 +201,7 @@ def _momenta_of_sines(
     mass: FloatArray, freedoms: IntArray, directions: tuple[int, ...], loops: tuple[int, ...]
 ) -> FloatArray:
     """Return M x of the sines of each label, x^T M x = 1: (lines, labels, freedoms)."""
-    sines = _sines(freedoms, int(freedoms.max()) // FIELDS + 1, directions, loops)
+    sines = waves(freedoms, int(freedoms.max()) // FIELDS + 1, directions, loops)
     momenta = sines @ mass
     return np.asarray(momenta / np.sqrt(np.einsum("lij,ij->li", momenta, sines))[..., None])
 
@@ -264,7 +216,7 @@ def _decouple(stiffness: FloatArray, mass: FloatArray, fixed: BoolArray) -> None
         matrix[lines, held, held] = diagonal
 
 
-def _sines(freedoms: IntArray, nodes: int, directions: tuple[int, ...], loops: tuple[int, ...]) -> FloatArray:
+def waves(freedoms: IntArray, nodes: int, directions: tuple[int, ...], loops: tuple[int, ...]) -> FloatArray:
     """Return sin(k pi s/L) in each direction on the freedoms: (labels, freedoms)."""
     node, field = np.divmod(freedoms, FIELDS)
     wave = np.sin(np.pi * np.outer(loops, node) / (nodes - 1))

@@ -160,7 +160,8 @@ def states_in_wind(discretization: Discretization, winds: IntArray) -> Discretiz
 def shapes_in_wind(states: Discretization, still: DirectionalShapes) -> DirectionalShapes:
     """Return the shapes about the states of `states_in_wind`, given those of the same lines in still air."""
     line = np.resize(np.arange(still.nodal.shape[0]), len(states.lines))
-    repeated = DirectionalShapes(still.loops, still.nodal[line], still.angular_frequency[line], still.lowest[line])
+    modes = tuple(take_rows(each, line) for each in still.modes)
+    repeated = DirectionalShapes(still.loops, still.nodal[line], still.angular_frequency[line], modes)
     return turned_shapes(repeated, states.matrices, states.profile.arc_length)
 
 

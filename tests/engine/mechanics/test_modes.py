@@ -7,19 +7,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, U, V, W
+from engine.mechanics.finite_elements import FIELDS, THETA, U, V, W
 from engine.mechanics.modes import (
-    DirectionalShapes,
     assign,
     at_points,
     directional_shapes,
-    full_eigenvalues,
     full_modes,
     longitudinal_share,
 )
-from engine.models.discretization import discretize
-from engine.spec import Line, Span, Support, Supports
-from tests.builders import discretized, random_line, source_line
+from engine.spec import Span, Supports
+from tests.builders import deep, discretized, random_line, source_line
 
 LOOPS = (1, 2, 3)
 
@@ -73,12 +70,6 @@ def test_shapes_are_normalized_aligned_and_solve_their_own_problems() -> None:
             assert force == pytest.approx(square * (mass @ vector[keep]), abs=1e-8 * np.abs(stiffness).max() * 1e-3)
 
 
-def deep(sag: float, dead_end: bool) -> Line:
-    """Return a line of this sag; with dead ends lam2 = (8 sag/L)^2 EA/H passes 4 pi^2 near 2.5 m."""
-    end = Support(dead_end=dead_end)
-    return replace(source_line(1), span=Span(125.88, sag=sag), supports=Supports(left=end, right=end))
-
-
 @pytest.mark.parametrize("dead_end", [False, True])
 @pytest.mark.parametrize("sag", [0.5, 1.5, 2.0, 2.5, 3.0, 4.0])
 def test_labels_follow_the_shape_and_not_the_order(sag: float, dead_end: bool) -> None:
@@ -113,30 +104,6 @@ def test_longitudinal_mode_is_never_taken() -> None:
     shapes = directional_shapes(discretization.matrices, discretization.profile.arc_length, LOOPS)
     along, up = shapes.nodal[0, :, U], shapes.nodal[0, :, V]
     assert (np.abs(along).max(axis=-1) < 0.3 * np.abs(up).max(axis=-1)).all()
-
-
-@settings(max_examples=10)
-@given(st.integers(0, 10**6))
-def test_eigenvalues_alone_are_those_of_the_full_modes(seed: int) -> None:
-    generator = np.random.default_rng(seed)
-    system, shapes = with_shapes(*(random_line(generator) for _ in range(4)))
-    for loops in ((1, 2), (2, 5)):
-        expected = full_modes(system, loops).eigenvalues
-        assert full_eigenvalues(system, shapes, loops) == pytest.approx(expected, rel=1e-9)
-
-
-def test_labels_of_eigenvalues_are_right_where_the_lowest_modes_do_not_tell_them() -> None:
-    """Torsional modes of a single conductor lie above many others, and a sag turns the vertical ones round."""
-    soft = replace(source_line(1), supports=Supports(longitudinal_stiffness=600.0))
-    system, shapes = with_shapes(source_line(1), soft, *(deep(sag, dead_end=True) for sag in (2.0, 2.5, 3.0, 4.0)))
-    expected = full_modes(system, LOOPS).eigenvalues
-    assert full_eigenvalues(system, shapes, LOOPS) == pytest.approx(expected, rel=1e-9)
-
-
-def with_shapes(*lines: Line) -> tuple[Matrices, DirectionalShapes]:
-    """Return the matrices of lines side by side, and their shapes of one to three loops."""
-    made = discretize(lines)
-    return made.matrices, directional_shapes(made.matrices, made.profile.arc_length, LOOPS)
 
 
 def test_assignment_takes_the_surest_label_first() -> None:
