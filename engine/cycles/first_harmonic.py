@@ -17,12 +17,13 @@ from engine.kernels import compiled
 from engine.kernels.eigenvalues import eigenvalues
 from engine.models.complex_modes import complex_modes
 from engine.models.critical_wind_speeds import at_wind, state_matrices
-from engine.models.reduced_model import ReducedModel, diagonals, of_each_member, with_samples
+from engine.models.reduced_model import ReducedModel, diagonals, gradient_at_rest, of_each_member, with_samples
 from engine.numerics import polynomial
 
 LARGEST_ANGLE = 0.5 * np.pi  # rad; an amplitude beyond broadside has no meaning
 GRID = 40  # amplitudes at which the scalar equation is evaluated
 HALVINGS = 14  # of each bracket
+SIZE = 2.0  # kg^(1/2) m, the amplitude at which work is looked at: a few centimetres
 ORDER = 6  # degree of the characteristic polynomial of three degrees of freedom
 
 
@@ -282,15 +283,16 @@ def _complex(values: AnyArray) -> ComplexArray:
 def _work(
     model: ReducedModel, member: IntArray, wind_speed: FloatArray, frequency: FloatArray, shape: ComplexArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return p_1 and p_3 from the work at two amplitudes, that of the residual of the harmonic balance at the velocity.
+    """Return p_1 from the slopes at rest, and p_3 from the work of the residual of the harmonic balance beyond that.
 
     Inertia and stiffness do no work over a period; ten samples resolve the fourth harmonic.
     """
+    rate, speed = _complex(1j * frequency[:, None] * shape), wind_speed[:, None]
+    slopes = gradient_at_rest(model)[member] @ np.concatenate([speed**2 * shape, speed * rate], axis=-1)[..., None]
+    load = (slopes - model.damping[member] @ rate[..., None])[..., 0]
+    linear = 0.5 * (rate.conj() * load).real.sum(axis=-1)
     first = np.stack([np.zeros(shape.shape), shape.real, -shape.imag], axis=-1)
     velocity = frequency[:, None, None] * (first @ basis(1).derivative.T)
-    sampled, work = with_samples(model, 10), []
-    for size in (1.0, 2.0):
-        lost, _ = linearized(sampled, member, Orbits(size * first, frequency, wind_speed))
-        work.append(-0.5 * size * (lost.reshape(first.shape) * velocity).sum(axis=(1, 2)))
-    cubic = (work[1] - 4.0 * work[0]) / 12.0
-    return work[0] - cubic, cubic
+    lost, _ = linearized(with_samples(model, 10), member, Orbits(SIZE * first, frequency, wind_speed))
+    work = -0.5 * SIZE * (lost.reshape(first.shape) * velocity).sum(axis=(1, 2))
+    return linear, (work - SIZE**2 * linear) / SIZE**4
