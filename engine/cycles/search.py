@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray, eigenvalues
+from engine.arrays import FloatArray, IntArray
 from engine.cycles.branch_set import BranchSet
 from engine.cycles.branches import follow_from_cycles, guessed_cycles
 from engine.cycles.floquet import Floquet
@@ -18,6 +18,7 @@ from engine.cycles.hopf_branches import branches_in_groups
 from engine.cycles.known_cycles import KnownCycles, Starts, solve_starts
 from engine.cycles.resolution import MOST_HARMONICS, harmonics_needed, resolved_in_groups, unresolved_members
 from engine.cycles.starts import energy_starts
+from engine.kernels.eigenvalues import eigenvalues
 from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
 from engine.models.reduced_model import ReducedModel, of_each_member, take, with_samples
 from engine.numerics.newton import NewtonOptions

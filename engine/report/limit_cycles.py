@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
+from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.checks.data_limits import motion_outcomes
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
 from engine.kernels import compiled
+from engine.kernels.eigenvalues import eigenvalues
 from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
 from engine.models.relative_wind import FASTEST, NodalMotion, largest_reach
 from engine.outcome import Outcome, Stability
