@@ -134,7 +134,8 @@ def linear_twist(
     weight pulls less and less sideways.
     """
     nodes = matrices.stiffness.shape[-1] // FIELDS
-    gradient, _ = _ice_energy(lines, profile, section_points, np.zeros((len(lines), nodes)))
+    load, values = _ice_load(lines, profile, section_points, np.zeros((len(lines), nodes)))
+    gradient = _ice_moment(load, values)
     for line, here, values, device in mounted(lines, profile):
         gradient[line, here] -= np.kron(values, device.load())
     moment = -gradient[:, THETA::FIELDS][:, 1:-1]
@@ -248,15 +249,28 @@ def _ice_energy(
     lines: Sequence[Line], profile: StaticProfile, section_points: Sections, angle: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Differentiate n int m g (e_y cos Theta - e_z sin Theta) ds."""
+    load, values = _ice_load(lines, profile, section_points, angle)
+    tangent = (values * load[..., :1]).swapaxes(-1, -2) @ values
+    return _ice_moment(load, values), assemble(tangent)
+
+
+def _ice_moment(load: FloatArray, values: FloatArray) -> FloatArray:
+    """Return the first derivatives of the energy of `_ice_load`: (lines, freedoms)."""
+    return _assembled_vector((load[..., 1, None] * values).sum(axis=2))
+
+
+def _ice_load(
+    lines: Sequence[Line], profile: StaticProfile, section_points: Sections, angle: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return -n m g (e_y, e_z) ds turned by Theta and the values of Theta by the element's freedoms at the points.
+
+    Shapes (lines, elements, points, 2) and (lines, elements, points, 12).
+    """
     interpolation, weight = mass_points(lines, profile, section_points)
     moment = turned_moments(section_points, at_mass_points(interpolation, angle)).first_moment
     count = np.array([len(line.bundle.positions) for line in lines])[:, None, None]
-    load = -GRAVITY * (count * weight)[..., None] * moment
     values = interpolation[..., None] * np.eye(FIELDS)[THETA]
-    flat = values.reshape(*values.shape[:-2], 3 * FIELDS)
-    gradient = (load[..., 1, None] * flat).sum(axis=2)
-    tangent = (flat * load[..., :1]).swapaxes(-1, -2) @ flat
-    return _assembled_vector(gradient), assemble(tangent)
+    return -GRAVITY * (count * weight)[..., None] * moment, values.reshape(*values.shape[:-2], 3 * FIELDS)
 
 
 def at_mass_points(interpolation: FloatArray, nodal: FloatArray) -> FloatArray:

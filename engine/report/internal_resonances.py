@@ -4,8 +4,9 @@ The source: "an internal resonance occurs when the ratio of at least two of the 
 of two positive integers" (paper section 5.1).
 """
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
-from itertools import combinations, pairwise
+from itertools import pairwise
 from math import gcd, sqrt
 
 import numpy as np
@@ -37,24 +38,21 @@ def internal_resonance_rows(frequencies: Sequence[FrequencyRow]) -> tuple[Intern
 
 
 def _pairs(row: FrequencyRow) -> Iterator[InternalResonanceRow]:
-    named = (("vertical", row.vertical_hz), ("horizontal", row.horizontal_hz), ("torsional", row.torsional_hz))
-    for (lower, below), (upper, above) in combinations(named, 2):
+    vertical, horizontal, torsional = row.vertical_hz, row.horizontal_hz, row.torsional_hz
+    for directions, above, below in (
+        ("horizontal:vertical", horizontal, vertical),
+        ("torsional:vertical", torsional, vertical),
+        ("torsional:horizontal", torsional, horizontal),
+    ):
         if below is not None and above is not None:
             ratio = above / below
             p, q = nearest_ratio(ratio)
-            yield InternalResonanceRow(
-                model=row.model,
-                loops=row.loops,
-                directions=f"{upper}:{lower}",
-                frequency_ratio=ratio,
-                nearest_ratio=f"{p}:{q}",
-                detuning=ratio * q / p - 1.0,
-            )
+            yield InternalResonanceRow(row.model, row.loops, directions, ratio, f"{p}:{q}", ratio * q / p - 1.0)
 
 
 def nearest_ratio(ratio: float) -> tuple[int, int]:
     """Return the p and q up to `LARGEST_INTEGER` whose ratio p/q differs least from a positive number, relatively."""
-    return _RATIOS[sum(ratio > limit for limit in _LIMITS)]
+    return _RATIOS[bisect_left(_LIMITS, ratio)]
 
 
 def motion_shares(mass: FloatArray, coefficients: FloatArray, direction: IntArray) -> FloatArray:

@@ -1,8 +1,8 @@
 """The table of dynamic tensions: extremes over the sub-conductors and over time. Theory sections 12.1 and 12.2."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain, repeat
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from engine.arrays import FloatArray, IntArray, times_matrix
 from engine.cycles.harmonic_balance import fourier, peaks
 from engine.models.stretching import dynamic_tension, take_members, tension_range
 from engine.outcome import Outcome
-from engine.report.cells import lists_by_line, numbers
+from engine.report.cells import filled_rows, lists_by_line, numbers
 from engine.report.findings import ModelFindings, cycle_loops, torus_loops
 from engine.report.observers.observer import Observer
 from engine.result import TensionRow
@@ -19,6 +19,13 @@ from engine.tori.spectrum import sampled_states
 
 SAMPLES = 64  # over one period; a parabola through the extremes leaves an error of 1e-4 of the range
 BLOCK = 64  # motions sampled together, so that all their samples stay in the processor's cache
+_FORCES = (
+    "smallest_horizontal_n",
+    "largest_horizontal_n",
+    "smallest_at_support_n",
+    "largest_at_support_n",
+    "largest_share_of_rated_strength",
+)
 _OUTCOMES = np.array([Outcome.CONVERGED, Outcome.SLACK], dtype=np.object_)
 
 
@@ -72,16 +79,13 @@ def _rows(
     share = at_support[:, 1] / np.array(strengths)[line]
     slack = horizontal[:, 0] <= 0.0
     forces = np.where(slack, np.nan, [*horizontal.T, *at_support.T, share])
-    columns: tuple[Iterable[Any], ...] = (
-        repeat(findings.name),
-        *(np.repeat(column, spans).tolist() for column in (loops, wind, branch)),
-        repeat(kind),
-        np.repeat(stability, spans).tolist(),
-        *map(numbers, forces),
-        _OUTCOMES[slack.astype(np.intp)].tolist(),
-        list(range(1, spans + 1)) * motions if spans > 1 else repeat(None),
-    )
-    return zip(line.tolist(), map(TensionRow, *columns), strict=True)
+    labels = {"loops": loops, "wind_speed_m_per_s": wind, "branch": branch, "stability": stability}
+    columns: dict[str, list[Any]] = {name: np.repeat(column, spans).tolist() for name, column in labels.items()}
+    columns |= zip(_FORCES, map(numbers, forces), strict=True)
+    columns |= {"outcome": _OUTCOMES[slack.astype(np.intp)].tolist()}
+    columns |= {"span": list(range(1, spans + 1)) * motions if spans > 1 else [None] * motions}
+    rows = filled_rows(TensionRow, columns, {"model": findings.name, "kind": kind})
+    return zip(line.tolist(), rows, strict=True)
 
 
 def _cycle_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:

@@ -138,7 +138,7 @@ class BifurcationRow:
     uncertainty_m_per_s: Annotated[float, Column("Uncertainty of the wind speed", 0.01, unit="m/s")]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, as above
 class TensionRow:
     """The range of tension over a motion, static and dynamic part together, over all sub-conductors of free sections.
 
