@@ -13,6 +13,7 @@ import numpy as np
 from engine.arrays import FloatArray, IntArray, merge_axes, times_matrix
 from engine.kernels import compiled
 from engine.models.reduced_model import ReducedModel, force, resultant, resultant_gradient, samples_in_period, take
+from engine.numerics.extremes import extremes
 from engine.numerics.newton import NewtonOptions, Solution, newton
 
 SETTLED = 1e-2  # m, rad times the tolerance: largest change of a coefficient from twice an unexpanded load's samples
@@ -251,19 +252,8 @@ def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
     """
     harmonics = coefficients.shape[-1] // 2
     values = times_matrix(coefficients, basis(harmonics, max(READ_SAMPLES, 16 * harmonics + 16)).values.T)
-    return np.asarray(0.5 * (peaks(values) + peaks(-values)))
-
-
-def peaks(values: FloatArray) -> FloatArray:
-    """Return the largest of samples (..., samples) over one period, by a parabola through three of them: (...)."""
-    samples = values.shape[-1]
-    flat = values.reshape(-1, samples)
-    every, top = np.arange(flat.shape[0]), flat.argmax(axis=-1)
-    left, middle, right = (flat[every, (top + shift) % samples].reshape(values.shape[:-1]) for shift in (-1, 0, 1))
-    bend = left - 2.0 * middle + right
-    return np.asarray(
-        middle - np.where(bend < 0.0, (right - left) ** 2 / (8.0 * np.where(bend < 0.0, bend, -1.0)), 0.0)
-    )
+    smallest, largest = extremes(values)
+    return np.asarray(0.5 * (largest - smallest))
 
 
 @lru_cache

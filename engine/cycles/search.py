@@ -126,8 +126,10 @@ def find_cycles(
         _add_solutions(known, integration.starts, needed, "direct_integration")
     _follow_new_cycles(known, branch_sets, wind_speeds)
     cycles = _sorted_cycles(model, known, tuple(branch_sets))
+    if integration.settle is None:
+        return cycles
     member, wind = _without_stable_motion(model, cycles, wind_speeds)
-    if integration.settle is None or member.size == 0:
+    if member.size == 0:
         return cycles
     settled = integration.settle(member, wind)
     before = len(known)

@@ -212,11 +212,11 @@ def shapes_at(shapes: FloatArray, share: FloatArray) -> FloatArray:
 
     share: (stack,), the arc length from the left support over that of the span; 1/(2 k) at the first of k antinodes.
     """
-    elements = (shapes.shape[-1] - 1) // 2
+    elements, every = (shapes.shape[-1] - 1) // 2, np.arange(share.size)
     element = np.minimum((share * elements).astype(np.intp), elements - 1)
     values, _ = shape_functions(2.0 * (share * elements - element) - 1.0)
-    nodes = 2 * element[..., None] + np.arange(3)
-    inner = shapes.ndim - share.ndim - 1
-    index = nodes.reshape(*share.shape, *(1,) * inner, 3)
-    found = np.take_along_axis(shapes, np.broadcast_to(index, (*shapes.shape[:-1], 3)), axis=-1)
-    return np.asarray((found * values.reshape(*share.shape, *(1,) * inner, 3)).sum(axis=-1))
+    first, second, third = (
+        shapes[every, ..., 2 * element + node] * values[:, node].reshape(-1, *(1,) * (shapes.ndim - 2))
+        for node in range(3)
+    )
+    return np.asarray(first + second + third)

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, times_matrix
-from engine.cycles.harmonic_balance import fourier, peaks
+from engine.cycles.harmonic_balance import fourier
 from engine.models.stretching import dynamic_tension, take_members, tension_range
+from engine.numerics.extremes import extremes
 from engine.outcome import Outcome
 from engine.report.cells import filled_rows, lists_by_line, numbers
 from engine.report.findings import ModelFindings, cycle_loops, torus_loops
@@ -101,7 +102,8 @@ def _cycle_tensions(observer: Observer, findings: ModelFindings) -> FloatArray:
         q = times_matrix(cycles.orbits.coefficients[here], values.T).swapaxes(-1, -2)
         tension = dynamic_tension(take_members(stretching, cycles.member[here]), q).swapaxes(-1, -2)
         by_span = tension.reshape(tension.shape[0], static.shape[1], -1, SAMPLES)
-        ranges[here] = np.stack([-peaks(-by_span).max(axis=-1), peaks(by_span).max(axis=-1)], axis=-1)
+        smallest, largest = extremes(by_span)
+        ranges[here] = np.stack([smallest.min(axis=-1), largest.max(axis=-1)], axis=-1)
     return np.asarray(static[..., None] + ranges)
 
 
