@@ -4,17 +4,19 @@ AVAILABLE is False where the kernels were not built. The callers then run their 
 kernels are tested.
 """
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from engine.arrays import AnyArray, ComplexArray, FloatArray, IntArray
 from engine.kernels.layout import contiguous, model_parts, model_shape, unexpanded_parts
-from engine.models.reduced_model import ReducedModel
-from engine.models.relative_wind import NodalMotion
-from engine.models.unexpanded_load import UnexpandedLoad
 from engine.numerics.newton import NewtonOptions, Solution, solution_from_steps
 from engine.spec import AerodynamicModel
+
+if TYPE_CHECKING:  # kernels stand below the models, whose arrays they read
+    from engine.models.reduced_model import ReducedModel
+    from engine.models.relative_wind import NodalMotion
+    from engine.models.unexpanded_load import UnexpandedLoad
 
 
 class UnexpandedStarts(Protocol):
@@ -29,7 +31,7 @@ class UnexpandedStarts(Protocol):
     @property
     def member(self) -> IntArray: ...  # noqa: D102
     @property
-    def load(self) -> UnexpandedLoad: ...  # noqa: D102
+    def load(self) -> "UnexpandedLoad": ...  # noqa: D102
 
 
 try:
@@ -41,7 +43,7 @@ except ImportError:
 
 
 def solved_balances(
-    model: ReducedModel,
+    model: "ReducedModel",
     member: IntArray,
     wind_speed: FloatArray,
     phase: FloatArray,
@@ -70,7 +72,7 @@ def solved_balances(
 
 
 def followed_balances(
-    model: ReducedModel,
+    model: "ReducedModel",
     member: IntArray,
     phase: tuple[FloatArray, FloatArray],
     condition: tuple[FloatArray, FloatArray],
@@ -104,7 +106,7 @@ def followed_balances(
 
 
 def _newton(
-    model: ReducedModel, cycles: tuple[AnyArray, ...], guess: tuple[FloatArray, FloatArray], options: NewtonOptions
+    model: "ReducedModel", cycles: tuple[AnyArray, ...], guess: tuple[FloatArray, FloatArray], options: NewtonOptions
 ) -> Solution:
     start, tangent = guess
     x = np.array(start, order="C")
@@ -119,7 +121,7 @@ def _newton(
 
 
 def balance_slopes(
-    model: ReducedModel, member: IntArray, orbits: tuple[FloatArray, ...]
+    model: "ReducedModel", member: IntArray, orbits: tuple[FloatArray, ...]
 ) -> tuple[FloatArray, FloatArray]:
     """Evaluate the harmonic balance and its slopes, for `engine.cycles.harmonic_balance.linearized`.
 
@@ -145,7 +147,7 @@ def balance_slopes(
 
 
 def products_over_period(
-    model: ReducedModel,
+    model: "ReducedModel",
     orbits: tuple[AnyArray, ...],
     basis: tuple[FloatArray, FloatArray],
     steps: tuple[IntArray, IntArray],
@@ -206,7 +208,7 @@ def even_part(
     return even, square
 
 
-def largest_reaches(motion: NodalMotion, member: IntArray, state: FloatArray) -> FloatArray:
+def largest_reaches(motion: "NodalMotion", member: IntArray, state: FloatArray) -> FloatArray:
     """Find the largest angles of attack and velocity ratios; as `engine.models.relative_wind.largest_reach`."""
     motions, samples, width = state.shape
     (members, nodes, *_), subconductors = motion.forms.shape, motion.arms.shape[-2]

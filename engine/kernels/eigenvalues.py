@@ -13,5 +13,6 @@ def eigenvalues(matrices: FloatArray) -> ComplexArray:
         return arrays.eigenvalues(matrices)
     values = compiled.small_eigenvalues(merge_axes(matrices, -matrices.ndim, -3)).reshape(matrices.shape[:-1])
     failed = np.isnan(values).any(axis=-1)
-    values[failed] = arrays.eigenvalues(matrices[failed])
+    if failed.any():
+        values[failed] = arrays.eigenvalues(matrices[failed])
     return values

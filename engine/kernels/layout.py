@@ -1,13 +1,17 @@
 """How stacks of models are laid out as arguments of the kernels: Model and Unexpanded of engine/kernels/kernels.h."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from engine.arrays import AnyArray
-from engine.models.reduced_model import ReducedModel
-from engine.models.unexpanded_load import UnexpandedLoad
+
+if TYPE_CHECKING:  # kernels stand below the models, whose arrays they read
+    from engine.models.reduced_model import ReducedModel
+    from engine.models.unexpanded_load import UnexpandedLoad
 
 
-def model_shape(model: ReducedModel) -> tuple[int, int, int, int, bool, int]:
+def model_shape(model: "ReducedModel") -> tuple[int, int, int, int, bool, int]:
     """Return members, coordinates, points, local variables, whether the model stretches, and samples in a period.
 
     An unexpanded load has sub-conductors in place of local variables; otherwise the number of samples is 0.
@@ -19,7 +23,7 @@ def model_shape(model: ReducedModel) -> tuple[int, int, int, int, bool, int]:
     return members, m, *model.load.forms.shape[1:3], stretches, 0
 
 
-def model_parts(model: ReducedModel) -> tuple[AnyArray, ...]:
+def model_parts(model: "ReducedModel") -> tuple[AnyArray, ...]:
     """Return the arrays of a stack of models; those of stretching are empty where it is neglected."""
     load, stretching, none = model.load, model.stretching, np.empty(0)
     own = (none, none) if stretching is None else (stretching.table, stretching.slopes)
@@ -30,7 +34,7 @@ def model_parts(model: ReducedModel) -> tuple[AnyArray, ...]:
     return contiguous(*structure, load.forms, load.table, load.slopes)
 
 
-def unexpanded_parts(load: UnexpandedLoad) -> tuple[AnyArray, ...]:
+def unexpanded_parts(load: "UnexpandedLoad") -> tuple[AnyArray, ...]:
     """Return the arrays of a stack of unexpanded loads."""
     curves = load.curves
     first, begins = curves.pieces

@@ -5,7 +5,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, eigenvalues
+from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from engine.kernels.eigenvalues import eigenvalues
 from engine.models.complex_modes import complex_modes, followed_eigenvalues
 from engine.models.reduced_model import ReducedModel, gradient_at_rest
 

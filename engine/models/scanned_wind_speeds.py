@@ -9,7 +9,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from engine.arrays import BoolArray, FloatArray, IntArray, eigenvalues
+from engine.arrays import BoolArray, FloatArray, IntArray
+from engine.kernels.eigenvalues import eigenvalues
 from engine.mechanics.modes import TORSIONAL, DirectionalShapes
 from engine.mechanics.wind_twist import WindTwist
 from engine.models.critical_wind_speeds import Crossings, StateMatrices, at_wind, state_matrices, unstable_pairs

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from engine.arrays import FloatArray
+from engine.kernels import compiled
 from engine.models.critical_wind_speeds import (
     Crossings,
     at_wind,
@@ -110,6 +111,16 @@ def test_a_dense_scan_finds_the_same_crossings() -> None:
         scanned = np.array([b - a for a, b in pairwise(counts)])
         assert jump.tolist() == scanned.tolist()
         assert (inside >= np.abs(scanned)).all()
+
+
+def test_crossings_are_those_without_the_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = [critical_wind_speeds(model, LIMIT) for model in models()]
+    monkeypatch.setattr(compiled, "AVAILABLE", False)
+    for model, mine in zip(models(), found, strict=True):
+        expected = critical_wind_speeds(model, LIMIT)
+        assert mine.wind_speed == pytest.approx(expected.wind_speed, rel=1e-9)
+        assert mine.coordinate.tolist() == expected.coordinate.tolist()
+        assert mine.unstable_after.tolist() == expected.unstable_after.tolist()
 
 
 def test_finite_element_crossings_are_confirmed_too() -> None:
