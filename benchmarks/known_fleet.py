@@ -25,7 +25,8 @@ RESOLVED_ALONE = 50
 def known_fleet() -> Iterator[tuple[str, float]]:
     """Yield processor time: forms over explicit lines, intake and engine, block by block in turn; one line [ms]."""
     analysis = convert.read_analysis({"models": ["hybrid"]})
-    blocks = [lines[first : first + convert.STACK] for lines in [list(forms(LINES))] for first in range(0, LINES, convert.STACK)]
+    lines = list(forms(LINES))
+    blocks = [lines[first : first + convert.STACK] for first in range(0, LINES, convert.STACK)]
     _seconds(blocks[0][:8], analysis)
     known, spelled = 0.0, 0.0
     for number, block in enumerate(blocks):

@@ -115,8 +115,9 @@ def _newton(
     residual = np.full(cycles[2].shape, np.nan)  # without the conditions
     limits = (options.tolerance, options.largest_step, options.iterations)
     size = (x.shape[0], harmonics, tangent.size > 0)
+    reach = np.broadcast_to(options.reach, step.shape)
     results = (x, step, iterations, residual, tangent)
-    newton(model_parts(model), model_shape(model), size, contiguous(*cycles), limits, results)
+    newton(model_parts(model), model_shape(model), size, contiguous(*cycles, reach), limits, results)
     return solution_from_steps(x, step, iterations, residual, options)
 
 

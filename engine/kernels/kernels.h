@@ -89,16 +89,18 @@ typedef struct {
     int iterations;
 } Options;
 
-/* Starts and results of the harmonic balance. The unknowns x (cycles, unknowns) are the n = m (2 H + 1) coefficients and w
- * at a given wind_speed (cycles). If `follows` is set, the wind speed is one more unknown and row . x = target, (cycles,
- * unknowns) and (cycles), is one more equation. reference . (x - anchor) = 0, (cycles, n) and (cycles, unknowns), fixes
- * the phase. scale (cycles, unknowns) is the size of x; step, iterations (cycles) are the last step's size and the number
- * of steps, 0 at first; residual (cycles, n) is that of the start, set by the first step; along tangent (cycles, unknowns) row . x grows by one and the other residuals do not change. */
+/* Starts and results of the harmonic balance. The unknowns x (cycles, unknowns) are the n = m (2 H + 1) coefficients
+ * and w at a given wind_speed (cycles). If `follows` is set, the wind speed is one more unknown and row . x = target,
+ * (cycles, unknowns) and (cycles), is one more equation. reference . (x - anchor) = 0, (cycles, n) and (cycles,
+ * unknowns), fixes the phase. scale (cycles, unknowns) is the size of x; a cycle whose first step is longer than reach
+ * (cycles) is given up; step, iterations (cycles) are the last step's size and the number of steps, 0 at first;
+ * residual (cycles, n) is that of the start, set by the first step; along tangent (cycles, unknowns) row . x grows by
+ * one and the other residuals do not change. */
 typedef struct {
     ptrdiff_t cycles;
     int harmonics, follows;
     const ptrdiff_t *member;
-    const double *wind_speed, *reference, *anchor, *scale, *row, *target;
+    const double *wind_speed, *reference, *anchor, *scale, *row, *target, *reach;
     double *x, *step, *residual, *tangent;
     ptrdiff_t *iterations;
 } Balances;

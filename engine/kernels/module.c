@@ -181,14 +181,14 @@ static PyObject *finished(Buffers *buffers, int enough_memory)
 static PyObject *newton(PyObject *Py_UNUSED(self), PyObject *arguments)
 {
     Buffers buffers = {.count = 0};
-    PyObject *parts, *member, *speed, *reference, *anchor, *scale, *row, *target, *x, *step, *iterations;
+    PyObject *parts, *member, *speed, *reference, *anchor, *scale, *row, *target, *reach, *x, *step, *iterations;
     PyObject *residual, *tangent;
     int shape[5], harmonics, follows, done = 1;
     Py_ssize_t members, cycles;
     Options options;
-    if (!PyArg_ParseTuple(arguments, "O!(niiipi)(nip)(OOOOOOO)(ddi)(OOOOO)", &PyTuple_Type, &parts, &members, shape,
+    if (!PyArg_ParseTuple(arguments, "O!(niiipi)(nip)(OOOOOOOO)(ddi)(OOOOO)", &PyTuple_Type, &parts, &members, shape,
                           shape + 1, shape + 2, shape + 3, shape + 4, &cycles, &harmonics, &follows, &member, &speed, &reference, &anchor,
-                          &scale, &row, &target, &options.tolerance, &options.largest_step, &options.iterations, &x,
+                          &scale, &row, &target, &reach, &options.tolerance, &options.largest_step, &options.iterations, &x,
                           &step, &iterations, &residual, &tangent))
         return NULL;
     const Py_ssize_t balances = SIZE(shape[0], 2 * (Py_ssize_t)harmonics + 1), unknowns = balances + 1 + follows;
@@ -200,7 +200,8 @@ static PyObject *newton(PyObject *Py_UNUSED(self), PyObject *arguments)
         && (wanted.wind_speed = REALS(speed, follows ? 0 : cycles))
         && (wanted.reference = REALS(reference, SIZE(cycles, balances))) && (wanted.anchor = REALS(anchor, all))
         && (wanted.scale = REALS(scale, all)) && (wanted.row = REALS(row, follows ? all : 0))
-        && (wanted.target = REALS(target, follows ? cycles : 0)) && (wanted.x = RESULT(x, all))
+        && (wanted.target = REALS(target, follows ? cycles : 0)) && (wanted.reach = REALS(reach, cycles))
+        && (wanted.x = RESULT(x, all))
         && (wanted.step = RESULT(step, cycles))
         && (wanted.iterations = items(&buffers, iterations, cycles, "lq", PyBUF_WRITABLE))
         && (wanted.residual = RESULT(residual, SIZE(cycles, balances)))

@@ -91,7 +91,7 @@ static void iterate(System *w, const Model *model, const Balances *wanted, ptrdi
         }
         wanted->step[cycle] = size;
         wanted->iterations[cycle] = iteration + 1;
-        if (size <= options->tolerance)
+        if (size <= options->tolerance || (!iteration && size > wanted->reach[cycle]))
             return;
     }
 }

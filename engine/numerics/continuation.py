@@ -5,7 +5,7 @@ and by one parameter, the last entry of each point. Branches run side by side, e
 """
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -16,6 +16,7 @@ from engine.outcome import Outcome
 
 MOST_ITERATIONS = 5  # of Newton's method: a step that needs more of them is too long
 ALL_UNKNOWNS = slice(None)
+LOST = 1.5  # times the largest miss: a first step of Newton's method beyond which its end is not looked for
 QUICKEST = 2.0  # largest growth of a step from one point to the next
 
 
@@ -177,7 +178,8 @@ def continue_branches(
         guess = _predict(before.select(active), here, length[active])
         # A starting point may have no phase, as an equilibrium has none.
         anchor = np.where(np.isnan(before.z[active]), guess, here.z)
-        new, solution = solve_at_length(problem, here, length[active], guess, anchor, options)
+        near = replace(options, reach=LOST * steps.miss * length[active])
+        new, solution = solve_at_length(problem, here, length[active], guess, anchor, near)
         missed = _relative_miss(here, new, guess)
         good = solution.converged & (missed < steps.miss) & (_cosine(here, new) > steps.straightness)
         growth = np.where(good, _growth(missed, steps), 0.5)

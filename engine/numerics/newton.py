@@ -17,12 +17,14 @@ BLOCK_NUMBERS = 2_000_000  # largest number of entries in the Jacobians of one b
 class NewtonOptions:
     """Tolerance of the scaled step, largest scaled step, and largest number of iterations.
 
-    Convergence is quadratic: after a step of 1e-6 the error is of the order of its square.
+    Convergence is quadratic: after a step of 1e-6 the error is of the order of its square. A member whose first step is
+    longer than `reach`, of all or (members,), is given up: what it would find is too far from where it starts.
     """
 
     tolerance: float = 1e-6
     largest_step: float = 0.5
     iterations: int = 20
+    reach: float | FloatArray = np.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,7 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOpti
     iterations = np.zeros(x.shape[0], dtype=np.intp)
     residual = np.full(x.shape, np.nan)
     active = np.flatnonzero(np.isfinite(x).all(axis=-1))
+    limit = np.maximum(options.tolerance, np.broadcast_to(options.reach, step.shape))
     for _ in range(options.iterations):
         if active.size == 0:
             break
@@ -82,7 +85,8 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOpti
         x[active] += change * np.minimum(1.0, options.largest_step / np.maximum(size, 1e-300))[:, None]
         step[active] = size
         iterations[active] += 1
-        active = active[size > options.tolerance]
+        lost = starts[finite] & (size > limit[active])
+        active = active[(size > options.tolerance) & ~lost]
     return solution_from_steps(x, step, iterations, residual, options)
 
 

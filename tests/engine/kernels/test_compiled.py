@@ -111,6 +111,19 @@ def test_a_step_along_a_branch_solves_the_slopes_and_both_conditions(name: str) 
     assert how.step == pytest.approx(np.sqrt((change**2).mean(axis=-1)))
 
 
+def test_cycles_farther_than_their_reach_are_given_up_as_in_numpy(both: pytest.MonkeyPatch) -> None:
+    model, member = perturbed(MODELS["hybrid"]()), np.arange(COPIES) % 4
+    orbits = random_orbits(take(model, member), 3, COPIES)
+    first = balance(model, member, orbits, NewtonOptions(iterations=1))[1].step
+    options = NewtonOptions(reach=first * np.resize([0.9, 1.1], COPIES), tolerance=1e-9, iterations=3)
+    found = balance(model, member, orbits, options)[1]
+    both.setattr(compiled, "AVAILABLE", False)
+    expected = balance(model, member, orbits, options)[1]
+    assert found.iterations.tolist() == expected.iterations.tolist()
+    assert (found.iterations[::2] == 1).all()
+    assert (found.iterations[1::2] == 3).all()
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_multipliers_are_those_of_the_numpy_form(name: str, both: pytest.MonkeyPatch) -> None:
     model, member = perturbed(MODELS[name]()), np.arange(COPIES) % 4

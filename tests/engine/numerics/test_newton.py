@@ -75,3 +75,13 @@ def test_downhill_tangents_have_the_absolute_eigenvalues_whatever_stands_beside_
     convex, saddle = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([[1.0, 2.0], [2.0, 1.0]])  # eigenvalues 1, 3; -1, 3
     assert downhill(np.stack([convex, saddle])) == pytest.approx(np.stack([convex, convex]), rel=1e-14)
     assert downhill(convex[None]).tolist() == [convex.tolist()]
+
+
+def test_a_start_that_is_farther_than_the_reach_is_given_up_after_its_first_step() -> None:
+    targets, start = np.array([4.0, 4.0, 4.0]), np.tile([3.0, 4.0], (3, 1))
+    first = 5.0 / 6.0  # of both unknowns, from x_0 = 3 to (9 + 4) / 6
+    options = NewtonOptions(largest_step=1.0, reach=np.array([0.99 * first, 1.01 * first, np.inf]))
+    found = newton(quadratics(targets), start, np.ones((3, 2)), options)
+    assert found.converged.tolist() == [False, True, True]
+    assert found.iterations[0] == 1
+    assert found.step[0] == pytest.approx(first)
