@@ -10,6 +10,7 @@ from engine.mechanics.finite_elements import FIELDS
 from engine.mechanics.modes import DIRECTIONS, assign
 
 SMALL_LOOP = 0.2  # of the largest displacement, below which a loop is not counted
+ALIKE = 1.0 - 1e-6  # of the largest displacement, from which another one is as large: rounding does not tell them apart
 
 
 def modes_of_phases(whole: AssembledLine, modes: NumberedModes, loops: tuple[int, ...]) -> IntArray:
@@ -46,10 +47,12 @@ def loops_of_modes(whole: AssembledLine, modes: NumberedModes, chosen: IntArray)
 
 
 def relative_motion(whole: AssembledLine, modes: NumberedModes, chosen: IntArray) -> FloatArray:
-    """Return the motion of each phase where the largest one is, as a share of that one: (chosen, members)."""
+    """Return the motion of each phase where the (first) largest one is, as a share of that one: (chosen, members)."""
     field = np.array(DIRECTIONS)[np.maximum(modes.direction[chosen], 0)]
     own = by_member(modes.displacement[chosen], whole.assembly.members)[:, np.arange(chosen.size), field]
-    member, node = np.divmod(np.abs(own.swapaxes(0, 1)).reshape(chosen.size, -1).argmax(axis=-1), own.shape[-1])
+    size = np.abs(own.swapaxes(0, 1)).reshape(chosen.size, -1)
+    largest = (size >= ALIKE * size.max(axis=-1, keepdims=True)).argmax(axis=-1)
+    member, node = np.divmod(largest, own.shape[-1])
     row = np.arange(chosen.size)
     return np.asarray((own[:, row, node] / own[member, row, node]).T)
 

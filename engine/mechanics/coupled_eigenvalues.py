@@ -43,14 +43,16 @@ def full_eigenvalues(system: Matrices, shapes: DirectionalShapes, loops: tuple[i
     """
     nodes = shapes.nodal.shape[-1]
     count = min(max(loops) + FURTHER, nodes - 2)
+    sines = waves(np.arange(FIELDS * nodes), nodes, DIRECTIONS, loops)
     near = _in_all_freedoms([modes.vectors[:, :count] for modes in shapes.modes], nodes)
     stiffness = _product(system.stiffness, near, system.fixed)
-    inertia = _product(system.mass, near, system.fixed)
+    both = np.append(near, np.broadcast_to(sines, (len(near), *sines.shape)), axis=1)
+    inertia, momenta = np.split(_product(system.mass, both, system.fixed), [near.shape[1]], axis=1)
     across = near.swapaxes(-1, -2)
     first, vectors = solve_symmetric(stiffness @ across, inertia @ across)
     turn = vectors.swapaxes(-1, -2)
     near, stiffness, inertia = turn @ near, turn @ stiffness, turn @ inertia
-    score = _overlaps(system, near, loops) ** 2
+    score = (momenta @ near.swapaxes(-1, -2)) ** 2 / (momenta * sines).sum(axis=-1, keepdims=True)
     corrected = assign(score)
     own = np.take_along_axis(first, corrected, axis=-1)[..., None]
     residual, moving = (np.take_along_axis(x, corrected[..., None], axis=1) for x in (stiffness, inertia))
@@ -83,15 +85,6 @@ def _product(matrix: FloatArray, rows: FloatArray, held: BoolArray) -> FloatArra
     """Multiply vectors (lines, k, freedoms) by K or M in which held freedoms are decoupled."""
     own = rows * held[:, None]
     return ((rows - own) @ matrix) * ~held[:, None] + own * np.diagonal(matrix, axis1=-2, axis2=-1)[:, None]
-
-
-def _overlaps(system: Matrices, vectors: FloatArray, loops: tuple[int, ...]) -> FloatArray:
-    """Return the products in M of the sines of each label, of unit mass, with vectors: (lines, labels, vectors)."""
-    freedoms = np.arange(vectors.shape[-1])
-    sines = waves(freedoms, freedoms.size // FIELDS, DIRECTIONS, loops)
-    momenta = _product(system.mass, np.broadcast_to(sines, (len(vectors), *sines.shape)), system.fixed)
-    size = np.sqrt((momenta * sines).sum(axis=-1, keepdims=True))
-    return np.asarray(momenta @ vectors.swapaxes(-1, -2) / size)
 
 
 def _corrections(shapes: DirectionalShapes, count: int, residual: FloatArray, values: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Mass, ice, wind and aerodynamics along a span, at the quadrature points of each element.
+"""Mass, ice, wind and aerodynamics along a span, at the quadrature points of each element, and sums over bundles.
 
 Ice, spoilers and the wind profile change at given positions. Every integral is taken piece by piece between those
 positions, so a boundary inside an element causes no quadrature error (theory section 3).
@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.arrays import FloatArray
+from engine.arrays import BoolArray, FloatArray
 from engine.mechanics.along_span import boundaries, coefficients_along, wind_factor
 from engine.mechanics.coefficients import fit_measured
 from engine.mechanics.static_profile import StaticProfile, arc_position, horizontal_position
@@ -120,6 +120,32 @@ def positions(profile: StaticProfile, local: FloatArray) -> FloatArray:
     elements = local.shape[1]
     arc = (np.arange(elements)[:, None] + 0.5 * (local + 1.0)) * (profile.arc_length[:, None, None] / elements)
     return horizontal_position(profile, arc)
+
+
+def padded_positions(lines: Sequence[Line]) -> tuple[FloatArray, BoolArray]:
+    """Return (y, z) of the sub-conductors, (lines, n, 2) [m], zero beyond those of a line, and which it has."""
+    each = [line.bundle.positions for line in lines]
+    count = np.array([len(positions) for positions in each])
+    most = int(count.max())
+    padded = [(*positions, *((0.0, 0.0),) * (most - len(positions))) for positions in each]
+    return np.array(padded, dtype=np.float64), np.arange(most) < count[:, None]
+
+
+def bundle_sums(lines: Sequence[Line]) -> FloatArray:
+    """Return n, sum y, sum z, sum y^2, sum z^2 and sum y z over the sub-conductors: (6, lines)."""
+    positions, present = padded_positions(lines)
+    y, z = np.moveaxis(positions, -1, 0)
+    return np.stack([values.sum(axis=-1) for values in (present, y, z, y**2, z**2, y * z)])
+
+
+def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
+    """Return `bundle_sums` of cross-sections turned by angles (lines, elements, points) [rad]: (6, ...)."""
+    n, s_y, s_z, s_yy, s_zz, s_yz = bundle_sums(lines)[:, :, None, None]
+    c, s = np.cos(angle), np.sin(angle)
+    one = np.ones_like(angle)
+    y_y = c**2 * s_yy - 2.0 * c * s * s_yz + s**2 * s_zz
+    y_z = c * s * (s_yy - s_zz) + (c**2 - s**2) * s_yz
+    return np.stack([n * one, c * s_y - s * s_z, s * s_y + c * s_z, y_y, s_yy + s_zz - y_y, y_z])
 
 
 @lru_cache

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
-from engine.mechanics.cross_sections import Sections
+from engine.mechanics.cross_sections import Sections, bundle_sums, turned_sums
 from engine.mechanics.free_sections import Differences, differences
 from engine.mechanics.interpolation import StrainPoints, chords, element_nodes, shape_functions, strain_points
 from engine.mechanics.static_profile import StaticProfile, arc_position
@@ -57,8 +57,9 @@ def matrices(lines: Sequence[Line], profile: StaticProfile, section_points: Sect
     interpolation, weight = mass_points(lines, profile, section_points)
     at = strain_points(lines, profile)
     density = elastic_density(lines, at, bundle_sums(lines)[:, :, None, None])
-    stiffness = assemble(quadratic_form(at.slopes, at.weight, density))
-    stiffness += assemble(quadratic_form(interpolation, weight, _ice_stiffness_density(lines, section_points)))
+    element = quadratic_form(at.slopes, at.weight, density)
+    element += quadratic_form(interpolation, weight, _ice_stiffness_density(lines, section_points))
+    stiffness = assemble(element)
     apart = differences(lines, profile, np.zeros((len(lines), stiffness.shape[-1] // FIELDS)))
     stiffness[:, THETA::FIELDS, THETA::FIELDS] += apart.tangent
     for line, here, values, device in mounted(lines, profile):
@@ -83,7 +84,7 @@ def mass_matrix(
     interpolation, weight = mass_points(lines, profile, section_points)
     sums = bundle_sums(lines)[:, :, None, None] if twist is None else turned_sums(lines, section_points.twist)
     mass = assemble(quadratic_form(interpolation, weight, _mass_density(lines, section_points, sums)))
-    along = mass[:, U::FIELDS, U::FIELDS] / bundle_sums(lines)[0][:, None, None]
+    along = mass[:, U::FIELDS, U::FIELDS] / sums[0, :, :1, :1]  # of one sub-conductor
     mass[:, THETA::FIELDS, THETA::FIELDS] += apart.inertia(along)
     for line, here, values, device in mounted(lines, profile):
         turn = 0.0 if twist is None else float(values @ twist[line, here.start // FIELDS : here.stop // FIELDS])
@@ -98,32 +99,6 @@ def mass_points(
     interpolation, derivative = shape_functions(section_points.local)
     metric = derivative @ element_nodes(profile, lines[0].span.elements)
     return interpolation, section_points.local_weight * np.linalg.norm(metric, axis=-1)
-
-
-def padded_positions(lines: Sequence[Line]) -> tuple[FloatArray, BoolArray]:
-    """Return (y, z) of the sub-conductors, (lines, n, 2) [m], zero beyond those of a line, and which it has."""
-    each = [line.bundle.positions for line in lines]
-    count = np.array([len(positions) for positions in each])
-    most = int(count.max())
-    padded = [(*positions, *((0.0, 0.0),) * (most - len(positions))) for positions in each]
-    return np.array(padded, dtype=np.float64), np.arange(most) < count[:, None]
-
-
-def bundle_sums(lines: Sequence[Line]) -> FloatArray:
-    """Return n, sum y, sum z, sum y^2, sum z^2 and sum y z over the sub-conductors: (6, lines)."""
-    positions, present = padded_positions(lines)
-    y, z = np.moveaxis(positions, -1, 0)
-    return np.stack([values.sum(axis=-1) for values in (present, y, z, y**2, z**2, y * z)])
-
-
-def turned_sums(lines: Sequence[Line], angle: FloatArray) -> FloatArray:
-    """Return `bundle_sums` of cross-sections turned by angles (lines, elements, points) [rad]: (6, ...)."""
-    n, s_y, s_z, s_yy, s_zz, s_yz = bundle_sums(lines)[:, :, None, None]
-    c, s = np.cos(angle), np.sin(angle)
-    one = np.ones_like(angle)
-    y_y = c**2 * s_yy - 2.0 * c * s * s_yz + s**2 * s_zz
-    y_z = c * s * (s_yy - s_zz) + (c**2 - s**2) * s_yz
-    return np.stack([n * one, c * s_y - s * s_z, s * s_y + c * s_z, y_y, s_yy + s_zz - y_y, y_z])
 
 
 def quadratic_form(values: FloatArray, weight: FloatArray, density: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import FloatArray
+from engine.mechanics.cross_sections import padded_positions
 from engine.mechanics.interpolation import StrainPoints, strain_points
 from engine.mechanics.static_profile import StaticProfile
 from engine.spec import CrossSection, Line
@@ -71,7 +72,7 @@ def differences(lines: Sequence[Line], profile: StaticProfile, twist: FloatArray
     lever, turned = _levers(at, (values @ twist[..., None])[..., 0])
     strain = lever * slopes[:, None] + turned * rate[:, None] * values
     pull = slopes.swapaxes(-1, -2) * (_rigidity(lines) * _flat(at.weight * at.direction[..., 0]))[:, None]
-    follow = -_flexibility(lines, profile, at) @ pull
+    follow = -_flexibility(lines, profile, at, slopes, values) @ pull
     motion = follow[:, None] @ strain
     tension = np.einsum("lij,lnp,lnq,ljq->lip", moments, pull, follow, (lever * rate[:, None])[..., 0], optimize=True)
     mixed = slopes.swapaxes(-1, -2) @ ((tension[..., None] * turned).sum(axis=1) * values)
@@ -87,12 +88,11 @@ def differences(lines: Sequence[Line], profile: StaticProfile, twist: FloatArray
 
 def second_moments(lines: Sequence[Line]) -> FloatArray:
     """Return the sums of (y, z)(y, z)^T about the mean position, (lines, 2, 2) [m2]; zero for rigid sections."""
-    moments = np.zeros((len(lines), 2, 2))
-    for i, line in enumerate(lines):
-        if line.bundle.section is CrossSection.FREE:
-            about_mean = np.array(line.bundle.positions) - np.mean(line.bundle.positions, axis=0)
-            moments[i] = about_mean.T @ about_mean
-    return moments
+    positions, present = padded_positions(lines)
+    mean = positions.sum(axis=1, keepdims=True) / present.sum(axis=1)[:, None, None]
+    free = np.array([line.bundle.section is CrossSection.FREE for line in lines])
+    about_mean = np.where(present[..., None] & free[:, None, None], positions - mean, 0.0)
+    return np.asarray(about_mean.swapaxes(-1, -2) @ about_mean)
 
 
 def _rigidity(lines: Sequence[Line]) -> FloatArray:
@@ -125,12 +125,13 @@ def _levers(at: StrainPoints, turn: FloatArray) -> tuple[FloatArray, FloatArray]
     return np.stack([above, beside], axis=1)[..., None], np.stack([beside, -above], axis=1)[..., None]
 
 
-def _flexibility(lines: Sequence[Line], profile: StaticProfile, at: StrainPoints) -> FloatArray:
+def _flexibility(
+    lines: Sequence[Line], profile: StaticProfile, at: StrainPoints, slopes: FloatArray, values: FloatArray
+) -> FloatArray:
     """Return the inverse of the stiffness of a field u_i: (lines, nodes, nodes) [m/N], zero where a yoke holds it.
 
-    If nothing holds the field at either end, its mean along the span is zero.
+    slopes, values: as `_readers` returns them. If nothing holds the field at either end, its mean is zero.
     """
-    slopes, values = _readers(at)
     weight = _flat(at.weight)
     rigidity = _rigidity(lines) * _flat(at.direction[..., 0]) ** 2 + _flat(at.tension)
     stiffness = slopes.swapaxes(-1, -2) @ ((rigidity * weight)[..., None] * slopes)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray, filled, take_rows
-from engine.mechanics.cross_sections import Sections, turned, turned_moments
+from engine.mechanics.cross_sections import Sections, turned, turned_moments, turned_sums
 from engine.mechanics.finite_elements import (
     FIELDS,
     THETA,
@@ -30,7 +30,6 @@ from engine.mechanics.finite_elements import (
     mass_matrix,
     mass_points,
     mounted,
-    turned_sums,
 )
 from engine.mechanics.free_sections import Differences, differences
 from engine.mechanics.interpolation import strain_points

@@ -24,8 +24,8 @@ from engine.mechanics.coefficient_curves import (
     largest_moment_slopes,
     local_curves,
 )
-from engine.mechanics.cross_sections import Sections
-from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, mounted, turned_sums
+from engine.mechanics.cross_sections import Sections, turned_sums
+from engine.mechanics.finite_elements import FIELDS, THETA, Matrices, mounted
 from engine.mechanics.static_profile import StaticProfile
 from engine.mechanics.static_twist import at_mass_points
 from engine.spec import GRAVITY, Line, PointDevice

@@ -255,8 +255,8 @@ def published_load(
     factor = sections_of_lines.wind_factor.reshape(count, 1, -1)
     share = 2.0 / arc_length[:, None, None, None] * (points * (f_theta * ds)[:, :, None, None]).sum(axis=-1)  # (A15)
     speed = 2.0 / arc_length[:, None] * (f_theta**2 * factor * ds).sum(axis=-1)
-    exponents = np.arange(2, 5)
-    shape_powers = f_theta[..., None] ** exponents * (ds * factor**2)[..., None]
+    square = f_theta**2
+    shape_powers = np.stack([square, square * f_theta, square**2], axis=-1) * (ds * factor**2)[..., None]
     coefficients = sections_of_lines.aerodynamics.reshape(count, -1, 3, 4)[..., 1:]
     integrals = np.einsum("lpij,lgpj->lgij", coefficients, shape_powers)  # (A17)
     diameter = np.array([line.conductor.diameter for line in lines])[:, None]

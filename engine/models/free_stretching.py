@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray
-from engine.mechanics.finite_elements import padded_positions
+from engine.mechanics.cross_sections import padded_positions
 from engine.spec import CrossSection, Line
 
 NEGLIGIBLE = 1e-12  # of the largest eigenvalue: rounding in the sums over a regular bundle

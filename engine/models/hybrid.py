@@ -73,19 +73,21 @@ def hybrid_model(
     ReducedModel
     """
     relief = _relief(discretization, loops, analysis)
-    basis = _basis(shapes.nodal[:, :, :, None], relief)
+    needed = sorted({1, *loops})  # the damping of one loop may be that of all
+    basis = _basis(shapes.nodal[:, [shapes.loops.index(k) for k in needed], :, None], relief)
     system = discretization.matrices.stiffness, discretization.matrices.mass
     mass, stiffness, _ = condensed(system, basis, 1, analysis.longitudinal_inertia)
     squares = diagonals(stiffness) / diagonals(mass)
-    selected = [shapes.loops.index(k) for k in loops]
-    mass, stiffness = mass[:, selected], stiffness[:, selected]
+    own = [needed.index(k) for k in loops]
+    mass, stiffness = mass[:, own], stiffness[:, own]
     constant = np.array([line.damping.model is DampingModel.CONSTANT_COEFFICIENT for line in discretization.lines])
-    square = np.where(constant[:, None, None], squares[:, [shapes.loops.index(1)]], squares[:, selected])
+    square = np.where(constant[:, None, None], squares[:, :1], squares[:, own])
     ratios = damping_ratios(discretization.lines)
     if relief is not None:
         ratios = np.append(ratios, np.full((len(ratios), 1), DAMPING_RATIO), axis=-1)
     rate = 2.0 * ratios[:, None] * np.sqrt(np.maximum(square, 0.0))
     unstable = np.asarray((square <= 0.0).any(axis=-1) | (np.linalg.eigvalsh(stiffness)[..., 0] <= 0.0))
+    selected = [shapes.loops.index(k) for k in loops]
     nodal = fields_in_space(discretization.profile, diagonal_fields(shapes.nodal[:, selected, 1:]))
     fields = _with_relief(discretization, nodal, None if relief is None else np.zeros_like(relief))
     damping = diagonal_matrices(rate * diagonals(mass))  # (11)

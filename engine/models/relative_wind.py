@@ -13,7 +13,7 @@ from math import comb
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merge_axes
-from engine.mechanics.finite_elements import bundle_sums
+from engine.mechanics.cross_sections import bundle_sums
 from engine.numerics import polynomial
 from engine.spec import AerodynamicModel, Line
 
@@ -49,12 +49,14 @@ def local_motion_forms(fields: FloatArray, scale: FloatArray, factor: FloatArray
     -------
     (lines, groups, points, 4, 2 m)
     """
-    v, w, theta = (fields[..., i, :] for i in (VERTICAL, HORIZONTAL, TORSIONAL))
-    by_wind = 1.0 / factor[..., None, :]
-    none = np.zeros_like(theta)
-    rates = (v * by_wind, w * by_wind, scale[..., None] * theta * by_wind)
-    rows = [(theta, none), *((none, rate) for rate in rates)]
-    return np.stack([np.moveaxis(np.concatenate(row, axis=2), -1, 2) for row in rows], axis=-2)
+    at_points = np.moveaxis(fields, -1, 2)  # (lines, groups, points, m, 3)
+    v, w, theta = (at_points[..., i] for i in (VERTICAL, HORIZONTAL, TORSIONAL))
+    m, by_wind = theta.shape[-1], 1.0 / factor[..., None]
+    forms = np.zeros((*theta.shape[:-1], LOCAL, 2 * m))
+    forms[..., 0, :m] = theta
+    for local, rate in enumerate((v * by_wind, w * by_wind, theta * (scale[..., None] * by_wind)), start=1):
+        forms[..., local, m:] = rate
+    return forms
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import FloatArray, IntArray, merge_axes, take_rows
-from engine.mechanics.cross_sections import Sections
-from engine.mechanics.finite_elements import turned_sums
+from engine.mechanics.cross_sections import Sections, turned_sums
 from engine.mechanics.interpolation import element_nodes, section_slopes, shape_functions
 from engine.mechanics.static_profile import StaticProfile
 from engine.models.discretization import Discretization
@@ -225,12 +224,10 @@ def _stretches(at: SlopePoints, slopes: FloatArray, mean: FloatArray) -> tuple[F
     weight = merge_axes(at.weight / at.direction[..., 0], -2)
     curve, levers = (merge_axes(x, -3, -2).swapaxes(-1, -2) for x in (at.direction[..., 1:], at.section_slopes))
     row = np.append(curve, (levers * mean[:, :TWIST]).sum(axis=1, keepdims=True), axis=1) * weight[:, None]
-    metric = np.zeros((len(mean), SLOPES, SLOPES, weight.shape[-1]))
-    metric[...] = np.eye(SLOPES)[..., None]
-    metric[:, :TWIST, TWIST] = metric[:, TWIST, :TWIST] = mean[:, :TWIST]
-    metric[:, TWIST, TWIST] = 2.0 * mean[:, TWIST]
-    metric *= weight[:, None, None]
-    weighted = (metric[:, None, None] * slopes[..., None, :, :]).sum(axis=-2)
+    turn, across = slopes[..., TWIST, :], mean[:, None, None]
+    weighted = slopes + across * turn[..., None, :]
+    weighted[..., TWIST, :] = (slopes * across).sum(axis=-2) + across[..., TWIST, :] * turn
+    weighted *= weight[:, None, None, None]
     flat = merge_axes(slopes, -2)
     linear = flat @ merge_axes(row, -2)[:, None, :, None]
     return linear[..., 0], merge_axes(weighted, -2) @ flat.swapaxes(-1, -2)

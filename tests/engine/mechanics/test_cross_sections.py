@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from engine.mechanics.cross_sections import bundle_sums, padded_positions, turned_sums
 from engine.mechanics.finite_elements import FIELDS, THETA, V, W
 from engine.result import Result
 from engine.spec import Aerodynamics, AirflowSpoiler, Analysis, Ice, IceSegment, Line, Wind
 from tests.builders import ICE_AT_40, discretized, run, source_line
 
 OTHER = Aerodynamics((-0.3, 1.0, 4.0), (0.5, 0.2, 0.1), (0.3, 0.2, 2.0), fitted_range=0.4)
+BUNDLES = [source_line(count) for count in (4, 1, 3, 2)]
 
 
 def numbers(result: Result) -> list[float]:
@@ -110,3 +112,32 @@ def test_ice_on_the_whole_span_as_a_segment_is_the_ice_of_the_span() -> None:
     analysis = Analysis(loops=(1,), wind_speeds=(5.0,))
     one, other = run(line, analysis), run(replace(line, ice=bare), analysis)
     assert numbers(other) == pytest.approx(numbers(one), rel=1e-7, abs=1e-10)
+
+
+def test_positions_are_padded_with_zeros() -> None:
+    positions, present = padded_positions(BUNDLES)
+    assert positions.shape == (4, 4, 2)
+    for line, own, here in zip(BUNDLES, positions, present, strict=True):
+        assert own[here].tolist() == [list(position) for position in line.bundle.positions]
+        assert not own[~here].any()
+
+
+def test_sums_are_those_of_each_bundle_by_itself() -> None:
+    for line, sums in zip(BUNDLES, bundle_sums(BUNDLES).T, strict=True):
+        y, z = np.array(line.bundle.positions).T
+        expected = (y.size, y.sum(), z.sum(), (y**2).sum(), (z**2).sum(), (y * z).sum())
+        assert sums == pytest.approx(expected, abs=1e-15)
+
+
+def test_turned_sums_are_those_of_the_turned_positions() -> None:
+    angle = np.random.default_rng(0).uniform(-3.0, 3.0, size=(4, 2, 3))
+    sums = turned_sums(BUNDLES, angle)
+    for i, line in enumerate(BUNDLES):
+        y, z = np.array(line.bundle.positions).T
+        c, s = np.cos(angle[i])[..., None], np.sin(angle[i])[..., None]
+        eta, zeta = c * y - s * z, s * y + c * z
+        expected = [
+            np.full(angle[i].shape, y.size),
+            *(x.sum(axis=-1) for x in (eta, zeta, eta**2, zeta**2, eta * zeta)),
+        ]
+        assert sums[:, i] == pytest.approx(np.array(expected), abs=1e-15)
