@@ -14,11 +14,11 @@ from engine.arrays import BoolArray, ComplexArray, FloatArray, IntArray, ObjectA
 from engine.cycles.branch_set import FINE_SHARE, BranchSet, CycleProblem, orbits_of, points_of
 from engine.cycles.branches import ends_at_hopf_points
 from engine.cycles.floquet import floquet
-from engine.cycles.harmonic_balance import Orbits, resized
+from engine.cycles.harmonic_balance import Orbits, resized, select
 from engine.cycles.transitions import FACTORS, Kind, Transitions, branch_point_factors, product_of, transitions
 from engine.models.critical_wind_speeds import Crossings, crossing_error
 from engine.models.reduced_model import ReducedModel
-from engine.numerics.branch_zeros import LocatedZeros, locate_zeros, project_onto_branches
+from engine.numerics.branch_zeros import locate_zeros, project_onto_branches
 from engine.numerics.continuation import BranchPoints, make_points
 from engine.numerics.eigenproblems import solve_symmetric
 
@@ -80,53 +80,52 @@ def bifurcations(
 def bifurcations_on(branch_set: BranchSet, families: IntArray) -> Iterator[Bifurcations]:
     """Locate the bifurcations on branches that were followed; families: (branches,), the family of each."""
     branch_set, found = transitions(branch_set)
-    for kind in dict.fromkeys(found.kind):
-        here = np.flatnonzero([other is kind for other in found.kind])
-        yield _locate_bifurcations(branch_set, families, found.select(here), kind)
+    if found.kind:
+        yield _locate_bifurcations(branch_set, families, found)
 
 
-def _locate_bifurcations(branch_set: BranchSet, families: IntArray, places: Transitions, kind: Kind) -> Bifurcations:
+def _locate_bifurcations(branch_set: BranchSet, families: IntArray, places: Transitions) -> Bifurcations:
     """Locate the zero in each of these places with more harmonics; where that fails, return the middle of the place."""
     # Torsion must count here although it carries little energy: the fold of a resonance is one of torsion alone.
     problem = replace(branch_set.problem, smallest_share=FINE_SHARE)
-    sides = [branch_set.points.select(side) for side in (places.left, places.right)]
-    ends = [_with_more_harmonics(problem, side) for side in sides]
-    zero = _zeros(problem, ends, kind)
+    kinds = np.array(places.kind, dtype=np.object_)
+    ends = branch_set.points.select(np.concatenate([places.left, places.right]))
+    finer = _with_more_harmonics(problem, ends)
+    left, right = np.arange(2 * kinds.size).reshape(2, -1)
+
+    def test(points: BranchPoints, place: IntArray) -> FloatArray:
+        return _test_functions(problem, points, kinds[place])
+
+    zero = locate_zeros(problem, finer.select(left), finer.select(right), test, ACCURACY)
     multipliers, error = _multipliers(problem, zero.points)
-    critical, distance = _critical_multiplier(multipliers, kind)
-    value = [side.z[:, -1] for side in sides]
+    critical, distance = _critical_multipliers(multipliers, kinds)
     inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE)
-    z = np.where(inside[:, None], zero.points.z, _with_zeros(problem, sides[0].z))
+    z = np.where(inside[:, None], zero.points.z, _with_zeros(problem, ends.z[left]))
     orbits = problem.orbits(z, zero.points.branch)
     member = problem.member[zero.points.branch]
     # Two real multipliers whose product is 1 do not make a torus point.
-    real = (np.abs(critical.imag) < ON_CIRCLE) & inside & (kind is Kind.TORUS)
-    kinds = filled(member.size, kind)
-    kinds[real] = filled(int(real.sum()), Kind.UNRESOLVED)
+    torus = np.flatnonzero(kinds == Kind.TORUS)
+    real = (np.abs(critical.imag) < ON_CIRCLE) & inside & (kinds == Kind.TORUS)
+    second = np.full(kinds.size, np.nan)
+    second[torus] = _second_frequency(problem.model, member[torus], select(orbits, torus), critical[torus])
+    value = ends.z[:, -1].reshape(2, -1)
     width = np.abs(value[1] - value[0])
     noise = width * error  # a multiplier changes by an amount of order 1 over a segment
     # If refinement moves the zero outside its segment, take the shift of the segment's ends as its uncertainty.
-    moved = np.max([np.abs(end.z[:, -1] - at) for end, at in zip(ends, value, strict=True)], axis=0, initial=0.0)
+    moved = np.abs(finer.z[:, -1].reshape(2, -1) - value).max(axis=0)
     moved = np.where(np.isfinite(moved), moved, value[1])
     result = Bifurcations(
         member=member,
         branch=families[zero.points.branch],
-        kind=kinds,
-        parameter=np.where(inside, z[:, -1], 0.5 * (value[0] + value[1])),
+        kind=np.where(real, filled(kinds.size, Kind.UNRESOLVED), kinds),
+        parameter=np.where(inside, z[:, -1], value.mean(axis=0)),
         angular_frequency=orbits.angular_frequency,
-        second_frequency=_second_frequency(problem.model, member, orbits, critical, kind),
+        second_frequency=second,
         coordinate=_dominant(problem.model, member, orbits.coefficients[..., 1:]),
         uncertainty=np.where(inside, zero.uncertainty + noise, width + moved),
         may_end_stability=places.may_end,
     )
     return _select(result, np.flatnonzero(~(real & (places.changed == 0))))
-
-
-def _zeros(problem: CycleProblem, ends: list[BranchPoints], kind: Kind) -> LocatedZeros:
-    """Search the zero between two ends; where stability changes for an unknown reason there is nothing to search."""
-    if kind is Kind.UNRESOLVED:
-        return LocatedZeros(ends[0], np.full(ends[0].branch.size, np.inf))
-    return locate_zeros(problem, ends[0], ends[1], lambda points: _test_function(problem, points, kind), ACCURACY)
 
 
 def _with_more_harmonics(problem: CycleProblem, points: BranchPoints) -> BranchPoints:
@@ -152,31 +151,33 @@ def _multipliers(problem: CycleProblem, points: BranchPoints) -> tuple[ComplexAr
     return values, error
 
 
-def _test_function(problem: CycleProblem, points: BranchPoints, kind: Kind) -> FloatArray:
-    if kind is Kind.FOLD:
-        return points.tangent[:, -1]
-    return product_of(FACTORS[kind](_multipliers(problem, points)[0]))
+def _test_functions(problem: CycleProblem, points: BranchPoints, kinds: ObjectArray) -> FloatArray:
+    """Return the function of each point's type (k,), which vanishes at it; NaN where that is not known."""
+    values = np.where(kinds == Kind.FOLD, points.tangent[:, -1], np.nan)
+    judged = np.flatnonzero([kind in FACTORS for kind in kinds])
+    multipliers, _ = _multipliers(problem, points.select(judged))
+    for kind, factors in FACTORS.items():
+        own = kinds[judged] == kind
+        values[judged[own]] = product_of(factors(multipliers[own]))
+    return values
 
 
-def _critical_multiplier(multipliers: ComplexArray, kind: Kind) -> tuple[ComplexArray, FloatArray]:
-    """Return the critical multiplier and its distance from where it should be (at a fold the one nearest 1, and 0)."""
-    factors = np.abs(FACTORS.get(kind, branch_point_factors)(multipliers))
-    if factors.size == 0:
-        return np.zeros(0, dtype=np.complex128), np.zeros(0)
-    smallest = np.where(np.isnan(factors), np.inf, factors).argmin(axis=-1)
-    row = np.arange(smallest.size)
-    index = np.triu_indices(multipliers.shape[-1], 1)[0][smallest] if kind is Kind.TORUS else smallest
-    distance = np.zeros(row.size) if kind is Kind.FOLD else factors[row, smallest]
-    return multipliers[row, index], distance
+def _critical_multipliers(multipliers: ComplexArray, kinds: ObjectArray) -> tuple[ComplexArray, FloatArray]:
+    """Return critical multipliers and their distances from where they should be (at a fold the nearest to 1, and 0)."""
+    critical, distance = np.full(kinds.size, np.nan, dtype=np.complex128), np.zeros(kinds.size)
+    for kind in dict.fromkeys(kinds.tolist()):
+        own = np.flatnonzero(kinds == kind)
+        factors = np.abs(FACTORS.get(kind, branch_point_factors)(multipliers[own]))
+        smallest = np.where(np.isnan(factors), np.inf, factors).argmin(axis=-1)
+        index = np.triu_indices(multipliers.shape[-1], 1)[0][smallest] if kind is Kind.TORUS else smallest
+        critical[own] = multipliers[own, index]
+        if kind is not Kind.FOLD:
+            distance[own] = factors[np.arange(own.size), smallest]
+    return critical, distance
 
 
-def _second_frequency(
-    model: ReducedModel, member: IntArray, orbits: Orbits, critical: ComplexArray, kind: Kind
-) -> FloatArray:
+def _second_frequency(model: ReducedModel, member: IntArray, orbits: Orbits, critical: ComplexArray) -> FloatArray:
     """Return the second frequency at torus points: of w (k +- theta / 2 pi) the one nearest to a natural frequency."""
-    none = np.full(member.size, np.nan)
-    if kind is not Kind.TORUS or member.size == 0:
-        return none
     share = np.angle(critical)[:, None] / (2.0 * np.pi)
     candidates = orbits.angular_frequency[:, None] * np.concatenate([ORDERS + share, ORDERS - share], axis=-1)
     natural = np.sqrt(np.abs(solve_symmetric(model.stiffness[member], model.mass[member])[0]))

@@ -11,7 +11,7 @@ from engine.arrays import BoolArray, FloatArray, IntArray, ObjectArray
 from engine.cycles.branch_ends import Limits, from_start, limits_of, meets_the_wind, passed_equilibrium, stays_in_range
 from engine.cycles.branch_set import BranchSet, CycleProblem, points_of
 from engine.cycles.floquet import Floquet
-from engine.cycles.harmonic_balance import Orbits, first_harmonic_angle, select, total_size
+from engine.cycles.harmonic_balance import Orbits, first_harmonic_angle, total_size
 from engine.cycles.known_cycles import SLOWEST
 from engine.cycles.refinement import KnownExponents, judged_points, refined
 from engine.models.critical_wind_speeds import Crossings, critical_modes
@@ -137,11 +137,15 @@ def wind_limits(problem: CycleProblem, winds: FloatArray) -> tuple[FloatArray, F
 
 def ends_at_hopf_points(branch_sets: BranchSet, crossings: Crossings, hopf: IntArray) -> BoolArray:
     """Return which branches ended at which Hopf points (k,): (branches, k); models are not compared."""
-    orbits = select(branch_sets.orbits, branch_sets.last)
-    ends = np.stack([orbits.wind_speed, orbits.angular_frequency], axis=-1)
-    there = np.stack([crossings.wind_speed[hopf], crossings.angular_frequency[hopf]], axis=-1)
-    near = (np.abs(ends[:, None] / there - 1.0) < REACHED).all(axis=-1)
-    return np.asarray(near & branch_sets.ended_at_equilibrium[:, None])
+    ended = np.flatnonzero(branch_sets.ended_at_equilibrium)
+    orbits = branch_sets.problem.orbits(branch_sets.points.z[branch_sets.last[ended]], ended)
+    ends, there = (orbits.wind_speed, orbits.angular_frequency), (crossings.wind_speed, crossings.angular_frequency)
+    speed, frequency = (
+        np.abs(end[:, None] / other[hopf] - 1.0) < REACHED for end, other in zip(ends, there, strict=True)
+    )
+    reached = np.zeros((branch_sets.problem.member.size, hopf.size), dtype=np.bool_)
+    reached[ended] = speed & frequency
+    return reached
 
 
 def guessed_cycles(branch_sets: BranchSet, winds: FloatArray) -> tuple[IntArray, IntArray, Orbits]:

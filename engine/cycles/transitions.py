@@ -41,7 +41,7 @@ Factors = Callable[[ComplexArray], ComplexArray]
 def _pair_factors(multipliers: ComplexArray) -> ComplexArray:
     i, j = np.triu_indices(multipliers.shape[-1], 1)
     with np.errstate(over="ignore", invalid="ignore"):  # see `product_of`
-        return 1.0 - multipliers[..., i] * multipliers[..., j]
+        return 1.0 - np.take(multipliers, i, axis=-1) * np.take(multipliers, j, axis=-1)
 
 
 def branch_point_factors(multipliers: ComplexArray) -> ComplexArray:
@@ -191,4 +191,4 @@ def _decided(branch_set: BranchSet) -> BoolArray:
 def product_of(factors: ComplexArray) -> FloatArray:
     """Return the product of factors (..., n), each limited to modulus 1 so that it cannot overflow: (...)."""
     with np.errstate(invalid="ignore"):  # multipliers that overflowed yield NaN
-        return np.asarray(np.prod(factors / np.maximum(np.abs(factors), 1.0), axis=-1).real)
+        return np.asarray(np.prod(factors * (1.0 / np.maximum(np.abs(factors), 1.0)), axis=-1).real)

@@ -105,7 +105,10 @@ def test_folds_are_located() -> None:
     for branch, radius in enumerate(CIRCLES.radius):
         own = [p.select(p.branch == branch) for p in points]
         at = next(i for i in range(len(own)) if own[i].tangent[0, -1] * own[i + 1].tangent[0, -1] < 0.0)
-        fold = locate_zeros(CIRCLES, own[at], own[at + 1], lambda p: p.tangent[:, -1], 1e-12)
+        before = own[at].tangent.copy(), own[at + 1].tangent.copy()
+        fold = locate_zeros(CIRCLES, own[at], own[at + 1], lambda p, _: p.tangent[:, -1], 1e-12)
+        assert (own[at].tangent == before[0]).all()  # the function's values are a part of them
+        assert (own[at + 1].tangent == before[1]).all()
         assert fold.points.z[0, 0] == pytest.approx(0.0, abs=1e-4)
         assert fold.points.z[0, 1] == pytest.approx(radius, rel=1e-9)
         assert fold.uncertainty[0] < 1e-9
@@ -114,8 +117,16 @@ def test_folds_are_located() -> None:
 def test_a_test_function_is_met_inside_a_segment() -> None:
     left = make_points(CIRCLES, np.array([0]), np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]))
     right = make_points(CIRCLES, np.array([0]), np.array([[0.0, 1.0]]), np.array([[-1.0, 0.0]]))
-    found = locate_zeros(CIRCLES, left, right, lambda p: p.z[:, 1] - 0.6, 1e-12)
+    found = locate_zeros(CIRCLES, left, right, lambda p, _: p.z[:, 1] - 0.6, 1e-12)
     assert found.points.z[0] == pytest.approx([0.8, 0.6], abs=1e-10)
+
+
+def test_each_pair_may_have_a_function_of_its_own() -> None:
+    left = make_points(CIRCLES, np.array([0, 0]), np.array([[1.0, 0.0]] * 2), np.array([[0.0, 1.0]] * 2))
+    right = make_points(CIRCLES, np.array([0, 0]), np.array([[0.0, 1.0]] * 2), np.array([[-1.0, 0.0]] * 2))
+    height = np.array([0.6, 0.8])
+    found = locate_zeros(CIRCLES, left, right, lambda p, pair: p.z[:, 1] - height[pair], 1e-12)
+    assert found.points.z == pytest.approx(np.array([[0.8, 0.6], [0.6, 0.8]]), abs=1e-10)
 
 
 def test_tangents_and_hermite_interpolation() -> None:
