@@ -1,12 +1,12 @@
 """The distinct limit cycles found so far at the requested wind speeds, and the branches that connect them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.arrays import BoolArray, FloatArray, IntArray, lengths, merge_axes
-from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, select
+from engine.cycles.harmonic_balance import Orbits, balance, oscillation_size, resized, select
 from engine.models.reduced_model import ReducedModel, lowest_frequency
 from engine.numerics.newton import NewtonOptions
 from engine.result import FoundBy
@@ -39,40 +39,34 @@ class KnownCycles:
 
     def __init__(self, model: ReducedModel) -> None:
         """Start with no cycles of a stack of models."""
+        none = np.zeros(0, dtype=np.intp)
+        still = Orbits(np.zeros((0, model.mass.shape[-1], 3)), np.zeros(0), np.zeros(0))
         self.model = model
-        self._locations: list[tuple[int, int]] = []
-        self._orbits: list[tuple[FloatArray, float, float]] = []
-        self._links: list[tuple[int, int]] = []
-        self._joints: list[tuple[int, int]] = []
-        self._followed: list[tuple[int, float]] = []
-        self._left_alone: set[int] = set()
-        self._sizes: list[float] = []
+        self._cycles = Starts(none, none, still)
+        self._harmonics = none
+        self._sizes = np.zeros(0)
         self._found_by: list[FoundBy] = []
-        self._by_location: dict[tuple[int, int], list[tuple[int, FloatArray]]] = {}
+        self._by_location: dict[tuple[int, int], list[tuple[int, float, FloatArray]]] = {}
+        self._followed, self._born = none, np.zeros(0)
+        self._links: list[tuple[IntArray, IntArray]] = []
+        self._joints: list[tuple[int, int]] = []
+        self._left_alone: list[IntArray] = []
 
     def __len__(self) -> int:
         """Return the number of distinct cycles."""
-        return len(self._orbits)
+        return len(self._found_by)
 
     def locations(self, ids: IntArray) -> tuple[IntArray, IntArray]:
         """Return member and wind speed index of the cycles with these numbers: (k,), (k,)."""
-        member, wind = np.array([self._locations[i] for i in ids], dtype=np.intp).reshape(-1, 2).T
-        return member, wind
+        return self._cycles.member[ids], self._cycles.wind[ids]
 
     def orbits(self, ids: IntArray) -> Orbits:
         """Return the orbits of the cycles with these numbers, padded to the most harmonics among them."""
-        size = self.model.mass.shape[-1]
-        if ids.size == 0:
-            return Orbits(np.zeros((0, size, 3)), np.zeros(0), np.zeros(0))
-        coefficients, frequency, speed = zip(*(self._orbits[i] for i in ids), strict=True)
-        padded = np.zeros((ids.size, size, max(own.shape[-1] for own in coefficients)))
-        for row, own in zip(padded, coefficients, strict=True):
-            row[:, : own.shape[-1]] = own
-        return Orbits(padded, np.array(frequency), np.array(speed))
+        return resized(select(self._cycles.orbits, ids), int(self._harmonics[ids].max(initial=1)))
 
     def harmonics(self, ids: IntArray) -> IntArray:
         """Return the number of harmonics that each of the cycles with these numbers was solved with."""
-        return np.array([self._orbits[i][0].shape[-1] // 2 for i in ids], dtype=np.intp)
+        return self._harmonics[ids]
 
     @property
     def found_by(self) -> tuple[FoundBy, ...]:
@@ -99,49 +93,46 @@ class KnownCycles:
 
         Shape (starts, largest number of such cycles); infinite where frequencies differ or there is no cycle.
         """
-        if not self._locations:
+        if not len(self):
             return np.full((starts.member.size, 1), np.inf)
-        place = np.array(self._locations, dtype=np.intp)
-        winds = int(max(place[:, 1].max(initial=0), starts.wind.max(initial=0))) + 1
-        key, asked = place[:, 0] * winds + place[:, 1], starts.member * winds + starts.wind
+        found = self._cycles
+        winds = int(max(found.wind.max(initial=0), starts.wind.max(initial=0))) + 1
+        key, asked = found.member * winds + found.wind, starts.member * winds + starts.wind
         order = np.argsort(key, kind="stable")
         first = np.searchsorted(key[order], asked)
         count = np.searchsorted(key[order], asked, side="right") - first
         column = np.arange(count.max(initial=1))
         known = order[np.minimum(first[:, None] + column, order.size - 1)]
-        frequency = np.array([orbit[1] for orbit in self._orbits])[known]
-        sizes = np.array(self._sizes)[known]
         size = lengths(_phase_invariants(self.model, starts))[:, None]
-        near = np.abs(frequency / starts.orbits.angular_frequency[:, None] - 1.0) <= NEAR
-        return np.where(near & (column < count[:, None]), np.abs(np.log(sizes / size)), np.inf)
+        near = np.abs(found.orbits.angular_frequency[known] / starts.orbits.angular_frequency[:, None] - 1.0) <= NEAR
+        return np.where(near & (column < count[:, None]), np.abs(np.log(self._sizes[known] / size)), np.inf)
 
     def add(self, starts: Starts, good: BoolArray, found_by: FoundBy) -> IntArray:
         """Record the solutions marked good; return the number of each one's cycle, -1 for the others: (starts,)."""
         invariants = _phase_invariants(self.model, starts)
-        sizes = lengths(invariants).tolist()
-        numbers = np.full(good.size, -1, dtype=np.intp)
+        sizes = lengths(invariants)
+        numbers, new = np.full(good.size, -1, dtype=np.intp), []
+        member, wind, size = starts.member.tolist(), starts.wind.tolist(), sizes.tolist()
         for i in np.flatnonzero(good).tolist():
-            key = (int(starts.member[i]), int(starts.wind[i]))
-            number, new = self._number_of(key, invariants[i])
-            numbers[i] = number
-            if new:
-                self._locations.append(key)
-                self._sizes.append(sizes[i])
+            known = self._by_location.setdefault((member[i], wind[i]), [])
+            number = _same(known, size[i], invariants[i])
+            if number is None:
+                number = len(self)
+                known.append((number, size[i], invariants[i]))
                 self._found_by.append(found_by)
-                orbits = starts.orbits
-                self._orbits.append(
-                    (orbits.coefficients[i], float(orbits.angular_frequency[i]), float(orbits.wind_speed[i]))
-                )
+                new.append(i)
+            numbers[i] = number
+        self._keep(starts, sizes, np.array(new, dtype=np.intp))
         return numbers
 
-    def _number_of(self, key: tuple[int, int], invariants: FloatArray) -> tuple[int, bool]:
-        known = self._by_location.setdefault(key, [])
-        for number, other in known:
-            unfollowed = invariants - other
-            if float(unfollowed @ unfollowed) <= (SAME * self._sizes[number]) ** 2:
-                return number, False
-        known.append((len(self._orbits), invariants))
-        return len(self._orbits), True
+    def _keep(self, starts: Starts, sizes: FloatArray, index: IntArray) -> None:
+        """Append some of the solutions to the arrays of known cycles."""
+        harmonics = starts.orbits.coefficients.shape[-1] // 2
+        most = max(harmonics, self._cycles.orbits.coefficients.shape[-1] // 2)
+        new = Starts(starts.member[index], starts.wind[index], select(starts.orbits, index))
+        self._cycles = stacked([replace(part, orbits=resized(part.orbits, most)) for part in (self._cycles, new)])
+        self._harmonics = np.append(self._harmonics, np.full(index.size, harmonics))
+        self._sizes = np.append(self._sizes, sizes[index])
 
     def add_branches(self, members: IntArray, born: FloatArray) -> IntArray:
         """Record followed branches and return their numbers: (branches,).
@@ -153,13 +144,13 @@ class KnownCycles:
         born : (branches,)
             Wind speed of the Hopf point where each starts, infinite if there is none [m/s].
         """
-        first = len(self._followed)
-        self._followed += zip(members.tolist(), born.tolist(), strict=True)
-        return np.arange(first, len(self._followed))
+        first = self._born.size
+        self._followed, self._born = np.append(self._followed, members), np.append(self._born, born)
+        return np.arange(first, self._born.size)
 
     def link(self, followed: IntArray, numbers: IntArray) -> None:
         """Record that cycles (k,) lie on followed branches (k,)."""
-        self._links += zip(numbers.tolist(), followed.tolist(), strict=True)
+        self._links.append((numbers, followed))
 
     def join(self, joints: Sequence[tuple[int, int]]) -> None:
         """Record pairs of followed branches that are parts of one."""
@@ -167,16 +158,18 @@ class KnownCycles:
 
     def leave_alone(self, numbers: IntArray) -> None:
         """Record that the branches of these cycles are not to be followed."""
-        self._left_alone.update(numbers.tolist())
+        self._left_alone.append(numbers)
 
     def unfollowed(self) -> IntArray:
         """Return, for each member, the cycle at the lowest wind speed that lies on no followed branch yet."""
-        lowest: dict[int, int] = {}
-        lies_on_one = {number for number, _ in self._links} | self._left_alone
-        for number, (member, wind) in enumerate(self._locations):
-            if number not in lies_on_one and (member not in lowest or wind < self._locations[lowest[member]][1]):
-                lowest[member] = number
-        return np.array(list(lowest.values()), dtype=np.intp)
+        free = np.ones(len(self), dtype=np.bool_)
+        for numbers in (*self._left_alone, *(numbers for numbers, _ in self._links)):
+            free[numbers] = False
+        number = np.flatnonzero(free)
+        member, wind = self.locations(number)
+        order = np.lexsort((wind, member))
+        _, lowest = np.unique(member[order], return_index=True)
+        return number[order[lowest]]
 
     def families(self) -> tuple[IntArray, IntArray]:
         """Number the connected families of cycles and followed branches of each member from 0.
@@ -190,28 +183,38 @@ class KnownCycles:
             The family of each cycle and of each followed branch.
         """
         label = self._labels()
-        keys: dict[int, tuple[int, float, float, int]] = {}
-        nodes = [(member, np.inf, float(wind)) for member, wind in self._locations]
-        nodes += [(member, born, np.inf) for member, born in self._followed]
-        for root, node in zip(label.tolist(), nodes, strict=True):
-            keys[root] = min((*node, root), keys.get(root, (*node, root)))
-        number: dict[int, int] = {}
-        counts: dict[int, int] = {}
-        for member, _, _, root in sorted(keys.values()):
-            number[root] = counts.get(member, 0)
-            counts[member] = number[root] + 1
-        numbers = np.array([number[root] for root in label.tolist()], dtype=np.intp)
-        return numbers[: len(self)], numbers[len(self) :]
+        member = np.concatenate([self._cycles.member, self._followed])
+        born = np.concatenate([np.full(len(self), np.inf), self._born])
+        wind = np.concatenate([self._cycles.wind, np.full(self._born.size, np.inf)])
+        order = np.lexsort((label, wind, born, member))
+        roots, first = np.unique(label[order], return_index=True)
+        ranks = np.argsort(first)  # of the families, by member and the lowest node of each
+        own = member[order[first[ranks]]]
+        numbers = np.zeros(label.size, dtype=np.intp)
+        numbers[roots[ranks]] = np.arange(own.size) - np.searchsorted(own, own)
+        return numbers[label[: len(self)]], numbers[label[len(self) :]]
 
     def _labels(self) -> IntArray:
         """Label the connected families of cycles and followed families: (cycles + branches,)."""
         # Union-find by hand, because importing scipy.sparse takes longer than a whole analysis.
-        parents = list(range(len(self._locations) + len(self._followed)))
-        for cycle, branch in self._links:
-            parents[_root(parents, cycle)] = _root(parents, len(self._locations) + branch)
+        cycles = len(self)
+        parents = list(range(cycles + self._born.size))
+        for numbers, followed in self._links:
+            for cycle, branch in zip(numbers.tolist(), followed.tolist(), strict=True):
+                parents[_root(parents, cycle)] = _root(parents, cycles + branch)
         for one, other in self._joints:
-            parents[_root(parents, len(self._locations) + one)] = _root(parents, len(self._locations) + other)
+            parents[_root(parents, cycles + one)] = _root(parents, cycles + other)
         return np.array([_root(parents, node) for node in range(len(parents))], dtype=np.intp)
+
+
+def _same(known: Sequence[tuple[int, float, FloatArray]], size: float, invariants: FloatArray) -> int | None:
+    """Return the number of the known cycle with the same invariants, of a size; None if there is none."""
+    for number, own, other in known:
+        if abs(size - own) <= SAME * own:  # else they differ by more
+            difference = invariants - other
+            if float(difference @ difference) <= (SAME * own) ** 2:
+                return number
+    return None
 
 
 def _root(parents: list[int], node: int) -> int:
@@ -226,7 +229,7 @@ def _phase_invariants(model: ReducedModel, starts: Starts) -> FloatArray:
     """Return mass-weighted means and amplitudes of all harmonics, which do not depend on the phase: (cycles, n)."""
     weight = np.sqrt(model.modal_masses)[starts.member]
     coefficients = starts.orbits.coefficients * weight[..., None]
-    size = np.hypot(coefficients[..., 1::2], coefficients[..., 2::2])
+    size = np.sqrt(coefficients[..., 1::2] ** 2 + coefficients[..., 2::2] ** 2)
     return np.concatenate([coefficients[..., 0], merge_axes(size, -2)], axis=-1)
 
 
