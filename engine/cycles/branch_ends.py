@@ -51,12 +51,20 @@ def meets_the_wind(problem: CycleProblem, new: BranchPoints, steepest: FloatArra
     return np.asarray(within)
 
 
-def from_start(problem: CycleProblem, start: BranchPoints, new: BranchPoints) -> tuple[FloatArray, BoolArray]:
-    """Return the distance of points from the start of their branch, and whether they go on in its direction."""
+def from_start(
+    problem: CycleProblem, start: BranchPoints, new: BranchPoints, far: float
+) -> tuple[FloatArray, BoolArray]:
+    """Return the distance of points from the start of their branch, and whether they go on in its direction.
+
+    A distance beyond `far` is only bounded from below, by the difference of the sizes of both points.
+    """
     scale = start.scale
-    first, second = (_phase_invariants(p.z / scale, problem.model.mass.shape[-1]) for p in (start, new))
+    distance = np.abs(lengths(new.z / scale) - lengths(start.z / scale))
+    near = np.flatnonzero(~(distance > far))
+    first, second = (_phase_invariants(p.z[near] / scale[near], problem.model.mass.shape[-1]) for p in (start, new))
+    distance[near] = lengths(first - second)
     along = np.einsum("ki,ki->k", (start.tangent / scale)[:, -2:], (new.tangent / scale)[:, -2:]) > 0.0
-    return lengths(first - second), along
+    return distance, along
 
 
 def _phase_invariants(z: FloatArray, m: int) -> FloatArray:

@@ -251,7 +251,7 @@ def _followed(
         last.overwrite(new)
         alive = ~ended_at_equilibrium & stays_in_range(problem, new, limits, slowest)
         alive &= meets_the_wind(problem, new, steepest)
-        distance, along = from_start(problem, origin.select(new.branch), new)
+        distance, along = from_start(problem, origin.select(new.branch), new, LEFT)
         closed = left_start[new.branch] & along & (distance < CLOSED)
         left_start[new.branch] |= distance > LEFT
         return np.asarray(alive & ~closed)

@@ -52,6 +52,21 @@ def test_the_distance_from_the_start_does_not_depend_on_the_phase() -> None:
         wave = (coefficients[..., place] + 1j * coefficients[..., place + 1]) * turn
         shifted[..., place], shifted[..., place + 1] = wave.real, wave.imag
     start, turned = points_with(problem, coefficients), points_with(problem, shifted)
-    distance, along = from_start(problem, start, BranchPoints(start.branch, turned.z, start.scale, start.tangent))
+    turned = BranchPoints(start.branch, turned.z, start.scale, start.tangent)
+    distance, along = from_start(problem, start, turned, far=1.0)
     assert distance[0] < 1e-12
     assert along.all()
+
+
+def test_a_distance_is_exact_up_to_the_one_that_counts_as_far_and_larger_beyond() -> None:
+    problem = problem_of(hybrid(source_line(2), 1))
+    coefficients = np.random.default_rng(5).normal(size=(MEMBERS, 3, 5))
+    start = points_with(problem, coefficients)
+    moved = points_with(problem, coefficients * np.linspace(0.1, 3.0, MEMBERS)[:, None, None])
+    new = BranchPoints(start.branch, moved.z, start.scale, start.tangent)
+    exact = from_start(problem, start, new, far=np.inf)[0]
+    distance = from_start(problem, start, new, far=1.0)[0]
+    assert 5 < (exact > 1.0).sum() < MEMBERS
+    assert distance[exact <= 1.0] == pytest.approx(exact[exact <= 1.0])
+    assert (distance[exact > 1.0] > 1.0).all()
+    assert (distance <= exact * (1.0 + 1e-12)).all()
