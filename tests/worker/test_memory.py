@@ -16,6 +16,22 @@ print(before > 50_000, len(gc.get_objects()) < 1_000, gc.isenabled())
     assert printed(script) == "True True True"
 
 
+def test_the_rows_of_a_chunk_are_not_looked_through() -> None:
+    script = """
+import gc
+from worker.memory import settle
+settle()
+def collections():
+    return sum(generation["collections"] for generation in gc.get_stats())
+before = collections()
+rows = [[] for _ in range(80_000)]
+within = collections()
+more = [[] for _ in range(40_000)]
+print(within - before, collections() - before)
+"""
+    assert printed(script) == "0 1"
+
+
 def test_freed_memory_is_kept_for_the_next_arrays() -> None:
     script = """
 import resource
