@@ -66,8 +66,9 @@ def static_profile(lines: Sequence[Line]) -> StaticProfile:
     rise = np.array([line.span.level_difference for line in lines])
     weight = GRAVITY * np.array([mean_mass(line) for line in lines])
     still = np.array([_catenary_parameter(line, p) for line, p in zip(lines, weight, strict=True)])
-    ends = np.array([_end_stiffness(*item) for item in zip(lines, weight, still, strict=True)]).reshape(len(lines), 2)
-    yokes = [_yoke_stiffness(*item) for item in zip(lines, weight, still, strict=True)]
+    hanging = list(zip(lines, weight.tolist(), still.tolist(), low_point(still, length, rise).tolist(), strict=True))
+    ends = np.array([_end_stiffness(*item) for item in hanging]).reshape(len(lines), 2)
+    yokes = [_yoke_stiffness(*item) for item in hanging]
     tilt = np.arctan(np.array([mean_drag(line) for line in lines]) / weight)
     rigidity = np.array([line.conductor.axial_rigidity for line in lines])
     hung = StillSpans(length, rise, weight, rigidity, still * weight, (1.0 / ends).sum(axis=1))
@@ -144,7 +145,8 @@ def string_faults(line: Line) -> Iterator[Fault]:
         return
     weight = GRAVITY * mean_mass(line)
     catenary = _catenary_parameter(line, weight)
-    for name, end, own in _ends(line, catenary):
+    low = float(low_point(np.array(catenary), np.array(line.span.length), np.array(line.span.level_difference)))
+    for name, end, own in _ends(line, low):
         if end.dead_end or end.insulator_length is None:
             continue
         carried = _carried(line, end, weight, catenary, own) + 0.5 * end.insulator_weight
@@ -153,26 +155,28 @@ def string_faults(line: Line) -> Iterator[Fault]:
             yield Fault(f"supports.{name}.insulator_length", end.insulator_length, rule)
 
 
-def _ends(line: Line, catenary: float) -> Iterator[tuple[str, Support, float]]:
+def _ends(line: Line, low: float) -> Iterator[tuple[str, Support, float]]:
     """Yield both ends by name with their horizontal distance from the low point, negative beyond it [m]."""
-    low = float(low_point(np.array(catenary), np.array(line.span.length), np.array(line.span.level_difference)))
     yield "left", line.supports.left, low
     yield "right", line.supports.right, line.span.length - low
 
 
-def _end_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, float]:
-    """Return K_x of both ends [N/m]: a given stiffness overrides a dead end, a dead end overrides (A10)."""
+def _end_stiffness(line: Line, weight: float, catenary: float, low: float) -> tuple[float, float]:
+    """Return K_x of both ends [N/m]: a given stiffness overrides a dead end, a dead end overrides (A10).
+
+    low: horizontal distance of the low point from the left support [m].
+    """
     given = line.supports.longitudinal_stiffness
     if given is not None:
         return given, given
     left, right = (
         np.inf if end.dead_end else _adjacent_stiffness(line, end, weight, catenary, own)
-        for _, end, own in _ends(line, catenary)
+        for _, end, own in _ends(line, low)
     )
     return left, right
 
 
-def _yoke_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, float]:
+def _yoke_stiffness(line: Line, weight: float, catenary: float, low: float) -> tuple[float, float]:
     """Return what resists a sub-conductor of a free section beyond the mean of all, along both ends [N/m].
 
     At a free yoke that is its own continuation in the adjacent span, without the string, which holds only the middle of
@@ -188,7 +192,7 @@ def _yoke_stiffness(line: Line, weight: float, catenary: float) -> tuple[float, 
         bare = replace(end, insulator_length=None)
         return 0.0 if end.dead_end else _adjacent_stiffness(line, bare, weight, catenary, own)
 
-    left, right = (of_end(end, own) for _, end, own in _ends(line, catenary))
+    left, right = (of_end(end, own) for _, end, own in _ends(line, low))
     return left, right
 
 
