@@ -211,15 +211,16 @@ def _distinct(member: IntArray, speed: FloatArray) -> BoolArray:
 def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
     """Solve (B_0 + U B_1 + U^2 B_2) v = 0 for real U in (0, limit] as an eigenproblem in limit/U.
 
-    Its unknowns are v limit/U, and v only where B_2 has a column: the wind has a stiffness for few coordinates.
+    Its unknowns are v limit/U where the wind has a column at all, and v where B_2 has one: for few coordinates.
     """
     b_0, b_1, b_2 = (bialternate_sum(a) for a in (matrices.constant, matrices.linear, matrices.quadratic))
-    kept = np.flatnonzero(b_2.any(axis=(0, 1)))
-    count, size = kept.size, kept.size + b_0.shape[-1]
+    by_square = b_2.any(axis=(0, 1))
+    twice, windy = np.flatnonzero(by_square), np.flatnonzero(by_square | b_1.any(axis=(0, 1)))
+    count, size = twice.size, twice.size + windy.size
     problem = np.zeros((b_0.shape[0], size, size))
-    problem[:, np.arange(count), count + kept] = 1.0
-    wind = np.concatenate([b_2[..., kept] * limit**2, b_1 * limit], axis=-1)
-    problem[:, count:] = -np.linalg.solve(b_0, wind)
+    problem[:, np.arange(count), count + np.searchsorted(windy, twice)] = 1.0
+    wind = np.concatenate([b_2[..., twice] * limit**2, b_1[..., windy] * limit], axis=-1)
+    problem[:, count:] = -np.linalg.solve(b_0, wind)[:, windy]
     inverse = eigenvalues(problem) if problem.size else np.zeros((0, size), dtype=np.complex128)
     real = (np.abs(inverse.imag) < 1e-6 * np.abs(inverse)) & (inverse.real > 1.0 - 1e-9)
     member, column = np.nonzero(real)
