@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, merge_axes
+from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, merge_axes, take_rows
+from engine.cycles.at_rest import eigenvalues_at_rest
 from engine.cycles.harmonic_balance import Orbits, basis, linearized
 from engine.kernels import compiled
-from engine.kernels.eigenvalues import eigenvalues
 from engine.models.complex_modes import complex_modes
 from engine.models.critical_wind_speeds import at_wind, state_matrices
 from engine.models.reduced_model import ReducedModel, diagonals, gradient_at_rest, of_each_member, with_samples
@@ -223,7 +223,9 @@ def _cycles_at_roots(
     return FirstHarmonic(member, wind, frequency, angle, np.asarray(mean), _complex(amplitude))
 
 
-def energy_balance_cycles(model: ReducedModel, wind_speeds: FloatArray) -> FirstHarmonic:
+def energy_balance_cycles(
+    model: ReducedModel, wind_speeds: FloatArray, at_rest: ComplexArray | None = None
+) -> FirstHarmonic:
     """Estimate a cycle along every unstable mode of any model by the balance of energy over one period.
 
     Along q = R Re(v exp(i w t)) the work of the wind minus that of the damping is p_1 R^2 + p_3 R^4 for a cubic load;
@@ -236,6 +238,8 @@ def energy_balance_cycles(model: ReducedModel, wind_speeds: FloatArray) -> First
         Leading axis (members,), any number of degrees of freedom.
     wind_speeds : (winds,) or (members, winds)
         Of all members or of each [m/s].
+    at_rest : (members, winds, 2 m), optional
+        What `eigenvalues_at_rest` returns, where it is known.
 
     Returns
     -------
@@ -243,20 +247,18 @@ def energy_balance_cycles(model: ReducedModel, wind_speeds: FloatArray) -> First
         With zero mean; `angle` is NaN.
     """
     speeds = of_each_member(model, wind_speeds)
-    matrices = at_wind(state_matrices(model), speeds)
-    values = eigenvalues(merge_axes(matrices, -4, -3)).reshape(matrices.shape[:-1])
+    values = eigenvalues_at_rest(model, speeds) if at_rest is None else at_rest
     size = np.abs(values).max(axis=-1, initial=0.0, keepdims=True)
     member, wind, mode = np.nonzero((values.real > 0.0) & (values.imag > 1e-9 * size))
-    weight = 1.0 / np.sqrt(model.modal_masses)[member]
     value = values[member, wind, mode]
-    shape = _complex(complex_modes(matrices[member, wind], value) * weight)
+    matrices = at_wind(take_rows(state_matrices(model), member), speeds[member, wind])
+    shape = _complex(complex_modes(matrices, value) / np.sqrt(model.modal_masses)[member])
     linear, cubic = _work(model, member, speeds[member, wind], value.imag, shape)
     grows = np.flatnonzero((linear > 0.0) & (cubic < 0.0))
     size = np.sqrt(-linear[grows] / cubic[grows])
     member, wind, amplitude = member[grows], wind[grows], _complex(size[:, None] * shape[grows])
     stiffened = stiffened_frequencies(model, member, value.imag[grows], amplitude)
-    none = np.full(grows.size, np.nan)
-    return FirstHarmonic(member, wind, stiffened, none, np.zeros(amplitude.shape), amplitude)
+    return FirstHarmonic(member, wind, stiffened, np.full(grows.size, np.nan), np.zeros(amplitude.shape), amplitude)
 
 
 def stiffened_frequencies(

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import ComplexArray, FloatArray, IntArray
+from engine.cycles.at_rest import eigenvalues_at_rest
 from engine.cycles.branch_set import BranchSet
 from engine.cycles.branches import follow_from_cycles, guessed_cycles
 from engine.cycles.floquet import Floquet
@@ -18,9 +19,8 @@ from engine.cycles.hopf_branches import branches_in_groups
 from engine.cycles.known_cycles import KnownCycles, Starts, solve_starts
 from engine.cycles.resolution import MOST_HARMONICS, harmonics_needed, resolved_in_groups, unresolved_members
 from engine.cycles.starts import energy_starts
-from engine.kernels.eigenvalues import eigenvalues
-from engine.models.critical_wind_speeds import Crossings, at_wind, state_matrices, unstable_pairs
-from engine.models.reduced_model import ReducedModel, of_each_member, take, with_samples
+from engine.models.critical_wind_speeds import Crossings, unstable_pairs
+from engine.models.reduced_model import ReducedModel, of_each_member, with_samples
 from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
 from engine.result import FoundBy
@@ -52,6 +52,7 @@ class Cycles:
     found_by: tuple[FoundBy, ...]
     harmonics: IntArray
     unbounded: IntArray
+    at_rest: ComplexArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +109,9 @@ def find_cycles(
         Sorted by member, wind speed and branch.
     """
     known, wind_speeds = KnownCycles(model), of_each_member(model, wind_speeds)
+    at_rest = eigenvalues_at_rest(model, wind_speeds)
     if wind_speeds.size == 0:
-        return _sorted_cycles(model, known, ())
+        return _sorted_cycles(known, (), at_rest)
     needed = harmonics_needed(model, wind_speeds, harmonics)
     branch_sets, joints = branches_in_groups(model, crossings, wind_speeds, needed)
     coarse = (needed > harmonics) & unresolved_members(model, branch_sets)
@@ -120,15 +122,16 @@ def find_cycles(
         _add_cycles_on(known, branch_set, wind_speeds, "hopf_branch")
     known.join(joints)
     _add_solutions(known, _roughly_balanced(known, known.new_starts(starts)), needed, "explicit")
-    _add_solutions(known, known.new_starts(energy_starts(model, wind_speeds, harmonics)), needed, "energy_balance")
+    energy = energy_starts(model, wind_speeds, harmonics, at_rest)
+    _add_solutions(known, known.new_starts(energy), needed, "energy_balance")
     integration = integration or DirectIntegration()
     if integration.starts is not None:
         _add_solutions(known, integration.starts, needed, "direct_integration")
     _follow_new_cycles(known, branch_sets, wind_speeds)
-    cycles = _sorted_cycles(model, known, tuple(branch_sets))
+    cycles = _sorted_cycles(known, tuple(branch_sets), at_rest)
     if integration.settle is None:
         return cycles
-    member, wind = _without_stable_motion(model, cycles, wind_speeds)
+    member, wind = _without_stable_motion(model, cycles)
     if member.size == 0:
         return cycles
     settled = integration.settle(member, wind)
@@ -136,7 +139,7 @@ def find_cycles(
     _add_solutions(known, settled.starts, needed, "direct_integration")
     if len(known) > before:
         _follow_new_cycles(known, branch_sets, wind_speeds)
-        cycles = _sorted_cycles(model, known, tuple(branch_sets))
+        cycles = _sorted_cycles(known, tuple(branch_sets), at_rest)
     return replace(cycles, unbounded=settled.unbounded)
 
 
@@ -180,15 +183,13 @@ def _roughly_balanced(known: KnownCycles, starts: Starts) -> Starts:
     return known.new_starts(Starts(starts.member[index], starts.wind[index], orbits))
 
 
-def _without_stable_motion(model: ReducedModel, cycles: Cycles, wind_speeds: FloatArray) -> tuple[IntArray, IntArray]:
+def _without_stable_motion(model: ReducedModel, cycles: Cycles) -> tuple[IntArray, IntArray]:
     """Return member and wind speed index (places,) where neither the static state nor a known cycle is stable."""
-    stable = np.repeat(model.statically_unstable[:, None], wind_speeds.shape[-1], axis=1)
+    stable = model.statically_unstable[:, None] | (unstable_pairs(cycles.at_rest) == 0)
     lasting = np.asarray(cycles.floquet.stability == Stability.STABLE, dtype=np.bool_)
     stable[cycles.member[lasting], cycles.wind[lasting]] = True
     member, wind = np.nonzero(~stable)
-    values = eigenvalues(at_wind(state_matrices(take(model, member)), wind_speeds[member, wind]))
-    unstable = unstable_pairs(values) > 0
-    return member[unstable], wind[unstable]
+    return member, wind
 
 
 def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray, found_by: FoundBy) -> IntArray:
@@ -201,10 +202,11 @@ def _add_cycles_on(known: KnownCycles, branch_set: BranchSet, winds: FloatArray,
     return followed
 
 
-def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[BranchSet, ...]) -> Cycles:
+def _sorted_cycles(known: KnownCycles, branch_sets: tuple[BranchSet, ...], at_rest: ComplexArray) -> Cycles:
     """Return all cycles with their stability, sorted by member, wind speed and branch."""
+    model = known.model
     if not len(known):
-        return _no_cycles(model, branch_sets, known.families()[1])
+        return _no_cycles(model, branch_sets, known.families()[1], at_rest)
     every_cycle = np.arange(len(known))
     member, wind = known.locations(every_cycle)
     orbits, floquet_result, resolved, harmonics = resolved_in_groups(
@@ -227,10 +229,13 @@ def _sorted_cycles(model: ReducedModel, known: KnownCycles, branch_sets: tuple[B
         tuple(found_by[i] for i in order.tolist()),
         harmonics[order],
         np.zeros((0, 2), dtype=np.intp),
+        at_rest,
     )
 
 
-def _no_cycles(model: ReducedModel, branch_sets: tuple[BranchSet, ...], followed: IntArray) -> Cycles:
+def _no_cycles(
+    model: ReducedModel, branch_sets: tuple[BranchSet, ...], followed: IntArray, at_rest: ComplexArray
+) -> Cycles:
     m = model.mass.shape[-1]
     none = np.zeros(0, dtype=np.intp)
     empty = np.zeros(0)
@@ -238,5 +243,5 @@ def _no_cycles(model: ReducedModel, branch_sets: tuple[BranchSet, ...], followed
     orbits = Orbits(np.zeros((0, m, 3)), empty, empty)
     dropped = np.zeros(model.mass.shape[0], dtype=np.intp)
     return Cycles(
-        none, none, none, orbits, floquet_result, dropped, branch_sets, followed, (), none, none.reshape(0, 2)
+        none, none, none, orbits, floquet_result, dropped, branch_sets, followed, (), none, none.reshape(0, 2), at_rest
     )

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.arrays import FloatArray, IntArray
+from engine.arrays import ComplexArray, FloatArray, IntArray
 from engine.cycles.first_harmonic import (
     FirstHarmonic,
     energy_balance_cycles,
@@ -16,13 +16,17 @@ from engine.cycles.known_cycles import Starts
 from engine.models.reduced_model import ReducedModel, of_each_member, take
 
 
-def energy_starts(model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:
+def energy_starts(
+    model: ReducedModel, wind_speeds: FloatArray, harmonics: int, at_rest: ComplexArray | None = None
+) -> Starts:
     """Return starts along every unstable mode at every wind speed, by the balance of energy over one period.
 
-    wind_speeds: of all members, (winds,), or of each, (members, winds) [m/s].
+    wind_speeds: of all members, (winds,), or of each, (members, winds) [m/s]; at_rest: (members, winds, 2 m), what
+    `eigenvalues_at_rest` returns, where it is known.
     """
     usable, winds = _usable(model, wind_speeds)
-    return _starts(energy_balance_cycles(take(model, usable), winds), usable, winds, harmonics)
+    values = None if at_rest is None else at_rest[usable]
+    return _starts(energy_balance_cycles(take(model, usable), winds, values), usable, winds, harmonics)
 
 
 def explicit_starts(published: ReducedModel, model: ReducedModel, wind_speeds: FloatArray, harmonics: int) -> Starts:

@@ -11,8 +11,7 @@ from engine.arrays import BoolArray, FloatArray, IntArray
 from engine.checks.data_limits import motion_outcomes
 from engine.cycles.harmonic_balance import half_peak_to_peak, states
 from engine.kernels import compiled
-from engine.kernels.eigenvalues import eigenvalues
-from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
+from engine.models.critical_wind_speeds import unstable_pairs
 from engine.models.relative_wind import FASTEST, NodalMotion, largest_reach
 from engine.outcome import Outcome, Stability
 from engine.report.cells import filled_rows, numbers
@@ -115,7 +114,7 @@ def _equilibria(seen: _Seen, loops: tuple[int, ...]) -> Iterator[_Motions]:
     """Yield rows of the static state, and of wind speeds where it is unstable and no stable motion is known."""
     findings = seen.findings
     members, winds = findings.winds.shape
-    values = eigenvalues(at_wind(state_matrices(findings.model), findings.winds))
+    values = findings.cycles.at_rest
     size = np.abs(values).max(axis=-1, initial=0.0)
     undecided = np.abs(values.real.max(axis=-1, initial=-np.inf)) <= 1e-12 * size
     static = findings.model.statically_unstable

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray, eigenvalues
+from engine.arrays import ComplexArray, FloatArray, IntArray, ObjectArray
 from engine.cycles.bifurcations import Bifurcations
 from engine.cycles.branches import guessed_points
 from engine.cycles.harmonic_balance import Orbits, select
 from engine.cycles.search import Cycles
 from engine.cycles.transitions import Kind
-from engine.models.critical_wind_speeds import at_wind, state_matrices, unstable_pairs
+from engine.models.critical_wind_speeds import unstable_pairs
 from engine.models.reduced_model import ReducedModel, of_each_member, take
 from engine.numerics.newton import NewtonOptions
 from engine.outcome import Stability
@@ -117,10 +117,10 @@ def quasi_periodic_motions(
     if winds.size and any(kind is Kind.TORUS for kind in bifurcations.kind):
         starts = _torus_starts(model, cycles, bifurcations, winds, search)
         motions = _from_torus_points(model, starts, winds)
-    locations = _without_stable_motion(model, cycles, motions, winds)
+    locations = _without_stable_motion(cycles, motions)
     if locations:
         motions = _concatenated([motions, _from_unstable_cycles(model, cycles, locations)])
-    missing = sorted(_without_stable_motion(model, cycles, motions, winds)) if locations else []
+    missing = sorted(_without_stable_motion(cycles, motions)) if locations else []
     sorted_motions = motions.select(np.lexsort((motions.wind, motions.member)))
     return replace(sorted_motions, missing=np.array(missing, dtype=np.intp).reshape(-1, 2))
 
@@ -132,7 +132,7 @@ def _torus_starts(
     if search is TorusSearch.EVERY:
         every = np.ones(bifurcations.member.size, dtype=np.bool_)
         return starts_at_torus_points(model, cycles.branch_sets, bifurcations, every, COARSE)
-    without_stable = [member for member, _ in _without_stable_motion(model, cycles, _no_motions(model), winds)]
+    without_stable = [member for member, _ in _without_stable_motion(cycles, _no_motions(model))]
     needed = np.isin(bifurcations.member, without_stable) | bifurcations.may_end_stability
     starts = starts_at_torus_points(model, cycles.branch_sets, bifurcations, needed, COARSE)
     selected = np.isin(starts.member, without_stable)
@@ -234,9 +234,7 @@ def _residual_and_truncation(model: ReducedModel, member: IntArray, tori: Tori) 
     return residual / elastic, np.abs(np.sqrt(after / before) - 1.0)
 
 
-def _without_stable_motion(
-    model: ReducedModel, cycles: Cycles, motions: QuasiPeriodicMotions, winds: FloatArray
-) -> set[tuple[int, int]]:
+def _without_stable_motion(cycles: Cycles, motions: QuasiPeriodicMotions) -> set[tuple[int, int]]:
     """Return member and wind where no stable motion is known and a pair of multipliers grows on some cycle."""
     locations = set(zip(cycles.member.tolist(), cycles.wind.tolist(), strict=True))
     for found_motions in (cycles, motions):
@@ -248,8 +246,7 @@ def _without_stable_motion(
     if not locations:
         return locations
     member, wind = np.array(sorted(locations), dtype=np.intp).T
-    values = eigenvalues(at_wind(state_matrices(take(model, member)), winds[member, wind]))
-    unstable = unstable_pairs(values) > 0
+    unstable = unstable_pairs(cycles.at_rest[member, wind]) > 0
     return {place for place, moves in zip(sorted(locations), unstable.tolist(), strict=True) if moves}
 
 
