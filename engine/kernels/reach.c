@@ -39,11 +39,23 @@ WITHIN Lanes largest_of(Lanes a)
     return (Lanes){0} + most;
 }
 
-/* Raise the largest size of the angle and the largest square of the velocity by those at a node. The angle
- * turn - atan(across/along) lies between turn and turn - across/along: where neither is larger than the largest so far, it
- * is not needed. */
-WITHIN void reach_at_node(const Reaches *wanted, ptrdiff_t member, ptrdiff_t node, ptrdiff_t m, const Lanes *state,
-                          Lanes *largest)
+/* Return the largest distance of a sub-conductor of a model from the reference curve. */
+WITHIN double longest_arm(const Reaches *wanted, ptrdiff_t member)
+{
+    const ptrdiff_t count = wanted->nodes * wanted->subconductors;
+    const double *arms = wanted->arms + member * count * 2;
+    double square = 0.0;
+    for (ptrdiff_t i = 0; i < count; i++) {
+        const double own = arms[2 * i] * arms[2 * i] + arms[2 * i + 1] * arms[2 * i + 1];
+        square = own > square ? own : square;
+    }
+    return sqrt(square);
+}
+
+/* Raise the largest size of the angle and the largest square of the velocity by those at a node. The angle is at most
+ * |turn| + across/along: where the longest arm cannot make it or the velocity larger than they are, no arm is looked at. */
+WITHIN void reach_at_node(const Reaches *wanted, ptrdiff_t member, ptrdiff_t node, ptrdiff_t m, double longest,
+                          const Lanes *state, Lanes *largest)
 {
     const ptrdiff_t place = member * wanted->nodes + node, count = wanted->subconductors;
     const double *forms = wanted->forms + place * LOCAL * 2 * m, *arms = wanted->arms + place * count * 2;
@@ -54,27 +66,34 @@ WITHIN void reach_at_node(const Reaches *wanted, ptrdiff_t member, ptrdiff_t nod
         rates[i] = sum_of(forms + (2 * i + 1) * m, state + m, m);
     if (wanted->published)
         largest[0] = larger(largest[0], size_of(turn - rates[RISE] - half * rates[TURNING]));
-    const Masks small = size_of(turn) <= largest[0];
+
+    const Lanes spin = size_of(rates[TURNING]), room = largest[0] - size_of(turn);
+    const Lanes rise = size_of(rates[RISE]) + longest * spin, sway = size_of(rates[SWAY]) + longest * spin;
+    const Masks level = (room >= 0.0) & (sway < 1.0) & (rise + half * spin <= room * (1.0 - sway));
+    if (all_hold(rise * rise + sway * sway <= largest[1]) && (wanted->published || all_hold(level)))
+        return;
+
     for (ptrdiff_t i = 0; i < count; i++) {
         if (i > 0 && arms[2 * i] == arms[0] && arms[2 * i + 1] == arms[1])
             break; /* the first one again: there are no more */
-        const Lanes rise = rates[RISE] - arms[2 * i + 1] * rates[TURNING];
-        const Lanes sway = rates[SWAY] + arms[2 * i] * rates[TURNING];
-        const Lanes across = rise + half * rates[TURNING], along = 1.0 - sway;
-        largest[1] = larger(largest[1], rise * rise + sway * sway);
-        if (wanted->published || all_hold(small & (along > 0.0) & (size_of(turn * along - across) <= largest[0] * along)))
-            continue;
-        largest[0] = largest_of(larger(largest[0], size_of(turn - angle_of(across, along))));
+        const Lanes v = rates[RISE] - arms[2 * i + 1] * rates[TURNING], w = rates[SWAY] + arms[2 * i] * rates[TURNING];
+        largest[1] = larger(largest[1], v * v + w * w);
+        if (!wanted->published)
+            largest[0] = larger(largest[0], size_of(turn - angle_of(v + half * rates[TURNING], 1.0 - w)));
     }
+    for (int i = 0; i < 2; i++)
+        largest[i] = largest_of(largest[i]);
 }
 
 WITHIN void reach_with(const Reaches *wanted, ptrdiff_t motion, ptrdiff_t m, Lanes *state)
 {
+    const ptrdiff_t member = wanted->member[motion];
+    const double longest = longest_arm(wanted, member);
     Lanes largest[2] = {{0}, {0}};
     for (ptrdiff_t sample = 0; sample < wanted->samples; sample += LANES) {
         gather(wanted, motion, sample, state);
         for (ptrdiff_t node = 0; node < wanted->nodes; node++)
-            reach_at_node(wanted, wanted->member[motion], node, m, state, largest);
+            reach_at_node(wanted, member, node, m, longest, state, largest);
     }
     wanted->reach[motion] = largest_of(largest[0])[0];
     wanted->reach[wanted->motions + motion] = sqrt(largest_of(largest[1])[0]);

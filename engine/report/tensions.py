@@ -19,7 +19,7 @@ from engine.result import TensionRow
 from engine.tori.spectrum import sampled_states
 
 SAMPLES = 64  # over one period; a parabola through the extremes leaves an error of 1e-4 of the range
-BLOCK = 64  # motions sampled together, so that all their samples stay in the processor's cache
+BLOCK = 256  # motions sampled together, which bounds the memory of their samples
 _FORCES = (
     "smallest_horizontal_n",
     "largest_horizontal_n",
