@@ -38,8 +38,8 @@ WITHIN void subtract_both(int first, int end, const double *p, const double *q, 
 {
     for (int j = first; j < end; j += LANES) {
         const Lanes here = *(const Lanes *)(p + j), next = *(const Lanes *)(q + j);
-        *(Lanes *)(a + j) -= by[0] * here + by[1] * next;
-        *(Lanes *)(b + j) -= by[2] * here + by[3] * next;
+        *(Lanes *)(a + j) = (*(const Lanes *)(a + j) - by[0] * here) - by[1] * next;
+        *(Lanes *)(b + j) = (*(const Lanes *)(b + j) - by[2] * here) - by[3] * next;
     }
 }
 
