@@ -208,7 +208,11 @@ def interpolate(
     """
     length = lengths((right.z - left.z) / left.scale)
     after = (length / lengths(right.tangent / left.scale))[:, None] * right.tangent
-    ends = (left.z, right.z, length[:, None] * left.tangent, after)
+    return _cubic((left.z, right.z, length[:, None] * left.tangent, after), share, unknowns)
+
+
+def _cubic(ends: tuple[FloatArray, ...], share: FloatArray, unknowns: slice = ALL_UNKNOWNS) -> FloatArray:
+    """Evaluate Hermite's cubic from its values at both ends and its slopes there by the share, each (k, n + 1)."""
     cube, square = share**3, share**2
     weights = [2.0 * cube - 3.0 * square + 1.0, 3.0 * square - 2.0 * cube, cube - 2.0 * square + share, cube - square]
     between = (ALL_UNKNOWNS,) + (None,) * (share.ndim - 1)
@@ -217,10 +221,15 @@ def interpolate(
 
 
 def _predict(before: BranchPoints, here: BranchPoints, length: FloatArray) -> FloatArray:
-    """Extrapolate Hermite's cubic through the last two points, or the tangent if there is only one point."""
-    step = lengths((here.z - before.z) / before.scale)
-    along = lengths(here.tangent / before.scale)
-    cubic = interpolate(before, here, 1.0 + length * along / step)
+    """Extrapolate Hermite's cubic through the last two points, or the tangent if there is only one point.
+
+    The cubic's variable is the one that a step prescribes, the length along the tangent of the last point.
+    """
+    row = here.tangent / here.scale**2
+    back = np.einsum("ki,ki->k", row, here.z - before.z)
+    along = np.einsum("ki,ki->k", row, before.tangent)
+    slopes = ((back / along)[:, None] * before.tangent, back[:, None] * here.tangent)
+    cubic = _cubic((before.z, here.z, *slopes), 1.0 + length / back)
     return np.where(np.isnan(cubic), here.z + length[:, None] * here.tangent, cubic)
 
 

@@ -166,5 +166,5 @@ def test_steps_become_as_long_as_the_prediction_allows_wherever_they_begin() -> 
         return float(abs(np.diff(np.unwrap(np.arctan2(z[:, 1], z[:, 0])))[0]))
 
     assert turn(first=0.01) == pytest.approx(turn(first=0.5), rel=1e-4)
-    # On a circle the cubic, with the chord for the arc, misses by the third power of the step: the share by its square.
-    assert turn(first=0.1, aim=0.005) == pytest.approx(0.5 * turn(first=0.1, aim=0.02), rel=0.02)
+    # The cubic misses by the fourth power of the step, so the share of the step by the third.
+    assert turn(first=0.1, aim=0.0025) == pytest.approx(0.5 * turn(first=0.1, aim=0.02), rel=0.02)
