@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, merge_axes, take_rows
+from engine.arrays import AnyArray, BoolArray, ComplexArray, FloatArray, IntArray, merge_axes
 from engine.cycles.at_rest import eigenvalues_at_rest
 from engine.cycles.harmonic_balance import Orbits, basis, linearized
 from engine.kernels import compiled
@@ -251,7 +251,7 @@ def energy_balance_cycles(
     size = np.abs(values).max(axis=-1, initial=0.0, keepdims=True)
     member, wind, mode = np.nonzero((values.real > 0.0) & (values.imag > 1e-9 * size))
     value = values[member, wind, mode]
-    matrices = at_wind(take_rows(state_matrices(model), member), speeds[member, wind])
+    matrices = at_wind(state_matrices(model), speeds)[member, wind]
     shape = _complex(complex_modes(matrices, value) / np.sqrt(model.modal_masses)[member])
     linear, cubic = _work(model, member, speeds[member, wind], value.imag, shape)
     grows = np.flatnonzero((linear > 0.0) & (cubic < 0.0))

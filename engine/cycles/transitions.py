@@ -191,4 +191,6 @@ def _decided(branch_set: BranchSet) -> BoolArray:
 def product_of(factors: ComplexArray) -> FloatArray:
     """Return the product of factors (..., n), each limited to modulus 1 so that it cannot overflow: (...)."""
     with np.errstate(invalid="ignore"):  # multipliers that overflowed yield NaN
-        return np.asarray(np.prod(factors * (1.0 / np.maximum(np.abs(factors), 1.0)), axis=-1).real)
+        limited = factors * (1.0 / np.maximum(np.abs(factors), 1.0))
+        side_by_side = np.moveaxis(limited, -1, 0).copy()  # a product along the last axis takes three times as long
+        return np.asarray(np.prod(side_by_side, axis=0).real)
