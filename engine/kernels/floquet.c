@@ -78,16 +78,18 @@ WIDE static void generate(Workspace *w, const Model *model, const Monodromies *w
     const double *coefficients = wanted->coefficients + cycle * m * w->size;
     const double *inverse = wanted->inverse_mass + wanted->member[cycle] * m * m;
     Lanes *block = w->blocks + point * m * n;
+    const double *values[LANES], *slopes[LANES];
     for (int lane = 0; lane < LANES; lane++) {
         const ptrdiff_t at = (wanted->first[cycle] + point * steps + lane * w->stretch + step) * w->size;
+        values[lane] = wanted->values + at, slopes[lane] = wanted->slopes + at;
+    }
+    memset(w->state, 0, (size_t)n * sizeof *w->state);
+    for (int c = 0; c < w->size; c++) {
+        const Lanes value = {values[0][c], values[1][c], values[2][c], values[3][c]};
+        const Lanes slope = omega / speed * (Lanes){slopes[0][c], slopes[1][c], slopes[2][c], slopes[3][c]};
         for (int j = 0; j < m; j++) {
-            double q = 0.0, motion = 0.0;
-            for (int c = 0; c < w->size; c++) {
-                q += coefficients[j * w->size + c] * wanted->values[at + c];
-                motion += coefficients[j * w->size + c] * wanted->slopes[at + c];
-            }
-            w->state[j][lane] = q;
-            w->state[m + j][lane] = omega / speed * motion;
+            w->state[j] += coefficients[j * w->size + c] * value;
+            w->state[m + j] += coefficients[j * w->size + c] * slope;
         }
     }
     load_at(model, speed, w->state, w->force, w->gradient, w->restoring, w->scratch);
