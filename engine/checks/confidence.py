@@ -82,41 +82,40 @@ def _measures(model: ReducedModel, member: IntArray, orbits: Orbits) -> FloatArr
     main = (every * np.sqrt(model.modal_masses)[member]).argmax(axis=-1)
     row = np.arange(member.size)
 
-    def change(coefficients: FloatArray) -> FloatArray:
-        return np.asarray(half_peak_to_peak(coefficients[row, main]) / every[row, main] - 1.0)
+    def change(coefficients: FloatArray, here: IntArray = row) -> FloatArray:
+        changed = half_peak_to_peak(coefficients[np.arange(here.size), main[here]])
+        return np.asarray(changed / every[here, main[here]] - 1.0)
 
     detuning = _largest_change(model, member, orbits, change)
     return np.stack([error / elastic, np.abs(change(with_one_more.coefficients)), detuning])
 
 
 def _largest_change(
-    model: ReducedModel, member: IntArray, orbits: Orbits, change: Callable[[FloatArray], FloatArray]
+    model: ReducedModel, member: IntArray, orbits: Orbits, change: Callable[[FloatArray, IntArray], FloatArray]
 ) -> FloatArray:
     """Return the largest of the changes under shifted horizontal frequencies, NaN where one shift leaves no such cycle.
 
     They rise and fall by DETUNING; where stretching raises them by more over the cycle, they fall by that much, too.
-    change: returns the relative change of the amplitudes of coefficients (cycles, m, 2 H + 1).
+    change: returns the relative change of the amplitudes of coefficients (k, m, 2 H + 1) of some of the cycles (k,).
     """
     # Near a resonance even 0.1 % of detuning is nonlinear, so a single linear step would not be enough.
     higher, first = balance(_detuned(model, DETUNING), member, orbits, COARSE)
-    rise = np.where(first.converged, change(higher.coefficients), np.nan)
+    rise = np.where(first.converged, change(higher.coefficients, np.arange(member.size)), np.nan)
     soft = np.flatnonzero(np.abs(rise) > LINEAR)
     lower = 2.0 * orbits.coefficients[soft] - higher.coefficients[soft]
     frequency = 2.0 * orbits.angular_frequency[soft] - higher.angular_frequency[soft]
     start = Orbits(lower, frequency, orbits.wind_speed[soft])
     solved, second = balance(_detuned(model, -DETUNING), member[soft], start, COARSE)
-    fallen = orbits.coefficients.copy()
-    fallen[soft] = np.where(second.converged[:, None, None], solved.coefficients, np.nan)
     fall = -rise  # or rounding would decide which of two equal sizes, and so which sign, is the largest
-    fall[soft] = change(fallen)[soft]
-    relaxed = orbits.coefficients.copy()
+    fall[soft] = np.where(second.converged, change(solved.coefficients, soft), np.nan)
+    relaxed = np.zeros(member.size)
     shift = stretching_shift(model, member, orbits)
     far = np.flatnonzero(shift > DETUNING)
     if far.size:
         own = _detuned(take(model, member[far]), -shift[far])
         solved, third = balance(own, np.arange(far.size), select(orbits, far), COARSE)
-        relaxed[far] = np.where(third.converged[:, None, None], solved.coefficients, np.nan)
-    changes = np.stack([rise, fall, change(relaxed)])
+        relaxed[far] = np.where(third.converged, change(solved.coefficients, far), np.nan)
+    changes = np.stack([rise, fall, relaxed])
     # argmax takes NaN for the largest.
     return np.asarray(changes[np.abs(changes).argmax(axis=0), np.arange(member.size)])
 
