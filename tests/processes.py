@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from app.runtime.processes import environment
+from app.runtime.processes import ONE_BLAS_THREAD, environment
 from app.runtime.settings import Settings
 from tests.servers import wait_until
 
@@ -84,3 +84,10 @@ def _stat(pid: int) -> list[str]:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[:3]
     except (FileNotFoundError, ProcessLookupError):
         return ["Z", "", ""]
+
+
+def printed(script: str) -> str:
+    """Run a script in a process of its own, since what is frozen and loaded stays, and return what it says."""
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, **ONE_BLAS_THREAD})
+    return done.stdout.strip()

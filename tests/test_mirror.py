@@ -118,7 +118,6 @@ OF_NO_SINGLE_MODULE = {
     "tests/browser": "The pages are used in a real browser.",
     "tests/e2e": "The whole service runs as users start it.",
     "tests/engine/devices": "A device is held by the matrices and the motions that it changes.",
-    "tests/engine/kernels/test_eigenvalues.py": "The kernel of engine/kernels/eigenvalues.c is held against LAPACK.",
     "tests/engine/kernels/test_sanitized.py": "The kernels are called with spoilt arguments under sanitizers.",
     "tests/engine/test_coexisting_cycles.py": "Cycles that only the search as a whole finds are held on three lines.",
     "tests/engine/test_costs.py": "Systems solved a line are counted over the whole analysis.",

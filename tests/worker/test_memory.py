@@ -1,6 +1,6 @@
 """How a process that runs the engine handles memory."""
 
-from tests.worker.test_tasks import printed
+from tests.processes import printed
 
 
 def test_what_is_loaded_is_not_looked_through_again() -> None:

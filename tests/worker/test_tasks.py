@@ -1,17 +1,6 @@
 """What a pool loads before it forks, and what its processes do with it."""
 
-import os
-import subprocess
-import sys
-
-from app.runtime.processes import ONE_BLAS_THREAD
-
-
-def printed(script: str) -> str:
-    """Run a script in a process of its own, since what is frozen and loaded stays, and return what it says."""
-    command = [sys.executable, "-c", script]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, **ONE_BLAS_THREAD})
-    return done.stdout.strip()
+from tests.processes import printed
 
 
 def test_a_job_finds_everything_loaded() -> None:
