@@ -159,7 +159,7 @@ def balance(
         finer, again = _balanced(model, member[moving], select(orbits, moving), options)
         change = np.abs(finer.coefficients - orbits.coefficients[moving]).max(axis=(1, 2))
         orbits.coefficients[moving], orbits.angular_frequency[moving] = finer.coefficients, finer.angular_frequency
-        solution.outcome[moving] = again.outcome
+        solution.converged[moving] = again.converged
         moving = moving[again.converged & (change > SETTLED * options.tolerance)]
     return orbits, solution
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.arrays import AnyArray, ComplexArray, FloatArray, IntArray
 from engine.kernels.layout import contiguous, model_parts, model_shape, unexpanded_parts
-from engine.numerics.newton import NewtonOptions, Solution, solution_from_steps
+from engine.numerics.newton import NewtonOptions, Solution
 from engine.spec import AerodynamicModel
 
 if TYPE_CHECKING:  # kernels stand below the models, whose arrays they read
@@ -118,7 +118,7 @@ def _newton(
     reach = np.broadcast_to(options.reach, step.shape)
     results = (x, step, iterations, residual, tangent)
     newton(model_parts(model), model_shape(model), size, contiguous(*cycles, reach), limits, results)
-    return solution_from_steps(x, step, iterations, residual, options)
+    return Solution(x, step <= options.tolerance, step, iterations, residual)
 
 
 def balance_slopes(

@@ -31,20 +31,22 @@ class NewtonOptions:
 class Solution:
     """Result of Newton's method for each member of a stack.
 
-    x: (members, unknowns); outcome: (members,) of Outcome; step: (members,), scaled size of the last step;
-    iterations: (members,); residual: (members, equations), that of the start, NaN where no step was taken.
+    x: (members, unknowns); converged: (members,), which met the tolerance; step: (members,), scaled size of the last
+    step; iterations: (members,); residual: (members, equations), that of the start, NaN where no step was taken.
     """
 
     x: FloatArray
-    outcome: ObjectArray
+    converged: BoolArray
     step: FloatArray
     iterations: IntArray
     residual: FloatArray
 
     @property
-    def converged(self) -> BoolArray:
-        """Which members met the tolerance, (members,)."""
-        return np.asarray(self.outcome == Outcome.CONVERGED, dtype=np.bool_)
+    def outcome(self) -> ObjectArray:
+        """CONVERGED or NO_CONVERGENCE, (members,)."""
+        outcome = filled(self.step.size, Outcome.NO_CONVERGENCE)
+        outcome[self.converged] = Outcome.CONVERGED
+        return outcome
 
 
 def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOptions | None = None) -> Solution:
@@ -87,16 +89,7 @@ def newton(system: System, x: FloatArray, scale: FloatArray, options: NewtonOpti
         iterations[active] += 1
         lost = starts[finite] & (size > limit[active])
         active = active[(size > options.tolerance) & ~lost]
-    return solution_from_steps(x, step, iterations, residual, options)
-
-
-def solution_from_steps(
-    x: FloatArray, step: FloatArray, iterations: IntArray, residual: FloatArray, options: NewtonOptions
-) -> Solution:
-    """Return the solution whose outcome follows from the size (members,) of the last steps."""
-    outcome = filled(step.size, Outcome.NO_CONVERGENCE)
-    outcome[step <= options.tolerance] = Outcome.CONVERGED
-    return Solution(x, outcome, step, iterations, residual)
+    return Solution(x, step <= options.tolerance, step, iterations, residual)
 
 
 def _newton_steps(system: System, x: FloatArray, active: IntArray) -> tuple[FloatArray, FloatArray]:
