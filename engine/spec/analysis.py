@@ -13,6 +13,7 @@ _REST_RULE = (
     "must be given, or a measured table in the place of ice.aerodynamics, for the relative wind of full physics; "
     '"physics": "source" does without'
 )
+USUAL_LOOPS = (1, 2, 3)  # of the modes that the finite element model combines
 MOST_LOOPS_TOGETHER = 6  # the search for the finite element model's critical speeds takes time as their sixth power
 
 
@@ -137,7 +138,7 @@ class Analysis:
     stretching: Stretching = Stretching.NEGLECTED
     critical_wind_limit: float = 30.0
     harmonics: int = 5
-    finite_element_loops: tuple[int, ...] = (1, 2, 3)
+    finite_element_loops: tuple[int, ...] = USUAL_LOOPS
     static_twist: StaticTwist = StaticTwist.NEGLECTED
     loop_competition: LoopCompetition = LoopCompetition.NEGLECTED
     device_effect: DeviceEffect = DeviceEffect.NEGLECTED
@@ -185,7 +186,9 @@ class Analysis:
     def _size_fault(self) -> Fault | None:
         together = set(self.loops) | set(self.finite_element_loops)
         if Model.FINITE_ELEMENT in self.models and self.finite_element_loops and len(together) > MOST_LOOPS_TOGETHER:
-            rule = f"must not make more than {MOST_LOOPS_TOGETHER} different numbers together with loops"
+            rule = f"must not make more than {MOST_LOOPS_TOGETHER} different numbers together with loops {self.loops}"
+            if self.finite_element_loops == USUAL_LOOPS:
+                rule += "; it has these values unless others are given, such as those of loops"
             return Fault("finite_element_loops", self.finite_element_loops, rule)
         return None
 

@@ -296,6 +296,8 @@ def test_finite_element_loops_are_bounded_where_motions_are_asked_for() -> None:
         Analysis(finite_element_loops=many)
     assert Analysis(finite_element_loops=many, models=(Model.HYBRID,)).finite_element_loops == many
     assert Analysis(loops=many, finite_element_loops=()).loops == many
+    with pytest.raises(InvalidSpec, match=r"with loops \(4, 5, 6, 7\); it has these values unless others are given"):
+        Analysis(loops=(4, 5, 6, 7))
 
 
 @pytest.mark.parametrize(
