@@ -242,7 +242,7 @@ def resized(orbits: Orbits, harmonics: int) -> Orbits:
 
 def select(orbits: Orbits, index: IntArray) -> Orbits:
     """Select or repeat orbits of a stack."""
-    return Orbits(orbits.coefficients[index], orbits.angular_frequency[index], orbits.wind_speed[index])
+    return Orbits(orbits.coefficients.take(index, axis=0), orbits.angular_frequency[index], orbits.wind_speed[index])
 
 
 def half_peak_to_peak(coefficients: FloatArray) -> FloatArray:
