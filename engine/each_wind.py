@@ -81,8 +81,8 @@ def analyse_lines(
     for line, own in zip(lines, placed(together, [not line.follows_wind for line in lines]), strict=True):
         result = (yield from _at_each_wind(line, analysis, in_one_state)) if own is None else own
         result = with_clearances(result, line)
-        found = replace(result, verdict=(verdict(result, line, analysis),))
-        results.append(replace(found, risk=risk_rows(found, line, analysis)))
+        judged, risk = verdict(result, line, analysis), risk_rows(result, line, analysis)
+        results.append(replace(result, verdict=(judged,), risk=risk))
     return results
 
 

@@ -84,10 +84,10 @@ def verdict(result: Result, line: Line, analysis: Analysis) -> VerdictRow:
 
 
 def _evidence(result: Result, line: Line, analysis: Analysis) -> _Evidence:
-    rows, design = result.limit_cycles, line.design_wind
-    unknown = tuple(row for row in rows if row.vertical_m is None)
+    rows, design, stable = result.limit_cycles, line.design_wind, Stability.STABLE
+    unknown = tuple([row for row in rows if row.vertical_m is None])
     known = {row.wind_speed_m_per_s for row in rows} - {row.wind_speed_m_per_s for row in unknown}
-    moving = [row for row in rows if row.kind != "equilibrium" and row.stability is Stability.STABLE]
+    moving = [row for row in rows if row.kind != "equilibrium" and row.stability is stable]
     onsets = [
         row.wind_speed_m_per_s
         for row in result.critical_wind_speeds
