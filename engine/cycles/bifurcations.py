@@ -15,7 +15,7 @@ from engine.cycles.branch_set import FINE_SHARE, BranchSet, CycleProblem, orbits
 from engine.cycles.branches import ends_at_hopf_points
 from engine.cycles.floquet import floquet
 from engine.cycles.harmonic_balance import Orbits, resized, select
-from engine.cycles.transitions import FACTORS, Kind, Transitions, branch_point_factors, product_of, transitions
+from engine.cycles.transitions import FACTORS, MARGIN, Kind, Transitions, branch_point_factors, product_of, transitions
 from engine.models.critical_wind_speeds import Crossings, crossing_error
 from engine.models.reduced_model import ReducedModel
 from engine.numerics.branch_zeros import locate_zeros, project_onto_branches
@@ -99,7 +99,8 @@ def _locate_bifurcations(branch_set: BranchSet, families: IntArray, places: Tran
     zero = locate_zeros(problem, finer.select(left), finer.select(right), test, ACCURACY)
     multipliers, error = _multipliers(problem, zero.points)
     critical, distance = _critical_multipliers(multipliers, kinds)
-    inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE)
+    # Where the trivial multiplier and the critical one meet, both are in error by the root of the integration's error.
+    inside = np.isfinite(zero.uncertainty) & (distance < ON_CIRCLE + MARGIN * error)
     z = np.where(inside[:, None], zero.points.z, _with_zeros(problem, ends.z[left]))
     orbits = problem.orbits(z, zero.points.branch)
     member = problem.member[zero.points.branch]

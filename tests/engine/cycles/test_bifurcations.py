@@ -13,7 +13,8 @@ from engine.models.aerodynamic_load import force, force_gradient
 from engine.models.critical_wind_speeds import critical_wind_speeds
 from engine.models.reduced_model import ReducedModel, take
 from engine.numerics.continuation import BranchPoints
-from tests.builders import Oscillators, hand_made
+from engine.spec import Analysis, Model
+from tests.builders import Oscillators, hand_made, run, source_line
 from tests.engine.motions import LIGHT, analysed
 
 
@@ -143,3 +144,14 @@ def test_torus_point_of_two_oscillators_is_exact() -> None:
     assert found.angular_frequency[torus] == pytest.approx([first], abs=1e-6)
     assert found.second_frequency[torus] == pytest.approx([second_frequency], abs=1e-6)
     assert (found.uncertainty[torus] < 1e-6).all()
+
+
+@pytest.mark.parametrize("winds", [(6.0, 10.0), (6.3, 10.0)])
+def test_a_branch_point_is_located_although_the_trivial_multiplier_meets_the_critical_one(
+    winds: tuple[float, ...],
+) -> None:
+    line = source_line(1, torsional_ratio=0.01)
+    rows = run(line, Analysis(loops=(2,), models=(Model.HYBRID,), wind_speeds=winds)).bifurcations
+    found = [row for row in rows if row.type == "branch_point"]
+    assert [row.wind_speed_m_per_s for row in found] == pytest.approx([9.3199], abs=2e-4)
+    assert found[0].uncertainty_m_per_s < 6e-3
