@@ -17,7 +17,7 @@ from engine.numerics.eigenproblems import eigenvalues_alone, largest_sines, solv
 
 FURTHER = 2  # modes of each direction beyond the largest number of loops, in which all freedoms are approximated first
 LARGEST_SINE = 0.1  # between a mode and its first approximation, beyond which this one tells nothing
-LARGEST_CHANGE = 1e-5  # of an eigenvalue by the corrections, of whose square the error is that is left
+LARGEST_CHANGE = 1e-5  # of an eigenvalue by the corrections; the error that is left is of the order of its square
 
 
 def full_eigenvalues(system: Matrices, shapes: DirectionalShapes, loops: tuple[int, ...]) -> FloatArray:

@@ -38,7 +38,7 @@ def largest_sines(approximate: FloatArray, values: FloatArray) -> FloatArray:
     approximate : (..., k)
         Eigenvalues of the problem in a subspace (Rayleigh and Ritz), ascending.
     values : (..., n)
-        All eigenvalues, ascending, n > k.
+        Eigenvalues of the whole problem, or of one in a larger subspace that stands for it, ascending, n > k.
 
     Returns
     -------

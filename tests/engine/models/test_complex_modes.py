@@ -39,6 +39,20 @@ def test_modes_are_the_displacements_of_the_eigenvectors() -> None:
     assert np.linalg.norm(found, axis=-1) == pytest.approx(np.ones(COUNT), rel=1e-12)
 
 
+def test_modes_of_equal_oscillators_that_move_against_each_other_are_found_too() -> None:
+    """Their left vectors are orthogonal to any motion in which both take equal parts."""
+    generator = np.random.default_rng(4)
+    own, spring = generator.uniform(1.0, 100.0, COUNT), generator.uniform(0.1, 10.0, COUNT)
+    matrices = np.zeros((COUNT, 4, 4))
+    matrices[:, :2, 2:] = np.eye(2)
+    matrices[:, 2:, :2] = spring[:, None, None] * np.array([[-1.0, 1.0], [1.0, -1.0]]) - own[:, None, None] * np.eye(2)
+    matrices[:, 2:, 2:] = -0.01 * np.eye(2)
+    value = -0.005 + 1j * np.sqrt(own + 2.0 * spring - 0.005**2)
+    found = complex_modes(matrices, value)
+    against = np.abs(found @ np.array([1.0, -1.0])) / np.sqrt(2.0)
+    assert against == pytest.approx(np.ones(COUNT), rel=1e-12)
+
+
 def test_a_step_squares_the_error_of_an_eigenvalue() -> None:
     matrices = states(np.random.default_rng(2))
     value, _ = fastest(matrices)
