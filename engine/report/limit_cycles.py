@@ -167,7 +167,7 @@ def _cycles(seen: _Seen) -> _Motions:
         "harmonics": cycles.harmonics.tolist(),
         "outcome": _slack_first(slack, _outcomes(seen, keys, measures)),
     }
-    return _rows(seen, keys, measures, labels, {"kind": "periodic"}, _as_tuples(series))
+    return _rows(seen, keys, measures, labels, {"kind": "periodic"}, _as_tuples(series, cycles.harmonics))
 
 
 def _reach(motion: NodalMotion, member: IntArray, state: FloatArray) -> FloatArray:
@@ -271,8 +271,13 @@ def _rows(
     return _Motions(keys, zip(rows, series, strict=False))  # other motions than cycles repeat None without end
 
 
-def _as_tuples(series: FloatArray) -> Iterator[tuple[tuple[float, ...], ...]]:
-    """Return Fourier series (cycles, 3, 2 H + 1) as three tuples a cycle."""
-    coefficients = iter(series.ravel().tolist())
-    coordinates = zip(*[coefficients] * series.shape[-1], strict=True)
-    return zip(*[coordinates] * series.shape[-2], strict=True)
+def _as_tuples(series: FloatArray, harmonics: IntArray) -> list[tuple[tuple[float, ...], ...]]:
+    """Return Fourier series (cycles, 3, 2 H + 1) as three tuples a cycle, without what pads those of fewer harmonics."""
+    found: list[tuple[tuple[float, ...], ...]] = [()] * harmonics.size
+    for count in np.unique(harmonics).tolist():
+        here = np.flatnonzero(harmonics == count)
+        coefficients = iter(series[here, :, : 2 * count + 1].ravel().tolist())
+        coordinates = zip(*[coefficients] * (2 * count + 1), strict=True)
+        for cycle, own in zip(here.tolist(), zip(*[coordinates] * 3, strict=True), strict=True):
+            found[cycle] = own
+    return found

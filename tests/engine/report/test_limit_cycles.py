@@ -36,6 +36,7 @@ def test_orbits_are_the_series_of_their_rows() -> None:
     periodic = [i for i, row in enumerate(result.limit_cycles) if row.kind == "periodic"]
     assert [orbit.cycle for orbit in result.orbits] == periodic
     for orbit in result.orbits:
+        assert len(orbit.vertical) == 2 * (result.limit_cycles[orbit.cycle].harmonics or 0) + 1
         row = result.limit_cycles[orbit.cycle]
         pairs = ((orbit.vertical, row.vertical_m), (orbit.horizontal, row.horizontal_m))
         for series, amplitude in (*pairs, (orbit.torsional, row.torsional_rad)):
