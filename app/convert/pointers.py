@@ -1,5 +1,6 @@
 """Convert faults of the engine, which name its attributes, to faults with pointers into the JSON document."""
 
+import math
 from collections.abc import Sequence
 
 from pydantic import BaseModel
@@ -22,8 +23,16 @@ def to_pointer(fault: outcome.Fault, line: object, analysis: object) -> Fault:
     if path[0] == "analysis":
         path = path[1:]
     root, node = ("analysis", analysis) if path[0] in schemas.Analysis.model_fields else ("line", line)
-    value = "" if fault.value is None else f", got {str(fault.value)[:80]}"
-    return Fault(json_pointer([root, *json_names(node, path)]), "inconsistent", f"{fault.rule}{value}")
+    return at_names(fault, json_names(node, path), root)
+
+
+def at_names(fault: outcome.Fault, names: Sequence[str], *roots: str) -> Fault:
+    """Return a fault of the engine at the field of these JSON names below the roots, its value in the field's unit."""
+    value = fault.value
+    if isinstance(value, float) and names and names[-1].endswith("_deg"):
+        value = round(math.degrees(value), 9)  # the engine's angles are in radians
+    got = "" if value is None else f", got {str(value)[:80]}"
+    return Fault(json_pointer([*roots, *names]), "inconsistent", f"{fault.rule}{got}")
 
 
 def json_names(node: object, path: Sequence[str]) -> list[str]:

@@ -10,12 +10,12 @@ from typing import Any, TypeVar
 from app.convert import parts
 from app.convert.assemble import section_with_ice
 from app.convert.known.own_rows import OwnRows
-from app.convert.pointers import json_names
+from app.convert.pointers import at_names, json_names
 from app.reference import conductors, ice_shapes
 from app.reference.catalogue_row import CatalogueRow, name_key
 from app.schemas import IceSegment
 from app.schemas import known as said
-from app.schemas.faults import Fault, json_pointer
+from app.schemas.faults import Fault
 from app.schemas.line import Phase
 from app.schemas.measured import OwnTable
 from engine import spec
@@ -252,7 +252,7 @@ def _named_shape(form: said.CatalogueShape, part: said.KnownIce, own: OwnRows) -
         )
     if form.angle is not None and form.angle != shape.static_angle_deg:
         rule = f"must be absent or {shape.static_angle_deg:g}, at which the coefficients of {shape.name} hold"
-        raise InvalidSpec(EngineFault("ice.aerodynamics.angle", form.angle, rule))
+        raise InvalidSpec(EngineFault("ice.aerodynamics.angle", math.radians(form.angle), rule))
     return _listed_shape(shape, part, form.reference_diameter)
 
 
@@ -290,5 +290,4 @@ def _damping(part: said.KnownDamping) -> known.KnownDamping:
 def to_pointer(fault: EngineFault, line: said.KnownLine) -> Fault:
     """Return a fault of the engine with the JSON pointer of its field in the line document."""
     path = _OTHER_NAMES.get(fault.field, fault.field).split(".")
-    value = "" if fault.value is None else f", got {str(fault.value)[:80]}"
-    return Fault(json_pointer(json_names(line, path)), "inconsistent", f"{fault.rule}{value}")
+    return at_names(fault, json_names(line, path))

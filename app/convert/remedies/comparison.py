@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from app import schemas
 from app.convert import parts
-from app.convert.pointers import json_names
+from app.convert.pointers import at_names, json_names
 from app.schemas.devices import tried_remedies as said
-from app.schemas.faults import Fault, json_pointer
+from app.schemas.faults import Fault
 from engine import spec
 from engine.outcome import Fault as EngineFault
 from engine.outcome import InvalidSpec
@@ -106,9 +106,7 @@ def _tension_faults(line: spec.Line, known: "KnownLine | None", asked: spec.Reme
 
 
 def _to_pointer(fault: EngineFault, part: schemas.Remedies) -> Fault:
-    value = "" if fault.value is None else f", got {str(fault.value)[:80]}"
-    names = json_names(part, fault.field.rstrip(".").split("."))
-    return Fault(json_pointer(["remedies", *names]), "inconsistent", f"{fault.rule}{value}")
+    return at_names(fault, json_names(part, fault.field.rstrip(".").split(".")), "remedies")
 
 
 def _restrung(

@@ -1,3 +1,5 @@
+import math
+
 import pytest
 
 from app import schemas
@@ -31,6 +33,12 @@ def test_the_engines_names_lead_to_the_contracts_fields(field: str, pointer: str
 def test_a_value_is_shown_and_cut() -> None:
     fault = to_pointer(outcome.Fault("span.length", "9" * 200, "must be less"), LINE, None)
     assert fault.detail == f"must be less, got {'9' * 80}"
+
+
+@pytest.mark.parametrize(("angle", "shown"), [(math.radians(100.0), "100.0"), (math.radians(-12.3), "-12.3")])
+def test_an_angle_is_shown_in_the_unit_of_its_field(angle: float, shown: str) -> None:
+    fault = to_pointer(outcome.Fault("wind.yaw", angle, "must be less"), LINE, None)
+    assert fault == Fault("/line/wind/yaw_deg", "inconsistent", f"must be less, got {shown}")
 
 
 def test_names_of_the_contract_pass_as_they_are() -> None:
