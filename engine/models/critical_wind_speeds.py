@@ -211,7 +211,7 @@ def _distinct(member: IntArray, speed: FloatArray) -> BoolArray:
 def _singular_speeds(matrices: StateMatrices, limit: float) -> tuple[IntArray, FloatArray]:
     """Solve (B_0 + U B_1 + U^2 B_2) v = 0 for real U in (0, limit] as an eigenproblem in limit/U.
 
-    Its unknowns are v limit/U where the wind has a column at all, and v where B_2 has one: for few coordinates.
+    Its unknowns are v limit/U where the wind has a column at all, and v where B_2 has one, which few coordinates have.
     """
     b_0, b_1, b_2 = (bialternate_sum(a) for a in (matrices.constant, matrices.linear, matrices.quadratic))
     by_square = b_2.any(axis=(0, 1))

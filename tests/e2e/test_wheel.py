@@ -100,6 +100,14 @@ def test_wheel_has_one_import_name(wheel: Path) -> None:
     assert {name for name in names if not name.endswith(".dist-info")} == {"galloping"}
 
 
+def test_installed_kernels_run_without_their_sources(wheel: Path, installed: Path, folder: Path) -> None:
+    """Installers write files in any order, so that sources would seem newer than what was built of them."""
+    assert not [name for name in zipfile.ZipFile(wheel).namelist() if name.endswith((".c", ".h"))]
+    script = "from galloping.engine.kernels import compiled; print(compiled.AVAILABLE)"
+    ended = _run([str(installed), "-P", "-c", script], folder)
+    assert ended.stdout == "True\n", ended.stderr
+
+
 @pytest.mark.parametrize("way", ["command", "module"])
 def test_service_starts_and_computes_beside_files_of_the_same_names(installed: Path, folder: Path, way: str) -> None:
     command = [str(installed.parent / "galloping")] if way == "command" else [str(installed), "-P", "-m", "galloping"]
