@@ -1,4 +1,4 @@
-"""Eigenvalues of stacks of small matrices, by the kernel where it was built (engine/kernels/eigenvalues.c)."""
+"""Eigenvalues of stacks of matrices, by the kernel where it was built and they are small (eigenvalues.c)."""
 
 import numpy as np
 
@@ -6,10 +6,12 @@ from engine import arrays
 from engine.arrays import ComplexArray, FloatArray, merge_axes
 from engine.kernels import compiled
 
+LARGEST = 250  # rows, beyond which LAPACK is faster; the kernel takes no more than 1000
+
 
 def eigenvalues(matrices: FloatArray) -> ComplexArray:
-    """Return the eigenvalues of finite matrices (..., n, n): (..., n); LAPACK finds those where the kernel fails."""
-    if not compiled.AVAILABLE:
+    """Return the eigenvalues of finite matrices (..., n, n): (..., n); by LAPACK for large ones and where the kernel fails."""
+    if not compiled.AVAILABLE or matrices.shape[-1] > LARGEST:
         return arrays.eigenvalues(matrices)
     values = compiled.small_eigenvalues(merge_axes(matrices, -matrices.ndim, -3)).reshape(matrices.shape[:-1])
     failed = np.isnan(values).any(axis=-1)

@@ -137,3 +137,9 @@ def test_lapack_finds_those_that_the_kernel_refuses(available: bool, monkeypatch
     matrices = np.diag([3.0, 2.0, 1.0, 0.5]) * np.array([1.0, 1e200, 1e-200, 0.0])[:, None, None]
     found = np.sort(eigenvalues(matrices).real, axis=-1)
     assert found == pytest.approx(np.sort(np.diagonal(matrices, axis1=1, axis2=2), axis=-1), rel=1e-15)
+
+
+def test_matrices_of_any_size_have_eigenvalues() -> None:
+    """Critical wind speeds of tied phases are eigenvalues of more than a thousand rows."""
+    triangular = np.triu(np.ones((1, 1001, 1001)), 990) + np.diag(np.arange(1.0, 1002.0))
+    assert np.sort(eigenvalues(triangular)[0].real) == pytest.approx(np.arange(1.0, 1002.0), rel=1e-12)
