@@ -16,6 +16,7 @@ from benchmarks.validation import (
     internal_resonance,
     interphase_spacers,
     limit_cycles,
+    longitudinal_inertia,
     model_comparison,
     quasi_periodic,
     relative_wind,
@@ -39,6 +40,7 @@ the theory that this page names; [nomenclature](nomenclature.md) explains symbol
 
 SECTIONS: Mapping[str, Callable[[], Iterator[str]]] = {
     "frequencies": frequencies.section,
+    "longitudinal_inertia": longitudinal_inertia.section,
     "free_sections": free_sections.section,
     "internal_resonance": internal_resonance.section,
     "critical_wind_speeds": critical_wind_speeds.section,
