@@ -55,6 +55,7 @@ EXACT_SHIFTS = (  # theory section 12.1: span, amplitude [m], shift of an exact 
     ("300 m, springs", 3.0, 8.27),
     ("300 m, dead ends", 1.0, 2.41),
 )
+BEATING = ("300 m, dead ends", 2.0, 5.35)  # the same of a motion that is not periodic
 
 
 def hybrid_shift(line: Line, amplitude: float) -> float:
@@ -153,14 +154,41 @@ def released_shift(line: Line, loops: int, amplitude: float, periods: int = 24) 
     start[TORSIONAL] = sine / abs(line.bundle.positions[0][1])
     shares = np.linalg.lstsq(model.shapes.reshape(len(model.shapes), -1).T, start.ravel(), rcond=None)[0]
     large, small = (
-        _released(model, np.asarray(scale * shares, dtype=np.float64), natural, loops, periods)
+        _released(model, np.asarray(scale * shares, dtype=np.float64), natural, loops, periods, TORSIONAL)
         for scale in (amplitude, SMALL)
     )
     return large / small - 1.0
 
 
-def _released(model: ReducedModel, start: FloatArray, natural: float, loops: int, periods: int) -> float:
-    """Integrate from rest and return the mean frequency of Theta in the middle of the first loop [Hz]."""
+def swinging_shifts(line: Line, amplitude: float, periods: int = 24) -> tuple[float, float]:
+    """Return the relative shifts of two horizontal loops that are released, in the hybrid and finite element model.
+
+    Where the tension swings by more than half, the motion beats: it has this mean frequency, over a number of periods
+    by the zero crossings of the first loop's middle, and no single one.
+    """
+    made, loops = discretized([line]), (1, 2, 3, 5)
+    shapes = directional_shapes(made.matrices, made.profile.arc_length, loops)
+    hybrid = take(hybrid_model(made, shapes, (2,), ASKED), (0, 0))
+    finite_element = take(finite_element_model(made, full_modes(made.matrices, loops), shapes, ASKED), 0)
+    second = finite_element.direction.tolist().index(HORIZONTAL) + loops.index(2)
+    return (
+        _swinging_shift(hybrid, HORIZONTAL, amplitude, periods),
+        _swinging_shift(finite_element, second, amplitude, periods),
+    )
+
+
+def _swinging_shift(model: ReducedModel, coordinate: int, amplitude: float, periods: int) -> float:
+    natural = math.sqrt(model.stiffness[coordinate, coordinate] / model.mass[coordinate, coordinate]) / (2.0 * math.pi)
+    start = np.zeros(model.mass.shape[-1])
+    start[coordinate] = 1.0 / float(np.abs(model.shapes[coordinate, HORIZONTAL]).max())
+    large, small = (_released(model, scale * start, natural, 2, periods, HORIZONTAL) for scale in (amplitude, SMALL))
+    return large / small - 1.0
+
+
+def _released(
+    model: ReducedModel, start: FloatArray, natural: float, loops: int, periods: int, direction: int
+) -> float:
+    """Integrate from rest and return the mean frequency of a direction in the middle of the first loop [Hz]."""
     assert model.stretching is not None
     stretching, m, inverse = model.stretching, start.size, np.linalg.inv(model.mass)
 
@@ -171,7 +199,7 @@ def _released(model: ReducedModel, start: FloatArray, natural: float, loops: int
     y = np.append(start, np.zeros(m))
     solution = solve_ivp(rate, (0.0, times[-1]), y, method="DOP853", t_eval=times, rtol=1e-9, atol=1e-10)
     middle = round((model.shapes.shape[-1] - 1) / (2 * loops))
-    return mean_frequency(solution.y[:m].T @ model.shapes[:, TORSIONAL, middle], natural * STEPS)
+    return mean_frequency(solution.y[:m].T @ model.shapes[:, direction, middle], natural * STEPS)
 
 
 def mean_frequency(series: FloatArray, rate: float) -> float:
