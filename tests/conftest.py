@@ -1,6 +1,8 @@
 """The one Hypothesis profile, and fixtures for tests that need a database, a broker, or the whole service."""
 
+import math
 import os
+import sysconfig
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,6 +20,16 @@ from tests.documents import hasty_settings
 # A busy machine makes any example slow, so none has a deadline; under CI every run draws the same examples.
 hypothesis.settings.register_profile("galloping", deadline=None, derandomize="CI" in os.environ, print_blob=True)
 hypothesis.settings.load_profile("galloping")
+
+
+def pytest_configure() -> None:
+    """Refuse kernels that are older than their sources: what they compute from other arguments is wrong without a word."""
+    kernels = Path(__file__).parents[1] / "engine" / "kernels"
+    built = kernels / f"_kernels{sysconfig.get_config_var('EXT_SUFFIX')}"
+    since = built.stat().st_mtime if built.exists() else math.inf
+    newer = [path.name for path in kernels.glob("*.[ch]") if path.stat().st_mtime > since]
+    if newer:
+        raise pytest.UsageError(f"{', '.join(newer)} changed after {built.name} was built: run `make setup`")
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,6 @@ AVAILABLE is False where the kernels were not built. The callers then run their 
 kernels are tested.
 """
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -35,25 +34,12 @@ class UnexpandedStarts(Protocol):
     def load(self) -> "UnexpandedLoad": ...  # noqa: D102
 
 
-def refuse_stale(built: Path) -> None:
-    """Raise ImportError where C sources beside a built module are newer: its results may be wrong without a word.
-
-    Only a tree that is installed as it stands has them there.
-    """
-    newer = [path.name for path in sorted(built.parent.glob("*.[ch]")) if path.stat().st_mtime > built.stat().st_mtime]
-    if newer:
-        raise ImportError(f"{', '.join(newer)} changed after {built.name} was built: run `make setup`")
-
-
 try:
-    from engine.kernels import _kernels
     from engine.kernels._kernels import eigenvalues, even_parts, flows, linearization, monodromies, newton, reaches
 
     AVAILABLE = True
 except ImportError:
     AVAILABLE = False
-if AVAILABLE:
-    refuse_stale(Path(_kernels.__file__))
 
 
 def solved_balances(

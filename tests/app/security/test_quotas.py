@@ -88,7 +88,8 @@ def test_many_at_once_get_no_more_than_the_quota(tmp_path: Path, redis_address: 
     async def use(meters: list[Meter]) -> list[Standing]:
         return await asyncio.gather(*(meters[n % 2].take(Quota("reads", 40), "acme") for n in range(100)))
 
-    standings = with_meters(Settings(data_dir=tmp_path, broker_url=redis_address), 2, use)
+    patient = Settings(data_dir=tmp_path, broker_url=redis_address, broker_timeout_seconds=30.0)
+    standings = with_meters(patient, 2, use)
     assert sum(1 for standing in standings if standing.left is not None) == 40
 
 

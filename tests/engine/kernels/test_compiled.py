@@ -1,11 +1,9 @@
 """The compiled kernels against the numpy forms that they stand for, and those forms where nothing was compiled."""
 
-import os
 import shutil
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -208,19 +206,6 @@ def test_overflow_is_a_value() -> None:
     orbits = random_orbits(model, 3, 1)
     wild = Orbits(1e200 * orbits.coefficients, orbits.angular_frequency, orbits.wind_speed)
     assert np.isnan(floquet(model, np.array([0]), wild).multipliers).all()
-
-
-def test_kernels_older_than_their_sources_are_refused_by_name(tmp_path: Path) -> None:
-    built, source = tmp_path / "_kernels.so", tmp_path / "newton.c"
-    built.touch()
-    compiled.refuse_stale(built)
-    source.touch()
-    os.utime(built, (1000.0, 1000.0))
-    os.utime(source, (1000.0, 1000.0))
-    compiled.refuse_stale(built)
-    os.utime(source, (1000.0, 1001.0))
-    with pytest.raises(ImportError, match=r"newton\.c changed after _kernels\.so was built: run `make setup`"):
-        compiled.refuse_stale(built)
 
 
 def test_the_engine_starts_without_them() -> None:
