@@ -11,6 +11,7 @@ from benchmarks.engine_speed import STANDARD_JOB, analysed
 from benchmarks.lines import random_line, under_full_physics
 from engine.spec import AerodynamicModel, Analysis, Line, Model
 from tests.engine.synthetic_table import with_table
+from worker.memory import settle
 
 STACK = 64  # lines side by side
 PARTS = 3  # stacks over which the rate is a median
@@ -33,6 +34,7 @@ def table_stack(generator: np.random.Generator, count: int, angle_deg: float) ->
 
 def _rate(angle_deg: float, stack: int, parts: int) -> float:
     generator = np.random.default_rng(20260101)
+    settle()
     seconds = [_seconds(*table_stack(generator, stack, angle_deg)) for _ in range(parts)]
     return stack / float(np.median(seconds))
 

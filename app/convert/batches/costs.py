@@ -8,22 +8,22 @@ from app.convert import study
 # Seconds on one core for a line in a stack, fixed and per wind speed, rounded from `benchmarks.line_costs`: under the
 # source's physics, under full physics, with an unexpanded load, and with tables, where every wind speed has models.
 _HYBRID_SECONDS = {
-    "source": (0.003, 0.0003),
-    "full": (0.004, 0.0004),
+    "source": (0.0015, 0.0001),
+    "full": (0.0015, 0.00015),
     "unexpanded": (0.07, 0.008),
     "table": (0.02, 0.0015),
 }  # for each number of loops
 _HYBRID_DIRECT_SECONDS = (0.6, 0.2)
 _FINITE_ELEMENT_SECONDS = {
-    "source": (0.4, 0.01),
-    "full": (0.6, 0.01),
+    "source": (0.3, 0.008),
+    "full": (0.35, 0.008),
     "unexpanded": (0.6, 0.05),
     "table": (0.05, 0.02),
 }
 _FINITE_ELEMENT_DIRECT_SECONDS = (45.0, 1.5)
-_FULL_MODES_SECONDS = 0.003
-_STATIC_TWIST_SECONDS = 0.003
-_COMPETITION_SECONDS = 0.001  # a cycle
+_FULL_MODES_SECONDS = 0.0002
+_STATIC_TWIST_SECONDS = 0.0005
+_COMPETITION_SECONDS = 0.0005  # a cycle
 _ENDS_OF_RANGES = 30  # lines beside the samples of a line: two for each value that is assumed
 
 
