@@ -23,7 +23,7 @@ hypothesis.settings.load_profile("galloping")
 
 
 def pytest_configure() -> None:
-    """Refuse kernels that are older than their sources: what they compute from other arguments is wrong without a word."""
+    """Refuse kernels that are older than their sources: what they compute may be wrong without a word."""
     kernels = Path(__file__).parents[1] / "engine" / "kernels"
     built = kernels / f"_kernels{sysconfig.get_config_var('EXT_SUFFIX')}"
     since = built.stat().st_mtime if built.exists() else math.inf

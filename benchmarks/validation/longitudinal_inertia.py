@@ -1,4 +1,4 @@
-"""Longitudinal inertia: vertical frequencies of two loops beside OpenSees, from taut to slack spans. Theory section 12."""
+"""Vertical frequencies of two loops beside OpenSees, from taut to slack spans. Theory section 12."""
 
 import math
 from collections.abc import Iterator
@@ -19,7 +19,8 @@ def section() -> Iterator[str]:
     yield (
         "Vertical frequency of two loops of the source's single conductor, in Hz, by the hybrid model with condensed\n"
         "longitudinal inertia, which full physics has, and without, as in the source, beside OpenSees (160\n"
-        "corotational bars). Springs have the stiffness (A10) of equal adjacent spans. Twenty elements; difference in %.\n"
+        "corotational bars). Springs have the stiffness (A10) of equal adjacent spans. "
+        "Twenty elements; difference in %.\n"
     )
     head = [
         "span m",

@@ -10,7 +10,7 @@ LARGEST = 250  # rows, beyond which LAPACK is faster; the kernel takes no more t
 
 
 def eigenvalues(matrices: FloatArray) -> ComplexArray:
-    """Return the eigenvalues of finite matrices (..., n, n): (..., n); by LAPACK for large ones and where the kernel fails."""
+    """Return the eigenvalues of finite matrices (..., n, n): (..., n); by LAPACK where large or hard."""
     if not compiled.AVAILABLE or matrices.shape[-1] > LARGEST:
         return arrays.eigenvalues(matrices)
     values = compiled.small_eigenvalues(merge_axes(matrices, -matrices.ndim, -3)).reshape(matrices.shape[:-1])

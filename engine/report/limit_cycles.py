@@ -272,7 +272,7 @@ def _rows(
 
 
 def _as_tuples(series: FloatArray, harmonics: IntArray) -> list[tuple[tuple[float, ...], ...]]:
-    """Return Fourier series (cycles, 3, 2 H + 1) as three tuples a cycle, without what pads those of fewer harmonics."""
+    """Return Fourier series (cycles, 3, 2 H + 1) as three tuples a cycle, without what pads fewer harmonics."""
     found: list[tuple[tuple[float, ...], ...]] = [()] * harmonics.size
     for count in np.unique(harmonics).tolist():
         here = np.flatnonzero(harmonics == count)
