@@ -19,7 +19,7 @@ from engine.outcome import InvalidSpec
 from engine.progress import Progress, finished, translated
 from engine.result import Result
 
-STACK = 256  # lines computed together: fewer share too little work, the arrays of more leave the processor's cache
+STACK = 128  # lines computed together: fewer share too little work, twice as many gain 6 % and take 90 MB more
 _LINE, _ANALYSIS = "/line", "/analysis"
 _NO_PARTS = SoundParts(None, None, None, None, None, None, None, ())
 
