@@ -4,4 +4,4 @@ Frozen dataclasses in, frozen dataclasses out; SI units and radians; numpy and s
 files, logging or printing. `engine.analysis` is the only module that knows the order of the steps.
 """
 
-ENGINE_VERSION = "0.7.1"
+ENGINE_VERSION = "0.7.2"
