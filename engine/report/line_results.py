@@ -82,12 +82,11 @@ def line_results(
     tensions = [motion_tensions(observer, one) for one in findings]
     found = list(zip(findings, tensions, strict=True))
     motions = [limit_cycle_rows(observer, one, own, analysis, lowest) for one, own in found]
-    reported = findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
     tables: dict[str, list[Any]] = {
         "critical_wind_speeds": [critical_wind_speed_rows(one, shapes.loops, longitudinal) for one in findings],
         "tensions": [tension_rows(observer, one, own) for one, own in found],
         "bifurcations": [bifurcation_rows(one) for one in findings],
-        "amplitude_curves": [amplitude_curve_rows(observer, one) for one in reported],
+        "amplitude_curves": [amplitude_curve_rows(observer, one) for one in _with_curves(findings, analysis)],
     }
     about_lines = _warnings_about_lines(discretization, shapes.loops, longitudinal, findings, analysis)
     dropped = [dropped_warnings(one, len(discretization.lines)) for one in findings]
@@ -116,6 +115,11 @@ def line_results(
             )
         )
     return results
+
+
+def _with_curves(findings: tuple[ModelFindings, ...], analysis: Analysis) -> tuple[ModelFindings, ...]:
+    """Return the findings whose amplitude curves are asked for."""
+    return findings if analysis.amplitude_curves is AmplitudeCurves.REPORTED else ()
 
 
 def _of_line(parts: Sequence[Sequence[Sequence[Any]]], line: int) -> list[Any]:

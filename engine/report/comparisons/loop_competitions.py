@@ -58,14 +58,7 @@ def loop_competitions(
     verdict = stability_verdicts(np.abs(multiplier), error)
     energy = _energy_by_loops(joint, line, vector, len(loops))
     moving = cycle_coordinates(hybrid)[stable_alone] * len(loops) + column
-    seen = widest_places(
-        joint.shapes[line],
-        joint.direction[moving],
-        np.array(loops)[column],
-        moving,
-        states(orbits, PHASES)[..., : joint.mass.shape[-1]],
-    )
-    amplitudes = half_peak_to_peak(seen.shapes.swapaxes(-1, -2) @ orbits.coefficients).tolist()
+    amplitudes = _amplitudes(joint, line, orbits, moving, np.array(loops)[column]).tolist()
     for i, cycle in enumerate(stable_alone.tolist()):
         own = int(loops[column[i]])
         vertical, horizontal, torsional = amplitudes[i]
@@ -85,6 +78,21 @@ def loop_competitions(
             )
         )
     return rows
+
+
+def _amplitudes(joint: ReducedModel, line: IntArray, orbits: Orbits, moving: IntArray, loops: IntArray) -> FloatArray:
+    """Return the amplitudes of motions where each is widest: (k, 3) [m, m, rad].
+
+    line, moving, loops: (k,), the line of each, its coordinate that moves most and the loops of that one.
+    """
+    seen = widest_places(
+        joint.shapes[line],
+        joint.direction[moving],
+        loops,
+        moving,
+        states(orbits, PHASES)[..., : joint.mass.shape[-1]],
+    )
+    return half_peak_to_peak(seen.shapes.swapaxes(-1, -2) @ orbits.coefficients)
 
 
 def _embedded(orbits: Orbits, selected: IntArray, column: IntArray, coordinates: int) -> Orbits:
